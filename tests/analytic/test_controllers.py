@@ -222,16 +222,18 @@ def test_renamed_law_is_the_same_law():
 BAD = {
     "integral is -3 1/s": lambda: PI(0.1, -3.0),
     "proportional is -0.1": lambda: PID(-0.1, 3.0, 0.0, 100.0),
-    "derivative's filter is at 0 Hz": lambda: PID(0.1, 3.0, 1e-3, 0.0),
+    "derivative filter without a positive corner (got 0 Hz)": lambda: PID(0.1, 3.0, 1e-3, 0.0),
     "half the sampling rate, 500 Hz": lambda: PID(0.1, 3.0, 1e-3, 700.0).system(1e-3),
     "half the sampling rate is 100 Hz": lambda: Notch(110.9).system(5e-3),
-    "tracking at 4000 1/s moves 4": lambda: PI(0.0, 4000.0, 1.0 / 4000.0).system(1e-3),
+    "tracking rate 4000 1/s is too high": lambda: PI(0.0, 4000.0, 1.0 / 4000.0).system(1e-3),
     "depth is -0.5": lambda: Notch(100.0, -0.5),
-    "its feed-through is -2": lambda: IntegralResonant(100.0, -2.0),
+    "feed-through must be positive (got -2)": lambda: IntegralResonant(100.0, -2.0),
     "its damping is 0": lambda: resonant_law(100.0, 0.0),
     "1 laws for 2 loops (x, y)": lambda: Decentralised(platform_loops(coordinates(ideal(case("xy-stage")))), (PI(),)),
-    "are (1, 1), where": lambda: Decentralised(platform_loops(coordinates(ideal(case("xy-stage")))), (PI(), PI()), (), np.eye(1)),
-    "3 modes are given for 2 coordinates (x, y)": lambda: modal_loops(coordinates(ideal(case("xy-stage"))), np.eye(6)[:, :3]),
+    "wrong shape (got (1, 1), expected": lambda: Decentralised(
+        platform_loops(coordinates(ideal(case("xy-stage")))), (PI(), PI()), (), np.eye(1)
+    ),
+    "wrong number of modes (got 3, expected 2: x, y)": lambda: modal_loops(coordinates(ideal(case("xy-stage"))), np.eye(6)[:, :3]),
     "not independent": lambda: modal_loops(coordinates(ideal(case("xy-stage"))), np.ones((6, 2))),
 }
 
@@ -257,7 +259,7 @@ def test_the_least_cost_of_samples_by_doubling_is_that_of_a_schur_form(given, mo
 def test_what_lqg_cannot_do_is_said(given):
     """Another rate, no rate."""
     model, noise = pose_plant(given), Disturbances(1e-9, dict.fromkeys(given.gauges, 1e-11))
-    with pytest.raises(DesignError, match=r"sampled every 0.0002 s, and the controller is to be sampled every 0.0001 s"):
+    with pytest.raises(DesignError, match=r"sampled every 0.0002 s \(expected sampled every 0.0001 s\)"):
         lqg(model, given.coordinates, Weights(30.0), noise).system(1e-4)
-    with pytest.raises(DesignError, match="its model is continuous"):
+    with pytest.raises(DesignError, match="the model is continuous"):
         lqg(replace(model, step=None), given.coordinates, Weights(30.0), noise)

@@ -179,7 +179,7 @@ def test_studies_of_many_designs_know_them():
 def test_files_and_what_is_refused():
     assert loads(dumps(stage(LEAF))) == stage(LEAF)
     assert "inner_modes = 3" in dumps(stage(LEAF))
-    with pytest.raises(DesignError, match=r"Leaf\.inner_modes: found 1\.5, expected a whole number"):
+    with pytest.raises(DesignError, match=r"Leaf\.inner_modes: must be a whole number \(got 1\.5\)"):
         replace(LEAF, inner_modes=1.5)
 
 

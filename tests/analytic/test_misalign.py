@@ -103,7 +103,7 @@ def test_its_report_stands_alone():
     found = misalign(slender(), "left", "ry", 1.5 * limit(), points=4)
     assert found.along.values[-1, -1] > 0
     page = misalign_report(slender(), found)
-    assert "gives way at" in page
+    assert "buckles at" in page
     assert "<svg" in page
     played = misalign_data(slender(), found).motions
     assert [each.name for each in played] == ["left ry"]

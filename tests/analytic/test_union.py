@@ -327,7 +327,7 @@ def test_what_cannot_be_weighed_is_refused(solids: tuple[Solid, ...]) -> None:
         weighed(*solids)
     (finding,) = told.value.findings
     assert "s1" in finding.what
-    assert "state the body's mass" in finding.advice
+    assert "specify the body's mass" in finding.advice
     if solids[1].material == "lead":
         assert np.isclose(float(finding.what.split(" mm^3")[0].split()[-1]), 64.0, rtol=1e-3)
 

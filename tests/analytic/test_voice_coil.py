@@ -216,7 +216,7 @@ def test_travel_and_a_stress_end_the_reach_too():
     assert (found.held.item(), found.limited_by) == (pytest.approx(0.1 * mm, rel=1e-9), ("motor travel",))
     verdict = judge(replace(stage(), requirements={"stroke.x": "at least 50 um"}))[0]
     assert verdict.value is None
-    assert "no limit of its actuators is stated" in verdict.reason
+    assert "its actuators have no specified limit" in verdict.reason
 
 
 def test_yield_of_the_leaves_ends_the_reach():
@@ -260,4 +260,5 @@ def test_the_report_shows_the_reach():
     shown = workspace_section(analyse(stage(LIMITED)))
     assert shown is not None
     assert shown.title == "Force workspace"
-    assert [each.title for each in shown.blocks] == ["Reach", "Holding the reach"]
+    compared = ["Drive force per displacement, compared with the ideal guide", "Drive force by flexure"]
+    assert [each.title for each in shown.blocks] == ["Reach", "Coil inputs at the travel", *compared]

@@ -236,7 +236,7 @@ def test_interruption_is_told(flexstage: Command, monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(analyses, "platform_modes", interrupted)
     ended = flexstage("modes", "stage.toml")
-    assert ended.code == 2
+    assert ended.code == 130
     assert ended.err.startswith("Interrupted; nothing was written.")
 
 

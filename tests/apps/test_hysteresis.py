@@ -94,16 +94,16 @@ def test_bad_input_ends_with_findings(recorded: Command, tmp_path: Path) -> None
     dead = in_memory(RECORD.channels, 100.0, values * np.array([1.0, 0.0]))
     for name, record in (("once", once), ("three", three), ("dead", dead)):
         write(tmp_path / f"{name}.csv", record)
-    assert "once.csv: volts: the volts go from 0 V to 1000 V and never turn" in ended_badly(recorded, "once.csv")
+    assert "once.csv: volts: the voltage runs from 0 V to 1000 V without reversal" in ended_badly(recorded, "once.csv")
     assert "2 are in a length" in ended_badly(recorded, "three.csv")
-    assert "dead.csv: stroke: all its samples are 0: the channel is dead" in ended_badly(recorded, "dead.csv")
+    assert "dead.csv: stroke: all samples equal 0: the channel is dead" in ended_badly(recorded, "dead.csv")
     assert "there is no channel w" in ended_badly(recorded, "stack.csv", "--stroke", "w")
     exchanged = ended_badly(recorded, "stack.csv", "--volts", "y", "--stroke", "u")
     assert "y is in um, which is not volts" in exchanged
     assert "u is in V, which is not a length" in exchanged
-    assert "there is no such file" in ended_badly(recorded, "none.csv")
-    assert "1000 V to 0 V is no range" in ended_badly(recorded, "stack.csv", "--limits", "1000 V", "0 V")
-    assert "step.uff: record: after the step there are" not in ended_badly(recorded, "stack.csv", "--step", "stack.csv")
+    assert "file not found" in ended_badly(recorded, "none.csv")
+    assert "no range (got 1000 V to 0 V" in ended_badly(recorded, "stack.csv", "--limits", "1000 V", "0 V")
+    assert "step.uff: record: too short after the step" not in ended_badly(recorded, "stack.csv", "--step", "stack.csv")
     assert "stack.csv is read by this command" in ended_badly(recorded, "stack.csv", "-o", "stack.csv")
 
 

@@ -190,7 +190,7 @@ FAULTS: dict[str, tuple[Callable[[Record], Record], str, str]] = {
     "clipped": (changed("S2", lambda values: np.clip(values, -0.5 * np.std(values), 0.5 * np.std(values))), "S2: it is clipped", "clipped"),
     "unit": (without_unit, "S3: no unit is stated", "units"),
     "dependent": (copied_input, "is explained by the other inputs", "dependent"),
-    "name": (renamed, "S9: the stage has no output of this name", "names"),
+    "name": (renamed, "S9: unknown output", "names"),
 }
 
 
@@ -235,7 +235,7 @@ def test_all_files_are_looked_at(flexstage: Command, tmp_path: Path, record: Rec
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (("nowhere.uff",), "there is no such file"),
+        (("nowhere.uff",), "file not found"),
         (("stage.toml",), "stage.toml"),
         (("record.uff", "--accept-fault", "everything"), '"everything" is none of truncated, gaps'),
         (("record.uff", "--kind", "film"), '"film" is none of record, responses'),
@@ -246,7 +246,7 @@ def test_all_files_are_looked_at(flexstage: Command, tmp_path: Path, record: Rec
         (("record.uff", "--band", "200 Hz", "100 Hz"), "is no band"),
         (("record.uff", "--band", "2 kHz", "3 kHz"), "less than twice the highest mode"),
         (("record.uff", "--frequency-resolution", "0.1 Hz"), "averages at a resolution of 0.1 Hz"),
-        (("record.uff", "--inputs", "X*"), "no channel is called so"),
+        (("record.uff", "--inputs", "X*"), "unknown channel"),
         (("record.uff", "--inputs", "B1", "--outputs", "B1"), "as an input and as an output"),
         (("record.uff", "--channels", "S*"), "is an input"),
         (("record.uff", "--stage", "nowhere.toml"), "nowhere.toml"),

@@ -98,8 +98,7 @@ def test_assignments_move_what_depends_on_a_number_and_say_what_formula_they_tak
     by_values = flexstage("modes", "stage.toml", "--set", "leaf.thickness=1.1 mm", "--set", "neck.thickness=+10%", "--json", "-")
     assert by_name["modes"][0]["frequency_hz"] == pytest.approx(by_values.document["modes"][0]["frequency_hz"], rel=1e-12)
     assert (
-        'parts.leaf.thickness is set by itself, its formula "thin" is not kept; to move all that depends on it, set numbers.thin'
-        in by_values.err
+        'the value of parts.leaf.thickness replaces its formula "thin"; to change all dependent values, set numbers.thin' in by_values.err
     )
     ended = flexstage("modes", "stage.toml", "--set", "numbers.thin=1.1 N")
     assert ended.code == 2
@@ -112,4 +111,4 @@ def test_a_number_that_nothing_refers_to_is_a_warning(folder: Path, monkeypatch:
     (folder / "stage.toml").write_text(text)
     ended = flexstage("check", "stage.toml")
     assert ended.code == 0
-    assert "numbers.spare: no formula refers to it" in " ".join((ended.out + ended.err).split())
+    assert "numbers.spare: no formula uses it" in " ".join((ended.out + ended.err).split())

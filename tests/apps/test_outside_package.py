@@ -106,7 +106,7 @@ def test_without_the_package_the_design_says_what_to_install(without):
 
 def test_another_version_than_the_design_asks_for_is_refused(work, tmp_path):
     told = flexstage(work, "check s.toml", path=installed(tmp_path / "site", version="0.9"), ok=2)
-    assert '"tapered-leaf >= 1" is asked for, and tapered-leaf 0.9 is installed' in told
+    assert 'got tapered-leaf 0.9, expected "tapered-leaf >= 1"' in told
 
 
 def test_without_the_package_the_kind_is_refused_with_what_to_do(without):
@@ -134,7 +134,7 @@ def test_a_loop_takes_its_controller_and_its_amplifier(work, known):
 
 def test_its_compound_is_its_members(known):
     assert "2 x leaf" in known
-    assert known.count("no findings") >= 2
+    assert known.count("no errors") >= 2
 
 
 @pytest.mark.usefixtures("known")
@@ -172,8 +172,8 @@ def test_its_shape_is_all_that_finite_elements_need(work, package):
 def test_without_a_shape_it_is_not_known_to_finite_elements(work, tmp_path):
     package = installed(tmp_path, without="flexstage.shapes")
     told = flexstage(work, "solid small.toml --scope hinge", "check small.toml", path=package, ok=2)
-    assert "leaf: its shape as a solid is not known: nobody offers one for this kind. Install the package that does" in told
-    assert "no findings" in told
+    assert "leaf: no installed package has a solid shape for this kind. Install a package with this shape" in told
+    assert "no errors" in told
 
 
 def test_a_record_of_its_form_is_read(work, package):
@@ -183,7 +183,7 @@ def test_a_record_of_its_form_is_read(work, package):
     told = subprocess.run(run, cwd=work, env={**os.environ, "PYTHONPATH": str(package)}, capture_output=True, text=True, check=True)
     assert told.stdout == "100.0 u1 [[1.0, 2.0], [3.0, 4.0]]\n"
     told = subprocess.run(run, cwd=work, env=os.environ, capture_output=True, text=True, check=False)
-    assert "none of its columns is called time" in told.stderr
+    assert "no time column in" in told.stderr
 
 
 def test_the_page_shows_what_the_package_offers():
@@ -248,7 +248,7 @@ def crossed(tmp_path_factory):
 def test_a_hinge_of_any_section_is_as_known_from_outside_as_from_inside(crossed):
     """Every number of theory is that of our own: nobody but the registers knows either kind."""
     told = alike(crossed, "check {0}.toml", "analyse {0}.toml --json {0}-analyse.json")
-    assert told.count("no findings") == 2
+    assert told.count("no errors") == 2
     assert '"const": "plus"' in told
     assert '"const": "cruciform"' in told
 

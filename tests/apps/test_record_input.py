@@ -52,7 +52,7 @@ def refused(ended: Ended, said: str) -> None:
 @pytest.mark.parametrize(
     ("name", "data", "said"),
     [
-        ("missing.uff", None, "missing.uff: there is no such file"),
+        ("missing.uff", None, "missing.uff: file not found"),
         ("folder", None, "folder: it is a folder"),
         ("empty.h5", b"", "empty.h5: it is empty"),
         ("junk.uff", np.random.default_rng(0).bytes(20_000), "junk.uff: it is neither text nor a known form of record"),
@@ -80,7 +80,7 @@ def test_what_is_no_record_is_refused(
     ("option", "target", "said"),
     [
         ("--json", "record.uff", "record.uff is read by this command"),
-        ("--json", "missing/out.json", "there is no folder missing"),
+        ("--json", "missing/out.json", "folder missing not found"),
         ("--json", "folder", "it is a folder"),
         ("--json", "/dev/full", "No space left on device"),
     ],
@@ -104,8 +104,8 @@ def test_outputs_that_cannot_be_written_are_refused(
         (("identify", "record.uff", "./record.uff"), "it is given 2 times"),
         (("identify", "record.uff", "--array", "sample=u"), "--array sample=u: this says of no array what it is: samples, time, rate"),
         (("identify", "record.uff", "--array", "samples=u"), "samples=u: universal files have no named arrays"),
-        (("identify", "record.uff", "--band", "100 Hz", "100.2 Hz"), "from 100 to 100.2 Hz there are 0 of the lines"),
-        (("identify", "record.uff", "--band", "100 Hz", "106 Hz"), "from 100 to 106 Hz there are 5 of the lines"),
+        (("identify", "record.uff", "--band", "100 Hz", "100.2 Hz"), "too few lines from 100 to 100.2 Hz"),
+        (("identify", "record.uff", "--band", "100 Hz", "106 Hz"), "too few lines from 100 to 106 Hz"),
         (("identify", "record.uff", "--band", "0 Hz", "0.1 Hz"), "the data reach from"),
         ((*UPDATE, "record.uff", "--gain-error", "200 %"), "--gain-error"),
         (("rig", "stage.toml", "--seconds", "2", "-o", "new.uff", "--resolution", "1 m"), "stay within half a step of 1e+06 um"),

@@ -84,14 +84,14 @@ def test_the_table_gives_the_rms_to_expect(flexstage: Command, tmp_path: Path) -
         (("--seconds", "-3"), ("seconds", "-3 s")),
         (("--rate", "0 Hz"), ("rate", "0 Hz")),
         (("--rate", "300 Hz"), ("300 Hz", "twice the highest platform mode, 176.7 Hz")),
-        (("--rate", "300"), ("--rate", "without a unit")),
+        (("--rate", "300"), ("--rate", "unit missing")),
         (("--drive-rms", "50um"), ("B1", "6 x 50 um", "-75 um to 75 um")),
         (("--drive-rms", "1kg"), ("--drive-rms", "displacement", "voltage")),
         (("--actuator", "B11"), ("actuator B11", "B1")),
         (("--amplifier", "5 s"), ("--amplifier", "frequency", "resistance", "current")),
         (("--band", "100 Hz", "50 Hz"), ("band", "100 Hz to 50 Hz")),
         (("--gauge-noise", "1 nm"), ("--gauge-noise", "noise density")),
-        (("--drift", "2"), ("--drift", "without a unit")),
+        (("--drift", "2"), ("--drift", "unit missing")),
         (("--model", "ideal"), ("--model ideal", "no modes")),
         (("--input-signal", "both"), ("--input-signal", "monitor, command")),
         (("-o", "record.xyz"), ("record.xyz", ".uff")),
@@ -129,7 +129,7 @@ def test_an_interrupted_test_leaves_nothing(flexstage: Command, tmp_path: Path, 
     (tmp_path / name).write_text("old")
     monkeypatch.setattr(Simulated, "_compute_block", interrupted)
     ended = flexstage("rig", "stage.toml", "--seconds", "60", "--model", "mapped", "-o", name)
-    assert ended.code == 2
+    assert ended.code == 130
     assert ended.err.startswith("Interrupted; nothing was written.")
     assert (tmp_path / name).read_text() == "old"
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([name, "stage.toml"])

@@ -64,7 +64,7 @@ def test_what_does_not_meet_is_warned_of_in_step_and_refused_in_a_mesh(flexstage
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("-o", "nowhere/a.step"), "there is no folder nowhere"),
+        (("-o", "nowhere/a.step"), "folder nowhere not found"),
         (("-o", "stage.toml"), "read by this command"),
         (("-o", "."), "it is a folder"),
         (("-o", "a", "--gltf", "./a"), "the output of --output"),
@@ -134,7 +134,7 @@ def test_a_step_file_is_stated_so_that_the_design_holds_it(flexstage: Command, t
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("nowhere.step", "--material", "steel"), "no such file"),
+        (("nowhere.step", "--material", "steel"), "file not found"),
         (("stage.toml", "--material", "steel"), "no STEP file"),
         (("nowhere.step", "--material", "stele"), "steel"),
     ],

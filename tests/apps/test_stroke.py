@@ -54,7 +54,7 @@ def test_what_contradicts_a_path_is_refused(flexstage: Command) -> None:
     ended = flexstage("stroke", "stage.toml", "--path", "out", "--to", "1 mm")
     assert (ended.code, "a path states its drive and its ends" in ended.err) == (2, True)
     ended = flexstage("stroke", "stage.toml", "--path", "up")
-    assert (ended.code, "the design states no such path" in ended.err) == (2, True)
+    assert (ended.code, "unknown path" in ended.err) == (2, True)
     ended = flexstage("stroke", "stage.toml", "--from", "1 mm", "--to", "1 mm")
     assert (ended.code, "platform.x goes from 1 mm to 1 mm: a drive that does nothing" in ended.err) == (2, True)
 

@@ -217,7 +217,7 @@ async def test_a_stage_that_its_load_buckles_is_an_error_though_its_text_is_soun
     await page.ask(say.Edit, text=dumps(upright(500.0)), revision=page.state.revision)
     await page.until(lambda page: page.state.name != "guide" and page.state.problems)
     assert not page.state.sound
-    assert "does not hold" in page.state.problems[0].what
+    assert "position is unstable" in page.state.problems[0].what
     await page.ask(say.Undo)
     await page.settle()
     assert (page.state.sound, page.state.problems) == (True, ())
@@ -225,7 +225,7 @@ async def test_a_stage_that_its_load_buckles_is_an_error_though_its_text_is_soun
 
 @on_page
 async def test_a_wrong_unit_is_refused_in_the_words_of_the_checks(page, studio):
-    for text, words in (("3 kg", "a mass, where a length is expected"), ("0.4", "without a unit"), ("-1 mm", "not greater than 0 mm")):
+    for text, words in (("3 kg", "a mass, where a length is expected"), ("0.4", "unit missing"), ("-1 mm", "not greater than 0 mm")):
         said = await page.ask(say.Set, address=THICKNESS, text=text)
         assert isinstance(said, say.Refusal)
         assert words in said.problems[0].what
@@ -791,8 +791,8 @@ def test_what_cannot_be_opened_is_refused(studio, tmp_path, capsys):
     port = str(studio[0].port)
     (tmp_path / "wrong.toml").write_text("x = ")
     for words, told in (
-        ((tmp_path / "nowhere.toml",), "there is no such file"),
-        ((tmp_path,), "this is a directory"),
+        ((tmp_path / "nowhere.toml",), "file not found"),
+        ((tmp_path,), "not a file but a folder"),
         ((tmp_path / "wrong.toml", "--port", port), f"--port {port}: it cannot be listened at: Address already in use"),
     ):
         assert run(["studio", "--no-browser", *map(str, words)]) == 2

@@ -93,7 +93,7 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
     assert "frequency.1" in done.out
     assert (tmp_path / "r.html").read_text().startswith("<!doctype html>")
     again = flexstage("sweep", "study.toml", "-o", "r.h5")
-    assert (again.code, "results are there already" in again.err) == (2, True)
+    assert (again.code, "file exists already" in again.err) == (2, True)
     study_file.write_text(short.replace("-10 %", "-20 %"))
     other = flexstage("sweep", "study.toml", "-o", "r.h5", "--resume")
     assert (other.code, "variables.young was" in other.err) == (2, True)
@@ -104,20 +104,20 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
     [
         ('"-10 %"', '"10 %"', "its range is empty"),
         ("materials.aluminium.young", "materials.aluminum.young", "aluminium"),
-        ('"frequency.1"', '"frequncy.1"', 'there is no measure called "frequncy.1"'),
-        ('"frequency.1"', '"safety.B"', "there is no measure"),
+        ('"frequency.1"', '"frequncy.1"', 'unknown measure "frequncy.1"'),
+        ('"frequency.1"', '"safety.B"', "unknown measure"),
         ("latin hypercube", "latin", "latin hypercube"),
-        ("seed = 3", "sed = 3", "this key is not known here"),
+        ("seed = 3", "sed = 3", "unknown key"),
         ('"10 %"', '"80 GPa"', "one end is relative"),
-        ('case = "parallelogram"', 'design = "none.toml"', "there is no such file"),
-        ("responses.f", "responses.young", 'responses.young: the results have a column "young" already, of variables.young'),
-        ("young = {", "design = {", 'variables.design: the results have a column "design" already, of the number of a design'),
+        ('case = "parallelogram"', 'design = "none.toml"', "file not found"),
+        ("responses.f", "responses.young", 'responses.young: column "young" exists already, from variables.young'),
+        ("young = {", "design = {", 'variables.design: column "design" exists already, from the number of a design'),
         ("young = {", '"a\\u0000b" = {', "variables.a\\x00b: its name is empty, or has control characters"),
         ("young = {", '"a\\u202eb" = {', "variables.a\\u202eb: its name is empty, or has control characters"),
         (
             "flexstage study 1",
             "flexstage 1",
-            'error: 1 finding study.toml: line 2: format: found "flexstage 1", a design file, where',
+            'error: study.toml:2: format: unknown format (got "flexstage 1", a design file, expected a study file)',
         ),
     ],
 )
@@ -141,7 +141,7 @@ scatter.wire = { address = "leaf.thickness", normal = "4 um" }
 def test_columns_of_all_studies_have_names_of_their_own():
     """Copies of a tolerance study, objectives that are one measure, and a study made in Python."""
     copy = loads_tolerance(SCATTERED.replace("NAME", "m")).variables[0].name
-    with pytest.raises(DesignError, match=f'responses.{copy}: the results have a column "{copy}" already'):
+    with pytest.raises(DesignError, match=f'responses.{copy}: column "{copy}" exists already'):
         loads_tolerance(SCATTERED.replace("NAME", copy))
     text = f'{STUDY}\n[optimise]\nmaximise = ["f"]\nminimise = ["g"]'.replace("responses.f", 'responses.g = "frequency.1"\nresponses.f')
     with pytest.raises(DesignError, match='"g" is the same measure as "f", an objective already'):

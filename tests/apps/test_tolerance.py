@@ -31,7 +31,7 @@ def study_file(tmp_path):
 def test_tolerance_shows_and_writes(study_file, tmp_path, flexstage):
     done = flexstage("tolerance", "study.toml", "-o", "r.h5", "--report", "r.html", "--json", "r.json", "--workers", "1")
     assert done.code == 0, done.err
-    for said in ("All together", "What is allowed", "Crosstalk", "+-5 um", "common to 4"):
+    for said in ("All requirements", "Allowable tolerances", "Crosstalk", "+-5 um", "common to 4"):
         assert said in done.out
     told = json.loads((tmp_path / "r.json").read_text())
     assert told["copies"] == {"computed": 40, "failed": 0}
@@ -67,14 +67,14 @@ def test_without_a_specification_there_is_no_yield(study_file, tmp_path, flexsta
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("hinges", "hinge", "The nearest name is hinges"),
-        ("units.rotation.z", "units.rotaton.z", "The nearest name is rotation"),
-        ("300 urad", "-1 urad", "Give a deviation above 0"),
+        ("hinges", "hinge", "Use hinges"),
+        ("units.rotation.z", "units.rotaton.z", "Use rotation"),
+        ("300 urad", "-1 urad", "must be greater than 0"),
         ("copies = 40", "copies = 1", "Give a whole number of 2 or more"),
-        ("seed = 2", 'sampling = "grid"', 'found "grid"'),
-        ("seed = 2", 'point = "edge"', 'there is no point "edge"'),
+        ("seed = 2", 'sampling = "grid"', 'unknown value (got "grid")'),
+        ("seed = 2", 'point = "edge"', 'unknown point "edge"'),
         ("seed = 2", 'yield = "101 %"', "which is not greater than 0.5 and less than 1"),
-        ("[scatter]", "[scater]", "scater: this key is not known here"),
+        ("[scatter]", "[scater]", "scater: unknown key"),
     ],
 )
 def test_bad_studies_are_told(study_file, tmp_path, flexstage, old, new, message):

@@ -60,11 +60,11 @@ def test_tables_say_what_the_test_tells(recorded: Command) -> None:
     [
         (("--parameters", "neck.thickness", "-o", "stage.toml"), "stage.toml is read by this command"),
         (("--parameters", "neck.thickness", "-o", "record.uff"), "record.uff is read by this command"),
-        (("--parameters", "neck.thicknes", "-o", "u.toml"), "The nearest name is thickness"),
+        (("--parameters", "neck.thicknes", "-o", "u.toml"), "Use thickness"),
         (("--parameters", "front.thickness", "-o", "u.toml"), "Write horizontal/front.thickness or vertical/front.thickness"),
         (("--parameters", "platform.mass", "-o", "u.toml"), "the body's mass follows from its solids"),
         (("--parameters", "steel.yield_stress", "-o", "u.toml"), "it has no effect on the frequencies compared"),
-        (("--parameters", "neck.thickness", "--prior", "200 %", "-o", "u.toml"), "--prior: 200 % is no relative standard deviation"),
+        (("--parameters", "neck.thickness", "--prior", "200 %", "-o", "u.toml"), "--prior: no relative standard deviation (got 200 %"),
         (("--parameters", "neck.thickness", "--model-error", "0.1", "--model-error", "two", "-o", "u.toml"), "--model-error"),
         (("--parameters", "neck.thickness, neck.width, steel.density, steel.young, pole_neck.thickness", "-o", "u.toml"), "5 free numbers"),
     ],

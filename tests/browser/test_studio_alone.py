@@ -197,7 +197,7 @@ def test_a_rest_sends_the_number_in_five_digits(page: Page, server: Server) -> N
 
 def test_findings_stand_at_their_line_and_a_click_goes_there(page: Page, server: Server) -> None:
     broken = TEXT.replace('"0.5 mm"', '"0.5"')
-    server.say(state(2, broken, problems=(Problem(THICKNESS, "found a number without unit.", "Write for example 0.5 mm.", 5, None),)))
+    server.say(state(2, broken, problems=(Problem(THICKNESS, "found a number without unit.", "Use e.g. 0.5 mm.", 5, None),)))
     until(page, lambda: "line 5" in page.inner_text("#problems"))
     page.locator("#problems button").click()
     assert page.locator("#editor .cm-activeLine").inner_text() == 'thickness = "0.5"'
@@ -213,9 +213,7 @@ def test_no_status_is_green_next_to_results_of_another_text(page: Page, server: 
     server.say(Engine("ready", "", None), figures)
     until(page, lambda: page.evaluate(chips) == [True, True])
     green = page.evaluate(colours)
-    server.say(
-        state(2, TEXT + "\n[requirements]", problems=(Problem("requirements.mass", "found a frequency", "Write for example 2 kg.", 6, 1),))
-    )
+    server.say(state(2, TEXT + "\n[requirements]", problems=(Problem("requirements.mass", "found a frequency", "Use e.g. 2 kg.", 6, 1),)))
     until(page, lambda: page.evaluate(chips) == [False, False])
     assert "1 error: results are of the last text without errors" in page.inner_text("#text .bar")
     assert not set(green) & set(page.evaluate(colours))
@@ -227,13 +225,13 @@ def test_no_status_is_green_next_to_results_of_another_text(page: Page, server: 
     assert page.evaluate(colours) == green
 
 
-@pytest.mark.parametrize("button", ["take them back", "discard them"])
+@pytest.mark.parametrize("button", ["restore them", "discard them"])
 def test_unsaved_changes_of_a_studio_that_ended_are_offered(page: Page, server: Server, button: str) -> None:
     server.say(replace(state(1), drafts=(Draft("a.json", 1.7e9, True),), unprotected="the disk is full"))
     until(page, lambda: "the file was changed since" in page.inner_text("#drafts"))
     assert "the disk is full" in page.inner_text("#changed")
     page.get_by_role("button", name=button).click()
-    until(page, lambda: [(each["draft"], each["keep"]) for each in server.of("recover")] == [("a.json", button == "take them back")])
+    until(page, lambda: [(each["draft"], each["keep"]) for each in server.of("recover")] == [("a.json", button == "restore them")])
     server.say(state(1))
     until(page, lambda: page.inner_text("#drafts") == "")
 

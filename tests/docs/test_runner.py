@@ -34,7 +34,7 @@ def test_other_output_fails(tmp_path):
 def test_pieces_are_laid_over_a_file_that_stays(tmp_path):
     whole = 'format = "flexstage 1"\nname = "a"\n'
     (tmp_path / "a.toml").write_text(whole)
-    with pytest.raises(Exception, match="without a unit"):
+    with pytest.raises(Exception, match="unit missing"):
         Runner(tmp_path).run(Block("page.md", 1, "toml", ("into=a.toml",), "max_mode_frequency = 3"))
     assert (tmp_path / "a.toml").read_text() == whole
 

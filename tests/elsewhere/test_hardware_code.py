@@ -313,5 +313,5 @@ def test_numbers_that_overflow_leave_its_states_finite(loaded):
 
 def test_an_inverse_of_hysteresis_is_refused():
     given = full_loop(inverse=True)
-    with pytest.raises(DesignError, match="inverse of a hysteresis"):
+    with pytest.raises(DesignError, match="inverse of this hysteresis model"):
         hardware_code(given, None, None, name="stage", precision=Precision.SINGLE)

@@ -347,7 +347,7 @@ def test_without_a_compiler_it_is_said_and_the_text_still_comes(tmp_path, monkey
     monkeypatch.setenv("CC", "no-such-compiler")
     with pytest.raises(DesignError, match=r"compiler: a functional mock-up unit needs a compiler of C.*CC = no-such-compiler.*Install one"):
         write_fmu(tmp_path / "controller.fmu", controller_code(given))
-    with pytest.raises(DesignError, match="the compiled simulation needs a compiler of C"):
+    with pytest.raises(DesignError, match="the compiled simulation needs a C compiler"):
         simulate_compiled(given, np.zeros((2, 6)))
     write_fmu(tmp_path / "controller.fmu", controller_code(given), sources_only=True)
     write_controller(tmp_path / "stage.c", given)
@@ -358,7 +358,7 @@ def test_without_a_compiler_it_is_said_and_the_text_still_comes(tmp_path, monkey
     ("write", "name", "message"),
     [
         (write_controller, "controller.txt", r"does not end in \.c\. Call it controller\.c"),
-        (write_controller, "2 axes.c", r'its functions could not be called "2 axes"\. Call it stage_2_axes\.c'),
+        (write_controller, "2 axes.c", r'"2 axes" is a reserved function name\. Call it stage_2_axes\.c'),
         (write_controller, "Math.c", r"its header Math\.h would stand before a system's.*Call it stage_Math\.c"),
         (lambda path, given: write_fmu(path, controller_code(given)), "controller.zip", r"does not end in \.fmu"),
         (lambda path, _: write_plant(path, integral_loop().plant), "plant.m", r"does not end in \.mat"),
@@ -372,7 +372,7 @@ def test_bad_names_are_refused(tmp_path, write, name, message):
 def test_a_hysteresis_without_c_is_refused():
     given = full_loop()
     one = Preisach.__new__(Preisach)  # of this kind, whatever its numbers
-    with pytest.raises(DesignError, match="Preisach has no form in C"):
+    with pytest.raises(DesignError, match="Preisach has no C form"):
         loop_code(replace_unchecked(given, one))
 
 

@@ -25,7 +25,7 @@ def test_the_page_lists_all_pairs() -> None:
 
 
 def test_an_old_key_is_refused_with_the_new_one() -> None:
-    assert suggest_nearest("mode_limit", ["name", "max_mode_frequency"]) == "It is called max_mode_frequency"
+    assert suggest_nearest("mode_limit", ["name", "max_mode_frequency"]) == "Use max_mode_frequency"
 
 
 OLD_KEYS = {
@@ -63,12 +63,12 @@ READERS = {"design": loads, "loop": loads_setup, "study": study_file}
 @pytest.mark.parametrize(("kind", "line", "new"), [(kind, line, new) for kind, lines in OLD_KEYS.items() for line, new in lines.items()])
 def test_a_file_with_an_old_key_is_refused_with_file_line_and_new_key(kind: str, line: str, new: str) -> None:
     text = f'format = "flexstage{"" if kind == "design" else f" {kind}"} 1"\n\n{line}\n'
-    with pytest.raises(DesignError, match=rf"a\.toml: line 3: .*It is called {new}\b"):
+    with pytest.raises(DesignError, match=rf"a\.toml:3: .*Use {new}\b"):
         READERS[kind](text, where="a.toml")
 
 
 def test_an_old_table_next_to_the_new_one_is_refused_with_its_name() -> None:
-    with pytest.raises(DesignError, match=r"line \d+: place: .* It is called placements"):
+    with pytest.raises(DesignError, match=r":\d+: place: .* Use placements"):
         loads(dumps(parallelogram()) + '[place.C]\nunit = "strut"\n')
 
 

@@ -168,7 +168,7 @@ def preisach(stroke: float, volts: Range, width: float, *, decay: float = 0.5, t
     """
     span = volts[1] - volts[0]
     if not (stroke > 0.0 and span > 0.0 and 0.0 < width < 1.0):
-        what = f"stroke {stroke:g} m, {volts[0]:g} V to {volts[1]:g} V and width {width:g} make no loop"
+        what = f"stroke {stroke:g} m, {volts[0]:g} V to {volts[1]:g} V and width {width:g}: no loop"
         raise refuse("Preisach model", what, "Give a stroke above 0, volts that ascend, and a width between 0 and 1")
 
     def stack(slope: float, density: float) -> Preisach:

@@ -92,7 +92,7 @@ def test_actuators_that_are_blocked_alike_are_told_once() -> None:
 def test_a_platform_without_actuators_that_cannot_move_is_told() -> None:
     mechanism = case("parallelogram")
     bare = replace(mechanism, units={}, placements={}, links={name: replace(link, free=()) for name, link in mechanism.links.items()})
-    assert any("all six freedoms" in warning.what for warning in design_warnings(replace(bare, requirements={})))
+    assert any("all six degrees of freedom" in warning.what for warning in design_warnings(replace(bare, requirements={})))
 
 
 def test_the_links_that_block_are_named_with_what_to_free() -> None:

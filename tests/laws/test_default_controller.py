@@ -1,4 +1,4 @@
-"""The controller of a loop whose set-up states nothing keeps what docs/loop.md promises of it: law, order, coordinates, sampling, peak."""
+"""The controller of a quick loop keeps what docs/loop.md promises of it: law, order, coordinates, sampling, peak."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from flexstage.cases.registry import case
 from flexstage.control.controllers.decentralised import Decentralised, loop_systems
-from flexstage.control.study.setup import LoopSetup
+from flexstage.control.study.setup import ControllerSetup, LoopSetup
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.control.tuning.view import view
 
@@ -21,7 +21,7 @@ ALLOWED = 10.0 ** (6.03 / 20.0)
 
 @cache
 def default(name: str) -> LoopStudy:
-    return loop_study(case(name), LoopSetup())
+    return loop_study(case(name), LoopSetup(controller=ControllerSetup(quick=True)))
 
 
 def made_of(found: LoopStudy) -> Decentralised:

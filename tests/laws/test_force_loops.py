@@ -61,7 +61,9 @@ def single():
 
 @pytest.fixture(scope="module")
 def study(single):
-    return loop_study(single, LoopSetup(amplifier=AmplifierSetup(bandwidth=5e3, bits=16, current_noise=2e-6)))
+    return loop_study(
+        single, LoopSetup(amplifier=AmplifierSetup(bandwidth=5e3, bits=16, current_noise=2e-6), controller=ControllerSetup(quick=True))
+    )
 
 
 def test_a_command_of_one_metre_takes_the_current_that_holds_it(single):
@@ -129,7 +131,7 @@ def test_a_current_amplifier_clips_at_the_peak_and_rises_by_the_volts_that_are_l
         (LoopSetup(amplifier=AmplifierSetup(resistance=50.0)), "motor: resistance is of the volts of a stack's amplifier"),
         (LoopSetup(amplifier=AmplifierSetup(noise=1e-6)), "motor: noise_density is of the volts"),
         (LoopSetup(hysteresis=HystereticStacks(width=0.1)), "hysteresis: forces drive the stage (motor)"),
-        (LoopSetup(compensate=(Compensation.LOAD,)), "compensate: what loads take of the forces"),
+        (LoopSetup(compensate=(Compensation.LOAD,)), "compensate: load compensation is not supported"),
     ],
 )
 def test_what_is_of_stacks_is_refused_of_coils_by_name(single, setup, found):

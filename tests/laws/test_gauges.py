@@ -210,17 +210,20 @@ def test_readings_keep_their_units_in_responses_tests_and_loops(stage):
     ("gauges", "found"),
     [
         ({"G": Probe("gap", PLATFORM, Pose())}, "gauges.G: it has no positive"),
-        ({"T": Probe("tilt", PLATFORM, Pose(), SensorSense.OPENS)}, "gauges.T.positive: tilt reads along or about the gauge's own x axis"),
-        ({"G": Probe("strain", PLATFORM, Pose())}, "gauges.G: strain is a gauge on a link"),
-        ({"G": LinkProbe("strain", "B7/pzt")}, 'gauges.G.link: there is no link "B7/pzt". Near to it'),
-        ({"G1-G2": LinkProbe("strain", "B1-B3/pzt")}, 'gauges.G1-G2.link: "B1-B3/pzt" names 3 links, and G1-G2 2 gauges'),
-        ({"G": LinkProbe("nothing", "B1/pzt")}, 'gauges.G.gauge: there is no sensor "nothing"'),
-        ({"D": GaugeSum({"S1": 1.0})}, 'gauges.D.sum.S1: there is no other gauge "S1"'),
+        (
+            {"T": Probe("tilt", PLATFORM, Pose(), SensorSense.OPENS)},
+            "gauges.T.positive: tilt has no gap that opens; it reads along or about its x axis",
+        ),
+        ({"G": Probe("strain", PLATFORM, Pose())}, "gauges.G: link missing for strain, a gauge on a link"),
+        ({"G": LinkProbe("strain", "B7/pzt")}, 'gauges.G.link: unknown link "B7/pzt". Use'),
+        ({"G1-G2": LinkProbe("strain", "B1-B3/pzt")}, "gauges.G1-G2.link: wrong number of links (got 3 links for 2 gauges)"),
+        ({"G": LinkProbe("nothing", "B1/pzt")}, 'gauges.G.gauge: unknown sensor "nothing"'),
+        ({"D": GaugeSum({"S1": 1.0})}, 'gauges.D.sum.S1: unknown gauge "S1"'),
         ({"D": GaugeSum({})}, "gauges.D.sum: it has no members"),
-        ({"D": GaugeSum({"E": 1.0}), "E": GaugeSum({"D": 1.0})}, "gauges.D.sum: it takes itself up"),
+        ({"D": GaugeSum({"E": 1.0}), "E": GaugeSum({"D": 1.0})}, "gauges.D.sum: circular sum"),
         (
             {"T": Probe("tilt", PLATFORM, Pose()), "G": LinkProbe("strain", "B1/pzt"), "D": GaugeSum({"T": 1.0, "G": 1.0})},
-            "gauges.D.sum: its members read m and rad",
+            "gauges.D.sum: different quantities (m and rad)",
         ),
     ],
 )

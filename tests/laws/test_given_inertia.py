@@ -44,7 +44,7 @@ def test_without_inertia_nothing_changes_and_with_it_files_hold_it():
     np.testing.assert_array_equal(solid.mirrored.centre, (0.01, -0.02, 0.0))
     bad = Mechanism("bad", parts={"hinge": replace(solid, mass=0.0, inertia=Inertia(1.0, 1.0, 3.0))})
     told = [str(finding) for finding in check(bad)]
-    assert any(text.startswith("parts.hinge.inertia: it is stated without a mass") for text in told)
+    assert any(text.startswith("parts.hinge.inertia: specified without a mass") for text in told)
     assert any(text.startswith("parts.hinge.inertia") and "3" in text for text in told)
 
 

@@ -134,9 +134,9 @@ def test_steps_are_pure(model, points):
 @pytest.mark.parametrize(
     ("model", "words"),
     [
-        (PrandtlIshlinskii([0.0, 10.0], [0.0, 1e-7]), "the weights up to 0 (threshold 0) add up to 0"),
-        (PrandtlIshlinskii([0.0, 10.0], [1e-7, -1e-7]), "the weights up to 1 (threshold 10) add up to 0"),
-        (PrandtlIshlinskii([0.0, 10.0, 20.0], [1e-7, -2e-7, 3e-7]), "the weights up to 1 (threshold 10) add up to -1e-07"),
+        (PrandtlIshlinskii([0.0, 10.0], [0.0, 1e-7]), "the weights up to 0 (threshold 0) sum to 0"),
+        (PrandtlIshlinskii([0.0, 10.0], [1e-7, -1e-7]), "the weights up to 1 (threshold 10) sum to 0"),
+        (PrandtlIshlinskii([0.0, 10.0, 20.0], [1e-7, -2e-7, 3e-7]), "the weights up to 1 (threshold 10) sum to -1e-07"),
         (PrandtlIshlinskii([0.0], [1e-7], Envelope([0.0, 5.0, 9.0], [0.0, 5.0, 4.0])), "from 5 to 9 on axis 0 it goes from 5 to 4"),
         (PrandtlIshlinskii([0.0], [1e-7], after=Envelope([0.0, 1e-5], [0.0, 0.0])), "from 0 to 1e-05 on axis 0 it goes from 0 to 0"),
     ],
@@ -157,16 +157,19 @@ def test_every_reason_is_told():
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: PrandtlIshlinskii([1.0], [1.0]), "first threshold of axis 0 is 1"),
-        (lambda: PrandtlIshlinskii([0.0, 2.0, 2.0], [1.0, 1.0, 1.0]), "threshold 2 of axis 0, 2, follows 2"),
-        (lambda: PrandtlIshlinskii([0.0, 2.0], [1.0]), "thresholds are (1, 2), weights (1, 1)"),
-        (lambda: PrandtlIshlinskii([0.0], [np.nan]), "not finite"),
-        (lambda: PrandtlIshlinskii([0.0], [1.0], Envelope(np.tile([0.0, 1.0], (2, 1)), np.tile([0.0, 1.0], (2, 1)))), "2 axes"),
-        (lambda: Envelope([0.0, 0.0], [0.0, 1.0]), "knot 1 of axis 0 at 0 follows 0"),
+        (lambda: PrandtlIshlinskii([1.0], [1.0]), "first threshold of axis 0 must be 0 (got 1)"),
+        (lambda: PrandtlIshlinskii([0.0, 2.0, 2.0], [1.0, 1.0, 1.0]), "thresholds of axis 0 must ascend (got 2 after 2)"),
+        (lambda: PrandtlIshlinskii([0.0, 2.0], [1.0]), "got thresholds (1, 2), weights (1, 1)"),
+        (lambda: PrandtlIshlinskii([0.0], [np.nan]), "must be finite"),
+        (
+            lambda: PrandtlIshlinskii([0.0], [1.0], Envelope(np.tile([0.0, 1.0], (2, 1)), np.tile([0.0, 1.0], (2, 1)))),
+            "wrong number of axes (got 2, expected 1",
+        ),
+        (lambda: Envelope([0.0, 0.0], [0.0, 1.0]), "got knot 1 of axis 0 at 0 after 0"),
         (lambda: Envelope([0.0], [0.0]), "at least two"),
-        (lambda: Envelope([0.0, np.inf], [0.0, 1.0]), "not finite"),
+        (lambda: Envelope([0.0, np.inf], [0.0, 1.0]), "must be finite"),
         (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.zeros((3, 2))), "(3, 2) for 1 axes"),
-        (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.array([np.nan])), "not finite"),
+        (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.array([np.nan])), "must be finite"),
     ],
 )
 def test_models_that_are_none_are_refused(make, words):

@@ -56,7 +56,7 @@ def test_names_and_seeds_of_noise():
     one = small_loop().plant
     found, more = noise_series(one, {}, 100, seed=4), noise_series(one, {"ground.x": SPECTRA["white"]}, 100, seed=4)
     assert all(np.array_equal(found[name], more[name]) for name in found)  # what else there is does not matter
-    with pytest.raises(DesignError, match=r"ground\.q: the ground has no such motion"):
+    with pytest.raises(DesignError, match=r"ground\.q: unknown motion of the ground"):
         noise_series(one, {"ground.q": SPECTRA["white"]}, 100)
     with pytest.raises(DesignError, match="it is continuous"):
         noise_series(replace(one, hardware=replace(one.hardware, rate=None, delay=0.0)), {}, 100)

@@ -241,7 +241,7 @@ def test_loads_that_are_carried_take_of_the_strokes() -> None:
     """290 of 300 um are there for a command, but not beside the 16 um that carry the platform's weight."""
     slow, far = ControllerSetup(integral=5.0), StepMotion(amplitude=AxisAmplitudes(z=290e-6))
     assert loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(), seconds=0.01)).runs
-    with pytest.raises(DesignError, match="trajectory z: it leaves what the strokes reach"):
+    with pytest.raises(DesignError, match="trajectory z: beyond the strokes from"):
         loop_study(double_triangle(), LoopSetup(controller=slow, trajectory=far, compensate=(Compensation.LOAD,), seconds=0.01))
 
 
@@ -268,7 +268,7 @@ def test_slow_rounding_is_told_and_its_rms_simulated() -> None:
     assert found.noise.changes[0] < 0.01
     assert found.resting is not None
     assert 2.0 * found.noise.rms[0] < found.resting.low[0] < found.resting.rms[0] < found.resting.high[0] < 5e-10
-    assert any("rounding is slow" in each.what for each in found.warnings)
+    assert any("rounding is not white" in each.what for each in found.warnings)
     table = noise_table(found)
     assert [column.head for column in table.columns] == [
         "coordinate",
@@ -354,7 +354,7 @@ def test_a_plant_of_finite_elements_is_taken_as_it_is():
     found = loop_study(stage, asked, solid=FeaModes(platform_modes(stage, model), model, 3))
     assert np.array_equal(found.closed.system.A, drawn.closed.system.A)
     assert (drawn.model_name, found.model_name) == ("lumped", "solid, elements of order 3")
-    with pytest.raises(DesignError, match="tells no forces"):
+    with pytest.raises(DesignError, match="provides no forces"):
         loop_study(stage, replace(asked, damping=DampingSetup()), solid=FeaModes(platform_modes(stage, mapped(stage)), mapped(stage), 3))
 
 

@@ -69,9 +69,9 @@ def test_files_say_it_and_nought_is_said_by_nothing():
 @pytest.mark.parametrize(
     ("address", "said"),
     [
-        ("B2.shfit.x", "The nearest name is shift"),
-        ("B2.shift.w", "There are x, y, z"),
-        ("B9.shift.x", 'there is no "B9"'),
+        ("B2.shfit.x", "Use shift"),
+        ("B2.shift.w", "Use x, y or z"),
+        ("B9.shift.x", 'unknown name "B9"'),
         ("horizontal.shift.x", "horizontal"),
     ],
 )

@@ -114,12 +114,12 @@ def test_a_warm_stage_sags_as_it_drifts():
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        ({"at": {"platform.y": 1e-3}, "loads": {"platform.fy": 1.0}}, "platform.fy states it"),
-        ({"at": {"platform.fx": 1.0}, "loads": {"platform.fx": 1.0}}, "both a load that stays and what is driven"),
+        ({"at": {"platform.y": 1e-3}, "loads": {"platform.fy": 1.0}}, "platform.fy specifies it"),
+        ({"at": {"platform.fx": 1.0}, "loads": {"platform.fx": 1.0}}, "both a constant load and a drive"),
         ({"at": {"platform.q": 1.0}}, "no coordinate"),
         ({"fixed": ["platform.ry", "body.x"]}, "neither a body nor a point"),
-        ({"at": {"platform.rz": 1.5, "platform.y": 0.09}}, "of the way"),
-        ({"at": {"platform.x": -3e-2}}, "leaves in"),
+        ({"at": {"platform.rz": 1.5, "platform.y": 0.09}}, "of the displacement"),
+        ({"at": {"platform.x": -3e-2}}, "unstable mode"),
     ],
 )
 def test_what_cannot_be_is_refused_with_its_reason(asked: dict[str, Any], said: str):

@@ -91,12 +91,12 @@ def test_a_sweep_asks_for_measures_along_a_path(tmp_path: Path):
 @pytest.mark.parametrize(
     ("stated", "said"),
     [
-        (fs.StrokePath("platform.q", ("0 mm", "1 mm")), "neither a coordinate nor a load"),
-        (fs.StrokePath("platform.y", ("1 mm", "1 mm")), "does nothing"),
+        (fs.StrokePath("platform.q", ("0 mm", "1 mm")), "expected a coordinate or a load"),
+        (fs.StrokePath("platform.y", ("1 mm", "1 mm")), "start and end are equal"),
         (fs.StrokePath("platform.y", ("0 mm", "1 kg")), "kg"),
-        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), points=1), "no path"),
-        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "5 N"}), "what drives"),
-        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "0"}), "cannot stay locked"),
+        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), points=1), "too few points"),
+        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "5 N"}), "it drives"),
+        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "0"}), "cannot be a fixed coordinate"),
         (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"gravity": "half"}), '"on" or "off"'),
     ],
 )

@@ -94,7 +94,7 @@ def _figures(closed):
 
 def _check(stage, setup=None):
     """Margins within 3 %, and the bandwidth within 10 %, of those with all modes."""
-    given = resolve(stage, setup or LoopSetup())
+    given = resolve(stage, setup or LoopSetup(controller=ControllerSetup(quick=True)))
     gains = given.plant.coordinates.strokes
     few, control, found = control_and_modes(given, gains)
     assert found.complete
@@ -154,7 +154,7 @@ def test_the_loop_gain_of_a_mode_left_out_is_the_difference_that_it_makes_to_the
 
 
 def test_a_mode_above_half_the_sampling_rate_is_retained_where_it_folds_into_the_loop():
-    given = resolve(random_stage(3), LoopSetup(rate=2e3))
+    given = resolve(random_stage(3), LoopSetup(rate=2e3, controller=ControllerSetup(quick=True)))
     few, _, found = control_and_modes(given, given.plant.coordinates.strokes)
     assert np.max(few.plant.frequencies) > 1e3
     assert found.complete
@@ -163,7 +163,7 @@ def test_a_mode_above_half_the_sampling_rate_is_retained_where_it_folds_into_the
 def test_stated_modes_are_kept_to_and_what_they_hide_is_said_with_numbers():
     """Two modes of 24 are tuned to a peak of S of 6 dB; the warning has the peak with all that matter, as has the loop with all."""
     stage = random_stage(24)
-    stated = loop_study(stage, LoopSetup(modes=2))
+    stated = loop_study(stage, LoopSetup(modes=2, controller=ControllerSetup(quick=True)))
     assert len(stated.plant.frequencies) == 2
     assert not stated.retention.complete
     (warning,) = [str(each) for each in stated.warnings if each.where == "modes"]
@@ -171,4 +171,4 @@ def test_stated_modes_are_kept_to_and_what_they_hide_is_said_with_numbers():
     for closed in (stated.closed, every):
         assert f"the peak of S is {peaks(closed, LoopBreak.POSE).sensitivity.value:.3g}"[:-1] in warning
     with pytest.raises(DesignError, match="with all modes a pole at"):
-        loop_study(stage, LoopSetup(modes=6))
+        loop_study(stage, LoopSetup(modes=6, controller=ControllerSetup(quick=True)))

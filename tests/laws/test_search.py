@@ -189,7 +189,7 @@ def test_what_cannot_be_had_at_once_is_said(monkeypatch):
     monkeypatch.setattr("flexstage.control.tuning.find.search", lambda *_: None)
     monkeypatch.setattr("flexstage.control.tuning.find.advance", lambda *_: None)
     with pytest.raises(DesignError, match=r"settling: the nearest comes to .* ms, and 0.2 ms is asked for"):  # the tuner's own loop
-        found(settling=2e-4)
+        found(settling=2e-4, spread=0.0)
 
     def refuse(*_):
         raise DesignError([Finding("tuning", "no bandwidth is reached, 27 tried", "Try PID")])
@@ -198,7 +198,7 @@ def test_what_cannot_be_had_at_once_is_said(monkeypatch):
     with pytest.raises(
         DesignError, match=r"no PI within .* that settles within 0.2 ms was found; without a search no bandwidth is reached"
     ):
-        found(settling=2e-4)
+        found(settling=2e-4, spread=0.0)
 
 
 def shipped(controller: ControllerSetup) -> tuple[ResolvedSetup, np.ndarray]:
@@ -282,7 +282,7 @@ def test_noise_gives_way_where_it_alone_keeps_a_loop_from_what_is_wanted():
 
 def test_a_search_looks_closer_where_a_peak_was_passed():
     plant = integral_loop().plant
-    seen = view(plant, platform_loops(plant.coordinates), 0.02, (0.0, -0.02, 0.02, -0.05, 0.05))
+    seen = view(plant, platform_loops(plant.coordinates), 0.02, (0.0, -0.02, 0.02, -0.05, 0.05, -0.1, 0.1))
     for within, most in ((field(seen, specified()), 0.2), (field(seen, specified(), (300.0,)), 0.006)):
         for variant, frequencies in zip(within.variants, within.frequencies, strict=True):
             place = np.searchsorted(frequencies, 301.0 * (1.0 + variant.offset))
@@ -294,7 +294,7 @@ def test_a_search_looks_closer_where_a_peak_was_passed():
 def test_a_balance_settles_on_a_stage_that_no_floor_shakes():
     """Gains of 0.02 were quiet and rejected, by 2 %, up to 1.3 kHz: steps settled after 133 ms, 6 ms without a search."""
     floor = VibrationSetup(criterion=Criterion.VC_D)
-    plain = LoopSetup(floor=Floor(floor, floor, floor))
+    plain = LoopSetup(floor=Floor(floor, floor, floor), controller=ControllerSetup(quick=True))
     searched = replace(plain, controller=ControllerSetup(goal=GoalSetup()))
     slowest = [max(run.step.settling for run in loop_study(case("tip-tilt"), each).runs if run.step) for each in (searched, plain)]
     assert slowest[0] < slowest[1]
@@ -351,7 +351,7 @@ def simulated_steps(given: ResolvedSetup, tuned: Tuning, offset: float) -> list[
 def test_a_plant_that_is_unstable_by_itself_is_refused():
     plant = integral_loop().plant
     pushed = replace(plant, system=replace(plant.system, A=plant.system.A + 400.0 * np.eye(len(plant.system.A))))
-    with pytest.raises(DesignError, match="the stage by itself is unstable: it grows by"):
+    with pytest.raises(DesignError, match="the stage is unstable in open loop: it grows by"):
         find(pushed, platform_loops(plant.coordinates), specified())
 
 

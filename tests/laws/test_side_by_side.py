@@ -68,8 +68,8 @@ def test_what_belongs_to_one_controller_is_refused(tmp_path, capsys, monkeypatch
     assert run(["new", "guide.toml", "--case", "parallelogram"]) == 0
     assert run(["loop", "guide.toml", "--setup", "own.toml", "--compare", "--hardware", "r.c"]) == 2
     told = capsys.readouterr().err
-    assert "--hardware: it belongs to one controller" in told
-    assert all(f"controller.{name}: it belongs to one controller" in told for name in ("integral", "loops"))
+    assert "--hardware: belongs to one controller" in told
+    assert all(f"controller.{name}: belongs to one controller" in told for name in ("integral", "loops"))
     assert "controller.proportional" not in told
     assert not (tmp_path / "r.c").exists()
 

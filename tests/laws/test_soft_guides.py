@@ -163,7 +163,7 @@ def _of_stage(stiffness: float, **controller) -> Control:
 
 def test_a_stage_on_a_soft_guide_is_tuned_as_on_none():
     """The usual controller of a stage by its file: gains times the guide's stiffness, from 1e-3 to 1e4 N/m."""
-    tuned = [_of_stage(stiffness) for stiffness in (1e-3, 10.0, 1e4)]
+    tuned = [_of_stage(stiffness, quick=True) for stiffness in (1e-3, 10.0, 1e4)]
     numbers = []
     for found, stiffness in zip(tuned, (1e-3, 10.0, 1e4), strict=True):
         law = found.loops["x"].law
@@ -224,7 +224,7 @@ def test_a_search_that_finds_nothing_better_returns_what_it_began_from(monkeypat
     )
     found = find(one, loops, TuningSpec(PID_FAMILY, objective=TuningObjective.REJECTION))
     assert found.controller.laws == plain.controller.laws
-    assert "no better one was found" in found.reason
+    assert "without a better one" in found.reason
 
 
 @pytest.mark.parametrize("late", [1.0, 0.4])

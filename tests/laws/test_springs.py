@@ -159,13 +159,13 @@ def test_the_mass_of_a_spring_is_that_of_a_straight_line(length, weight):
 @pytest.mark.parametrize(
     ("spring", "what"),
     [
-        (Spring(), "parts.spring: it states no stiffness"),
-        (Spring(stiffness=1.0, diagonal=(1.0,) * 6), "parts.spring: it states stiffness and diagonal"),
-        (Spring(stiffness=1.0, preload=2.0), "parts.spring.length: it states a preload and no length"),
-        (Spring(stiffness=1.0, preload=2.0, length=0.1, free_length=0.1), "parts.spring.free_length: it states a preload too"),
+        (Spring(), "parts.spring: stiffness missing"),
+        (Spring(stiffness=1.0, diagonal=(1.0,) * 6), "parts.spring: both stiffness and diagonal specified"),
+        (Spring(stiffness=1.0, preload=2.0), "parts.spring.length: length missing: with a preload"),
+        (Spring(stiffness=1.0, preload=2.0, length=0.1, free_length=0.1), "parts.spring.free_length: preload specified too"),
         (
             Spring(matrix=tuple(map(tuple, np.triu(np.ones((6, 6))).tolist()))),
-            "parts.spring.matrix at index 0, 1: it is not symmetric: 1 and 0 SI",
+            "parts.spring.matrix at index 0, 1: not symmetric: 1 and 0 SI",
         ),
     ],
 )

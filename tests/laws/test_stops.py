@@ -169,9 +169,9 @@ def test_faulty_stops_are_told():
     def told(**stops):
         return "\n".join(map(str, check(replace(ONE, stops=stops))))
 
-    assert 'stops.end.body: there is no body "platfrom"' in told(end=Stop("platfrom", FACE, GAP))
-    assert 'stops.end.base: there is no body "grund"' in told(end=Stop(PLATFORM, FACE, GAP, base="grund"))
-    assert 'stops.end.base: it is "platform", as the body is' in told(end=Stop(PLATFORM, FACE, GAP, base=PLATFORM))
+    assert 'stops.end.body: unknown body "platfrom"' in told(end=Stop("platfrom", FACE, GAP))
+    assert 'stops.end.base: unknown body "grund"' in told(end=Stop(PLATFORM, FACE, GAP, base="grund"))
+    assert 'stops.end.base: equal to the body, "platform"' in told(end=Stop(PLATFORM, FACE, GAP, base=PLATFORM))
     assert "stops.end.gap" in told(end=Stop(PLATFORM, FACE, 0.0))
     assert "stops.end.gap_negative" in told(end=Stop(PLATFORM, FACE, GAP, -1.0 * um))
     assert "stops.E2-E1" in told(**{"E2-E1": Stop(PLATFORM, FACE, GAP)})

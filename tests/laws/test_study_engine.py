@@ -113,7 +113,7 @@ def test_fewer_modes_than_six_are_numbered_as_one_design_numbers_them():
     found = piece(low, 0, 2)
     assert not found.failures
     np.testing.assert_allclose(found.responses, piece(study(MOVED[:1]), 0, 2).responses[:, :1], rtol=1e-6)
-    assert all("there are 4 such modes" in reason for reason in piece(high, 0, 2).failures.values())
+    assert all("the stage has only 4 such modes" in reason for reason in piece(high, 0, 2).failures.values())
 
 
 def test_numbers_that_depart_go_before_shared_ones_in_either_order():

@@ -141,7 +141,19 @@ def test_an_answer_keeps_its_requirements_and_stays_below_its_bound() -> None:
     assert answer.goal == pytest.approx(float(analysed.modes.frequencies[0]), rel=1e-6)
     assert answer.efficiency is not None
     assert 0.0 < answer.efficiency <= 1.0
-    assert answer.warnings == ()
+    assert not [each for each in answer.warnings if "flexibility" not in each]
+
+
+def test_elastic_bodies_keep_the_required_frequency() -> None:
+    """The smallest guide just keeps the frequency with rigid bodies; with elastic ones a second search has to aim higher."""
+    text = SCANNER.replace('{ x = "50 um", y = "50 um" }', '{ x = "20 um" }').replace('"PSt 1000/10/150 VS18"', '"PiezoDrive SA050536"')
+    text = text.replace('name = "scanner"', 'name = "scanner"\nstarts = 1\ngoals.minimise = "envelope.z"')
+    spec = loads_specification(text.replace("500 Hz", "1 kHz"))
+    pair = CandidatePair(architectures()["guide"], catalogue_actuators(spec)["piezo"][0])
+    answer = search(spec, pair)
+    assert isinstance(answer, Answer)
+    assert answer.rounds > 1
+    assert answer.values["frequency.1"] > answer.elastic["frequency.1"] >= 1000.0
 
 
 def test_heavier_carriages_do_not_raise_the_frequency() -> None:
@@ -210,17 +222,17 @@ BAD = {
     'x = "50 um"': ('x = "-50 um"', "motion.x"),
     'x = "50 um", ': ('x = "200 mm", ', "the displacement exceeds the box"),
     'y = "50 um"': ('rz = "1 mrad"', "no architecture has exactly the motions x, rz"),
-    '"30 g"': ('"30 mm"', "a mass is expected"),
+    '"30 g"': ('"30 mm"', "must be a mass"),
     '"5 mm"]': ('"50 mm"]', "the payload is wider than the box along z"),
-    "at least 500 Hz": ("at least 500 mm", "frequency is expected"),
+    "at least 500 Hz": ("at least 500 mm", "must be a frequency"),
     'requirements.frequency = "at least 500 Hz"': ("", "no frequency or stiffness is required"),
     '"PSt 1000/10/150 VS18"': ('"PSt 1000/10/155"', 'unknown actuator "PSt 1000/10/155"'),
     "requirements.frequency": (
         'goals = { maximise = "frequency", minimise = "envelope.x" }\nrequirements.frequency',
         "there are two goals",
     ),
-    'name = "scanner"': ('name = "scanner"\ncatalogue = "nowhere.toml"', "there is no such file"),
-    "specification 1": ("study 1", "a study file, where a specification file is expected"),
+    'name = "scanner"': ('name = "scanner"\ncatalogue = "nowhere.toml"', "file not found"),
+    "specification 1": ("study 1", "a study file, expected a specification file"),
 }
 
 

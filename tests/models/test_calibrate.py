@@ -187,10 +187,10 @@ def test_refusals() -> None:
     once = fs.solid.calibrate(text, softened(1.0)).text
     with pytest.raises(DesignError, match="of FEA origin already"):
         fs.solid.calibrate(once, softened(1.0))
-    with pytest.raises(DesignError, match="leaf: its 6x6 by FEA is known to 30 % only"):
+    with pytest.raises(DesignError, match="leaf: the error of its 6x6 by FEA is 30 %"):
         fs.solid.calibrate(text, softened(1.0, error=0.3))
     departing = replace(parallelogram(), overrides={"B/front.thickness": 2.1e-3})
-    with pytest.raises(DesignError, match="B/front: departs from its part neck"):
+    with pytest.raises(DesignError, match="B/front: overrides its part neck"):
         fs.solid.calibrate(fs.dumps(departing), softened(1.0))
 
 

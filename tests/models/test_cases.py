@@ -144,7 +144,7 @@ def test_a_batch_is_a_loop(name):
 
 
 def test_a_misspelt_case_names_the_nearest():
-    with pytest.raises(DesignError, match=r"hexpod: there is no case of this name. .*hexapod"):
+    with pytest.raises(DesignError, match=r"hexpod: unknown case. .*hexapod"):
         case("hexpod")
 
 

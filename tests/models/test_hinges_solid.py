@@ -62,20 +62,20 @@ def test_the_accuracy_asked_is_reached_and_true():
 def test_what_is_not_reached_is_said():
     found = hinge_compliance(NOTCH, STEEL, Accuracy(error=1e-6, orders=(2, 4), freedoms=10_000))
     assert found.finding is not None
-    assert "0.0001 % was asked, within 10000 freedoms" in found.finding.what
+    assert "0.0001 % required, within 10000 DOFs" in found.finding.what
     assert found.error > 1e-6
     assert found.freedoms <= 10_000
 
 
 def test_not_even_the_coarsest_fits():
-    with pytest.raises(DesignError, match="more than the 100 freedoms allowed"):
+    with pytest.raises(DesignError, match="more than the 100 DOFs allowed"):
         hinge_compliance(NOTCH, STEEL, Accuracy(freedoms=100))
 
 
 @pytest.mark.parametrize(
     ("part", "text"),
     [
-        (Joint(), "part: found a Joint, expected a Shaped"),
+        (Joint(), "part: must be a Shaped (got a Joint)"),
         (Notch("m", np.array([1.0, 2.0]) * MM, 3.0 * MM, Circular(2.0 * MM)), "thickness: is a batch of 2"),
         (Notch("m", 1.0 * MM, 3.0 * MM, Circular(np.array([2.0, 3.0]) * MM)), "radius: is a batch of 2"),
         (Neck("m", 1.0 * MM, Filleted(4.0 * MM, 3.0 * MM)), "do not fit into its length of 0.004 m"),

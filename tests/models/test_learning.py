@@ -66,7 +66,7 @@ def test_an_antistable_inverse_runs_backward():
 
 
 def closed_of(name, **given):
-    resolved = resolve(case(name), LoopSetup(**given))
+    resolved = resolve(case(name), LoopSetup(**{"controller": ControllerSetup(quick=True), **given}))
     control = make_controller(resolved, resolved.plant.coordinates.strokes)
     return resolved, control, loop(resolved.plant, control.system)
 

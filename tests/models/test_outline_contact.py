@@ -190,10 +190,10 @@ def shifted(solid: Solid, *by: float) -> Solid:
 @pytest.mark.parametrize(
     ("by", "said"),
     [
-        ((0.54, 0.0, 0.0), "540 mm away from platform"),
-        ((5e-6, 0.0, 0.0), "0.005 mm away from platform"),
-        ((0.0, 0.05, 0.0), "away from platform"),
-        ((-120e-6, 0.0, 0.0), "runs 0.12 mm into platform"),
+        ((0.54, 0.0, 0.0), "gap of 540 mm"),
+        ((5e-6, 0.0, 0.0), "gap of 0.005 mm"),
+        ((0.0, 0.05, 0.0), "between its end and platform"),
+        ((-120e-6, 0.0, 0.0), "penetrates platform by 0.12 mm"),
         ((0.0, 0.0, 0.0125), "% of its end face lies on platform"),
     ],
 )
@@ -210,7 +210,7 @@ def test_beside_its_end_face_a_link_keeps_clear_but_for_a_twentieth_of_a_millime
     """A bead of 0.4 mm on the face that the end stands on: let be up to 0.05 mm, told by what lies beyond that."""
     bead = Block("steel", (height, 0.02, 0.0004), at=(0.01 - 0.5 * height, 0.0, 0.001))
     found = contact_findings(stage({"block": BLOCK, "bead": bead}))
-    assert [finding.what for finding in found] == (["it meets platform beside its end face too, 0.03 mm deep"] if told else [])
+    assert [finding.what for finding in found] == (["it penetrates platform by 0.03 mm outside its end face"] if told else [])
 
 
 def test_what_has_no_outline_is_not_judged() -> None:

@@ -198,7 +198,7 @@ def test_orders_that_share_a_mesh_repeat_bit_by_bit() -> None:
 @linux
 def test_no_room_on_the_disk_is_a_finding(folder: Path) -> None:
     (finding,) = told(mined("lever", code("open('/dev/full', 'wb', 0).write(b'full')")))
-    assert finding.what == f"no room is left in the folder for temporary files, {folder}"
+    assert finding.what == f"no space is left in the folder for temporary files, {folder}"
 
 
 def test_too_little_memory_is_refused_with_what_would_fit(folder: Path) -> None:
@@ -207,15 +207,15 @@ def test_too_little_memory_is_refused_with_what_would_fit(folder: Path) -> None:
     )
     assert finding.where == "prop 1"
     assert "its reduction at order 5 needs about 0.547 GB (16,383 degrees of freedom)" in finding.what
-    assert finding.what.endswith("and 0.25 GB are there")
-    assert finding.advice.startswith("Ask for order 3, about 0.219 GB, or for larger elements, Fineness(neck=")
+    assert finding.what.endswith("and 0.25 GB are available")
+    assert finding.advice.startswith("Use order 3, about 0.219 GB, or larger elements, Fineness(neck=")
 
 
 def test_a_mesh_without_end_is_refused_before_it_is_made(folder: Path) -> None:
     endless = replace(COARSE, fineness=replace(COARSE.fineness, neck=0.002))
     seen: list[Step] = []
     with pytest.raises(
-        DesignError, match=r"prop 1: its reduction at order 2 needs about .* GB .*, and 4 GB are there\. Ask for larger"
+        DesignError, match=r"prop 1: its reduction at order 2 needs about .* GB .*, and 4 GB are available\. Use larger"
     ) as caught:
         work_all([replace(job(rod()), reduction=endless)], lambda _job, _data: None, Limits(memory=4e9), seen.append)
     assert len(caught.value.findings) == 1
@@ -237,7 +237,7 @@ import flexstage.solid.fea.meshing.mesh as mesh
 mesh.generate_mesh = lambda *_: bytearray(int(4e9))
 """
     (finding,) = told(mined("lever", code(text)), limits=Limits(memory=1e9))
-    assert finding == Finding("lever", "it took more memory while meshing than it may", finding.advice)
+    assert finding == Finding("lever", "it exceeded its memory while meshing", finding.advice)
 
 
 def test_what_does_not_fit_together_is_done_one_after_the_other(folder: Path) -> None:

@@ -328,7 +328,7 @@ def test_a_mode_without_a_partner_has_no_theory() -> None:
     for row in apart:
         assert row.theory is None
         assert row.trust is None
-        assert "is needed" in row.reason
+        assert "(required " in row.reason
 
 
 def test_a_stack_without_mass_between_the_ground_and_a_mass_is_a_spring() -> None:

@@ -75,7 +75,7 @@ def test_frequencies_are_those_of_the_solid_up_to_half_the_highest_mode_kept(fou
 
 
 def test_what_cannot_be_exported_is_told(tmp_path):
-    with pytest.raises(DesignError, match="no solid of the stage has this name"):
+    with pytest.raises(DesignError, match="unknown solid"):
         export_superelement(forked(), "spoon", tmp_path / "spoon.npz")
     with pytest.raises(DesignError, match="a name that ends in"):
         export_superelement(forked(), "fork", tmp_path / "fork.mat")

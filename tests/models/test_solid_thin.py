@@ -51,7 +51,7 @@ def test_no_error_is_estimated_from_elements_that_lock() -> None:
     stage = arm(leaf(10.0, 0.5, 5.0))
     found, better = (stage_solid(stage, Resolution(order=order)) for order in (2, 3))
     rows = tuple(stage_rows(stage, stage, found))
-    assert {"platform mode 1", "softest in plane, others free"} <= set(found.unestimated)
+    assert {"platform mode 1", "in-plane stiffness (softest), others free"} <= set(found.unestimated)
     assert np.isinf(found.error)
     assert not better.unestimated
     for name, error in found.errors.items():
@@ -61,7 +61,7 @@ def test_no_error_is_estimated_from_elements_that_lock() -> None:
     unknown = [row for row in rows if row.fea_error is None]
     assert len(unknown) >= len(found.unestimated)
     assert all((row.trust, row.reason) == (None, NOT_ESTIMATED) for row in unknown if row.theory is not None)
-    assert "Ask for --order 3" in verdict(rows)
+    assert "Use --order 3" in verdict(rows)
 
 
 @pytest.mark.parametrize(
@@ -87,6 +87,6 @@ def test_work_beyond_memory_or_time_is_refused_before_it_begins() -> None:
     with pytest.raises(DesignError, match="are allowed"):
         reduction_plan([stage], Resolution(), Ways(limits=Limits(memory=1e12, seconds=60.0)))
     assert "0.05 mm thick and 10 mm wide, 1 to 200" in str(beyond_memory.value)
-    assert "Ask for order 2" in str(beyond_memory.value)
+    assert "Use order 2" in str(beyond_memory.value)
     thicker = replace(stage, parts={"hinge": notch(3.0, 0.3, 10.0)})
     assert len(reduction_plan([thicker], Resolution(), Ways(limits=Limits(memory=16e9))).jobs) == 2

@@ -127,7 +127,7 @@ def test_a_body_that_hangs_on_springs_is_rigid_but_for_its_own_modes():
     agree(solid, lumps, 5e-3)
     np.testing.assert_allclose(eigen(solid).values[:6], eigen(lumps).values, rtol=2e-3)
     assert eigen(solid).values[6] > 50.0 * eigen(solid).values[5]
-    assert "2 springs, 1 voice coil as stated" in solid.provenance
+    assert "2 springs, 1 voice coil as specified" in solid.provenance
 
 
 def test_a_part_ends_on_the_surface_where_it_stands_not_on_the_body_as_a_whole():
@@ -153,7 +153,7 @@ def test_where_a_part_ends_is_content_of_the_solid():
 
 def test_shipped_stages_on_voice_coils_have_solids():
     for name in ("voice-coil-stage", "tilt-stage"):
-        assert in_words(stated_links(expand(case(name)))) == "1 voice coil as stated"
+        assert in_words(stated_links(expand(case(name)))) == "1 voice coil as specified"
         assert components(case(name))
 
 
@@ -163,7 +163,7 @@ def test_a_stage_on_a_voice_coil_verifies_and_says_what_was_not_meshed():
     coil = Link(("ground", "platform"), "coil", (15 * mm, 14 * mm, 0.0), (0.0, -1.0, 0.0), X)
     found = verify(replace(whole, parts={**whole.parts, "coil": PARTS["coil"]}, links={**whole.links, "coil": coil}), Resolution(0.1, 2))
     assert found.as_stated == {"coil": "voice_coil"}
-    assert "Not meshed: 1 voice coil as stated (coil)." in verdict_table_of(found).notes
+    assert "Not meshed: 1 voice coil as specified (coil)." in verdict_table_of(found).notes
     first = next(row for row in found.rows if row.figure.startswith("platform mode 1"))
     assert first.difference is not None
     assert abs(first.difference) < 0.1

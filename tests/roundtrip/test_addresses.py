@@ -161,12 +161,12 @@ def test_tags_follow_the_value() -> None:
         ("L4/front.thickness", ['"L4"', "L1", "L3"]),
         ("parts.nek.thickness", ['"nek"', "neck"]),
         ("parts.neck.thicknes", ["thickness"]),
-        ("leg/front.at.w", ["x, y, z"]),
-        ("leg/front.joins", ["no overrides"]),
-        ("leg/front", ["no overrides"]),
+        ("leg/front.at.w", ["Use x, y or z"]),
+        ("leg/front.joins", ["cannot be overridden"]),
+        ("leg/front", ["cannot be overridden"]),
         ("bodies.platform.inertia.xx", ["not given"]),
         ("tags.parts.neck.thickness", ["no values"]),
-        ("", ["there is no"]),
+        ("", ["unknown name"]),
     ],
 )
 def test_misspelt_addresses_name_the_candidates(address: str, words: list[str]) -> None:
@@ -185,13 +185,13 @@ def test_an_ambiguous_address_lists_its_places() -> None:
     ("assignment", "words"),
     [
         ("neck.thickness", ["equals sign"]),
-        ("neck.thickness=1.4", ["without a unit"]),
+        ("neck.thickness=1.4", ["unit missing"]),
         ("neck.thickness=1.4 kg", ["a mass"]),
-        ("leg/front.at=1 mm", ["no single value but holds x, y, z", '"leg/front.at.x=..."']),
-        ("parts.neck=2mm", ["no single value but holds thickness", "profile.radius", '"parts.neck.thickness=..."']),
-        ("parts=1 kg", ["no single value but holds", "and more"]),
+        ("leg/front.at=1 mm", ["several values: x, y, z", '"leg/front.at.x=..."']),
+        ("parts.neck=2mm", ["several values: thickness", "profile.radius", '"parts.neck.thickness=..."']),
+        ("parts=1 kg", ["several values:", "and more"]),
         ("leg/front.along=up", ["-x"]),
-        ("S1.positive=wide", ["opens, closes"]),
+        ("S1.positive=wide", ["Use opens or closes"]),
     ],
 )
 def test_assignments_that_cannot_be(assignment: str, words: list[str]) -> None:

@@ -38,7 +38,7 @@ def told(text: str) -> list[str]:
     with pytest.raises(DesignError) as caught:
         loads(text, where="stage.toml")
     lines = [str(finding) for finding in caught.value.findings]
-    assert all(line.startswith("stage.toml: ") for line in lines)
+    assert all(line.startswith("stage.toml:") for line in lines)
     assert all(finding.advice for finding in caught.value.findings)
     return lines
 
@@ -51,7 +51,8 @@ def test_an_unknown_entry_of_the_catalogue_is_all_that_is_told() -> None:
     """What it would have brought along is not missed besides; what stands beside it is read all the same."""
     assert len(told(TEXT.replace('"SUS420"', '"SUS430"'))) == 1
     lines = told(TEXT.replace('like = "SUS420"', 'like = "SUS430"\nyoung = "200 N"'))
-    assert [line.split(": ")[1:3] for line in lines] == [["line 9", "materials.steel.like"], ["line 10", "materials.steel.young"]]
+    keys = [line.split(": ")[:2] for line in lines]
+    assert keys == [["stage.toml:9", "materials.steel.like"], ["stage.toml:10", "materials.steel.young"]]
 
 
 def polygon(*corners: str) -> str:
@@ -64,82 +65,82 @@ def polygon(*corners: str) -> str:
     ("old", "new", "words"),
     [
         # keys and names
-        ("diameter =", "diametre =", ["parts.wire.diametre", "not known", "diameter"]),
-        ("diameter =", "diametre =", ["parts.wire", "no diameter", '"1.54 mm"']),
-        ("[parts.wire]", "[part.wire]", ["part:", "not known", "parts"]),
+        ("diameter =", "diametre =", ["parts.wire.diametre", "unknown key", "diameter"]),
+        ("diameter =", "diametre =", ["parts.wire", "no diameter", '"2 mm"']),
+        ("[parts.wire]", "[part.wire]", ["part:", "unknown key", "parts"]),
         ('kind = "rod"', 'kind = "rodd"', ["parts.wire.kind", '"rodd"', "rod"]),
-        ('kind = "rod"', 'kind = "wire"', ["parts.wire.kind", '"wire"', "called rod here"]),
-        ('kind = "rod"', 'kind = "Leaf-Spring"', ["parts.wire.kind", "called leaf here"]),
-        ('kind = "rod"', 'kind = "flexure"', ["parts.wire.kind", "called leaf here"]),
+        ('kind = "rod"', 'kind = "wire"', ["parts.wire.kind", '"wire"', "Use rod"]),
+        ('kind = "rod"', 'kind = "Leaf-Spring"', ["parts.wire.kind", "Use leaf"]),
+        ('kind = "rod"', 'kind = "flexure"', ["parts.wire.kind", "Use leaf"]),
         ('kind = "rod"', 'kind = "circular"', ["parts.wire.kind", "notch", "profile"]),
-        ('kind = "rod"', 'kind = "cross"', ["parts.wire.kind", "called cross_hinge here"]),
-        ('kind = "rod"', 'kind = "vcm"', ["parts.wire.kind", "called voice_coil here"]),
+        ('kind = "rod"', 'kind = "cross"', ["parts.wire.kind", "Use cross_hinge"]),
+        ('kind = "rod"', 'kind = "vcm"', ["parts.wire.kind", "Use voice_coil"]),
         ('kind = "rod"', 'kind = "PZT stack"', ["parts.wire.kind", "PZT stack", "neck"]),
-        ('like = "SUS420" ', 'like = "SUS420"\nE = "200 GPa" ', ["materials.steel.E", "called young here"]),
-        ('like = "SUS420" ', 'like = "SUS420"\nrho = "7800 kg/m^3" ', ["materials.steel.rho", "called density here"]),
-        ('diameter = "1 mm"', 'd = "1 mm"', ["parts.wire.d:", "called diameter here"]),
-        ('length = "30 mm" ', 'L = "30 mm" ', ["parts.wire.L:", "called length here"]),
-        ('kind = "rod"\n', "", ["parts.wire", "no kind", "notch"]),
+        ('like = "SUS420" ', 'like = "SUS420"\nE = "200 GPa" ', ["materials.steel.E", "Use young"]),
+        ('like = "SUS420" ', 'like = "SUS420"\nrho = "7800 kg/m^3" ', ["materials.steel.rho", "Use density"]),
+        ('diameter = "1 mm"', 'd = "1 mm"', ["parts.wire.d:", "Use diameter"]),
+        ('length = "30 mm" ', 'L = "30 mm" ', ["parts.wire.L:", "Use length"]),
+        ('kind = "rod"\n', "", ["parts.wire", "kind missing", "notch"]),
         ('like = "SUS420"', 'like = "SUS430"', ["materials.steel.like", '"SUS430"', "SUS420"]),
         ('part = "wire"', 'part = "wier"', ["units.leg.links.front.part", '"wier"', "wire"]),
         ('"platform"]', '"plattform"]', ["units.leg.links.front.joins", '"plattform"', "platform"]),
         ('"ground", "platform"', '"platform", "platform"', ["joins", 'both ends join "platform"']),
         ('material = "steel"', 'material = "steal"', ["parts.wire.material", '"steal"', "steel"]),
         ('unit = "leg"', 'unit = "legs"', ["placements.L1-L3.unit", '"legs"', "leg"]),
-        ("L1-L3 =", "L3-L1 =", ["placements.L3-L1", "3", "1", "rising"]),
-        ("L1-L3 =", "L1-L9000 =", ["placements.L1-L9000", "9000 copies", "360"]),
+        ("L1-L3 =", "L3-L1 =", ["placements.L3-L1", "3", "1", "ascending"]),
+        ("L1-L3 =", "L1-L9000 =", ["placements.L1-L9000", "got 9000", "360"]),
         ("L1-L3 =", "L1-L99999999999999999999 =", ["placements.L1-L9999", "too many digits"]),
-        ("L1-L3 =", '"L 1" =', ["placements", '"L 1"', "no legal name"]),
+        ("L1-L3 =", '"L 1" =', ["placements", '"L 1"', "invalid name"]),
         ('name = "wire"', "", ["no name", 'name = "a name"']),
-        ("[bodies.platform]", "[bodies.plate]", ["bodies", 'no body "platform"']),
+        ("[bodies.platform]", "[bodies.plate]", ["bodies", 'unknown body "platform"']),
         # units and numbers
-        ('"30 mm"', "30", ["parts.wire.length", "found 30 without a unit", '"1.54 mm"']),
-        ('"30 mm"', '"30"', ["parts.wire.length", 'found "30" without a unit', '"1.54 mm"']),
+        ('"30 mm"', "30", ["parts.wire.length", "unit missing (got 30)", '"2 mm"']),
+        ('"30 mm"', '"30"', ["parts.wire.length", 'unit missing (got "30")', '"2 mm"']),
         ('"30 mm"', '"30 kg"', ["parts.wire.length", "a mass", "a length"]),
         ('"30 mm"', '"30 mmm"', ["parts.wire.length", '"mmm"']),
-        ('"30 mm"', "true", ["parts.wire.length", "found true", "a length"]),
+        ('"30 mm"', "true", ["parts.wire.length", "got true", "a length"]),
         ('"30 mm"', '["30 mm"]', ["parts.wire.length", "1 values in brackets", "a length"]),
         ('"30 mm"', "2026-11-20", ["parts.wire.length", "2026-11-20", "a length"]),
-        ('"30 mm"', "nan", ["parts.wire.length", "nan", "without a unit"]),
-        ('"30 mm"', '"nan mm"', ["parts.wire.length", "not finite"]),
+        ('"30 mm"', "nan", ["parts.wire.length", "nan", "unit missing"]),
+        ('"30 mm"', '"nan mm"', ["parts.wire.length", "finite"]),
         ('"30 mm"', '"-30 mm"', ["parts.wire.length", "-30 mm", "greater than 0 mm"]),
         ('"30 mm"', '"0 mm"', ["parts.wire.length", "0 mm", "greater than 0 mm"]),
         ('"30 mm"', "0x" + "f" * 300, ["parts.wire.length", "more than 64 bits"]),
-        ('"30 mm"', '"1e300 mm"', ["parts.wire.length", "1e300 mm", "nothing that is made", "exponent"]),
-        ('"30 mm"', '"1e-300 mm"', ["parts.wire.length", "1e-300 mm", "nothing that is made", "exponent"]),
+        ('"30 mm"', '"1e300 mm"', ["parts.wire.length", "1e300 mm", "implausible size", "exponent"]),
+        ('"30 mm"', '"1e-300 mm"', ["parts.wire.length", "1e-300 mm", "implausible size", "exponent"]),
         ('along = "z"', "along = [0, 0, 1e-200]", ["along", "of length 1e-200"]),
         ('along = "z"', "along = [0, 0, 1e200]", ["along", "of length 1e+200"]),
-        ('"0 deg"', '"1"', ["placements.L1-L3.polar.first", "without a unit", "deg"]),
+        ('"0 deg"', '"1"', ["placements.L1-L3.polar.first", "unit missing", "deg"]),
         ('"0 deg"', '"0 mm"', ["placements.L1-L3.polar.first", "a length", "an angle"]),
-        ('facing = "tangent"', 'facing = "tangential"', ["polar.facing", '"tangential"', "tangent, outward"]),
+        ('facing = "tangent"', 'facing = "tangential"', ["polar.facing", '"tangential"', "Use tangent"]),
         ('along = "z"', 'along = "up"', ["along", '"up"', "-z"]),
         ('along = "z"', "along = [0, 0, 0]", ["units.leg.links.front.along", "zero"]),
-        ('along = "z"', "along = [0, 0, nan]", ["along", "not finite"]),
+        ('along = "z"', "along = [0, 0, nan]", ["along", "finite"]),
         ('along = "z"', "along = [0, 0]", ["along", "2 values", "three numbers"]),
         ('along = "z"', 'along = "z", bends = [1, 0, 1]', ["bends", "45 deg", "90 deg"]),
         ('along = "z"', 'along = "z", free = ["x", "q"]', ["free", '"q"', "rx"]),
         ('["1 mm", "0 mm", "0 mm"]', '["1 mm", "0 mm"]', ["front.at", "2 values", "3 values"]),
-        ('["1 mm", "0 mm", "0 mm"]', '["1 mm", "0 mm", 1]', ["front.at.z", "found 1 without a unit"]),
+        ('["1 mm", "0 mm", "0 mm"]', '["1 mm", "0 mm", 1]', ["front.at.z", "unit missing (got 1)"]),
         # provenance
         ('"stated paper 2"', '"published"', ['tags."parts.wire.length"', '"published"', "stated, derived or assumed"]),
         ('"stated paper 2"', '"stated papre 2"', ['tags."parts.wire.length"', '"papre"', "paper"]),
-        ("tags = { length =", "tags = { lenght =", ['tags."parts.wire.lenght"', "points nowhere", "length"]),
+        ("tags = { length =", "tags = { lenght =", ['tags."parts.wire.lenght"', "unknown address", "length"]),
         ("tags = { length =", "tags = { length = 1, x =", ["parts.wire.tags", "a tag is a text"]),
         # the file
         ('format = "flexstage 1"', 'format = "flexstage 9"', ["format", '"flexstage 9"', '"flexstage 1"']),
-        ('format = "flexstage 1"', "", ["format", "does not say", '"flexstage 1"']),
-        ('name = "wire"', 'name = "wire', ["line 3, column", "not TOML"]),
-        ('mass = "1 kg"', 'mass = "1 kg"\nmass = "2 kg"', ["line 20", "stands twice"]),
-        ("[bodies.platform]", "[parts.wire]\n[bodies.platform]", ["line 18", "stands twice"]),
+        ('format = "flexstage 1"', "", ["format", "missing", '"flexstage 1"']),
+        ('name = "wire"', 'name = "wire', ["stage.toml:3:", "not TOML"]),
+        ('mass = "1 kg"', 'mass = "1 kg"\nmass = "2 kg"', ["stage.toml:20:", "duplicate name"]),
+        ("[bodies.platform]", "[parts.wire]\n[bodies.platform]", ["stage.toml:18:", "duplicate name"]),
         ("[placements]", "x = " + "[" * 2000 + "]" * 2000 + "\n[placements]", ["characters", "4000"]),
-        ("[placements]", "x = " + "[" * 1500 + "]" * 1500 + "\n[placements]", ["nests too deeply"]),
+        ("[placements]", "x = " + "[" * 1500 + "]" * 1500 + "\n[placements]", ["nested too deeply"]),
         ("[placements]", "x = " + "9" * 3990 + "\n[placements]", ["links.x", "more than 64 bits"]),
-        ("[placements]", "[links]\na.b.c.d = 1\n[placements]", ["links.a", "not known"]),
+        ("[placements]", "[links]\na.b.c.d = 1\n[placements]", ["links.a", "unknown key"]),
         # outlines
-        ('mass = "1 kg"', polygon("0 0", "1 1"), ["bodies.platform.solids.s.outline", "2 corners", "three"]),
-        ('mass = "1 kg"', polygon("0 0", "1 1", "1 0", "0 1"), ["bodies.platform.solids.s.outline", "corner 1", "corner 3", "meet"]),
-        ('mass = "1 kg"', polygon("0 0", "2 0", "0 0", "0 1"), ["bodies.platform.solids.s.outline", "meet"]),
-        ('mass = "1 kg"', polygon("0 0", "2 0", "1 0"), ["bodies.platform.solids.s.outline", "on a line"]),
+        ('mass = "1 kg"', polygon("0 0", "1 1"), ["bodies.platform.solids.s.outline", "got 2", "3 or more"]),
+        ('mass = "1 kg"', polygon("0 0", "1 1", "1 0", "0 1"), ["bodies.platform.solids.s.outline", "corner 1", "corner 3", "intersect"]),
+        ('mass = "1 kg"', polygon("0 0", "2 0", "0 0", "0 1"), ["bodies.platform.solids.s.outline", "intersect"]),
+        ('mass = "1 kg"', polygon("0 0", "2 0", "1 0"), ["bodies.platform.solids.s.outline", "collinear"]),
     ],
 )
 def test_each_mistake_is_told_with_its_object_and_remedy(old: str, new: str, words: list[str]) -> None:
@@ -155,28 +156,32 @@ def test_each_mistake_is_told_with_its_object_and_remedy(old: str, new: str, wor
         ('"L4/front.diameter" = "1 mm"', ['"L4"', "L1"]),
         ('"leg/front.diameter" = "1 kg"', ["a mass", "a length"]),
         ('"leg/front.diameter" = "-1 mm"', ["-1 mm", "greater than 0"]),
-        ('"leg/front.part" = "wire"', ["no overrides"]),
-        ('"parts.wire.length" = "1 mm"', ["no override of a link"]),
+        ('"leg/front.part" = "wire"', ["cannot be overridden"]),
+        ('"parts.wire.length" = "1 mm"', ["not an override of a link"]),
         ('"leg/front.at" = ["1 mm", "2 mm"]', ["2 values", "3 values"]),
-        ('"leg/front.at" = ["1 mm", "2 mm", "3 mm"]\n"leg/front.at.x" = "1 mm"', ["departs in the same"]),
-        ('tags = "stated"', ["no address"]),
+        ('"leg/front.at" = ["1 mm", "2 mm", "3 mm"]\n"leg/front.at.x" = "1 mm"', ["overrides the same value"]),
+        ('tags = "stated"', ["not an address"]),
     ],
 )
 def test_overrides_are_checked_like_the_rest(text: str, words: list[str]) -> None:
     lines = told(f"{TEXT}\n[overrides]\n{text}\n")
-    assert any(re.match(r"stage\.toml: line 2[6-9]: overrides", line) and all(word in line for word in words) for line in lines), lines
+    assert any(re.match(r"stage\.toml:2[6-9]: overrides", line) and all(word in line for word in words) for line in lines), lines
 
 
 def test_everything_wrong_is_told_at_once() -> None:
     text = TEXT.replace('"30 mm"', "30").replace('"1 mm"\n', '"1 kg"\n').replace('"0 deg"', '"1"').replace("mass =", "mas =")
-    where = [tuple(line.split(": ")[1:3]) for line in told(text)]
+    where = [tuple(line.split(": ")[:2]) for line in told(text)]
     numbers = {"parts.wire.length": 14, "parts.wire.diameter": 15, "bodies.platform.mas": 19, "placements.L1-L3.polar.first": 25}
-    assert where == [(f"line {number}", address) for address, number in numbers.items()]
+    assert where == [(f"stage.toml:{number}", address) for address, number in numbers.items()]
 
 
 def test_wrong_values_do_not_hide_unknown_names() -> None:
     lines = told(TEXT.replace('"30 mm"', "30").replace('part = "wire"', 'part = "wirr"').replace('"steel"', '"stel"'))
-    assert ["without a unit" in lines[0], *sorted(line.split("no ")[1].split(" ")[0] for line in lines[1:])] == [True, "material", "part"]
+    assert ["unit missing" in lines[0], *sorted(line.split("unknown ")[1].split(" ")[0] for line in lines[1:])] == [
+        True,
+        "material",
+        "part",
+    ]
 
 
 def test_zero_needs_no_unit_and_keys_with_dots_no_quotes() -> None:
@@ -214,9 +219,9 @@ def test_entries_of_a_catalogue_of_ones_own(tmp_path: Path) -> None:
     assert stage.parts["coil"].kind == "voice_coil"
     assert stage.sources["lot"] == "tensile test"
     for name, text, words in (
-        ("no.toml", CATALOGUE, "there is no such file"),
-        ("lab.toml", CATALOGUE + "[coil]", "catalogue: lab.toml: coil: this is no section of entries by name. The nearest name is coils."),
-        ("lab.toml", CATALOGUE + "[gauges]\ng = 1", "gauges: this is no section"),
+        ("no.toml", CATALOGUE, "file not found"),
+        ("lab.toml", CATALOGUE + "[coil]", "catalogue: lab.toml: coil: unknown section. Use coils."),
+        ("lab.toml", CATALOGUE + "[gauges]\ng = 1", "gauges: unknown section"),
         ("lab.toml", CATALOGUE.replace("ours", "theirs"), 'the catalogue has no "ours"'),
         ("lab.toml", CATALOGUE.replace("71.2 GPa", "71.2 N"), "materials.al.young"),
     ):
@@ -228,19 +233,19 @@ def test_entries_of_a_catalogue_of_ones_own(tmp_path: Path) -> None:
 def test_a_flood_of_mistakes_is_cut_short() -> None:
     lines = told(TEXT + "".join(f"unknown{number} = 1\n" for number in range(10_000)))
     assert len(lines) < 200
-    assert "mend these first" in lines[-1].lower()
+    assert "correct these first" in lines[-1].lower()
 
 
 # --------------------------------------------------------------------------------------------------------------------------------- files
 
 
 def test_a_missing_file(tmp_path: Path) -> None:
-    with pytest.raises(DesignError, match="there is no such file"):
+    with pytest.raises(DesignError, match="file not found"):
         load(tmp_path / "stage.toml")
 
 
 def test_a_directory(tmp_path: Path) -> None:
-    with pytest.raises(DesignError, match="this is a directory"):
+    with pytest.raises(DesignError, match="not a file but a folder"):
         load(tmp_path)
 
 
@@ -271,19 +276,19 @@ def test_a_file_of_100_mb_is_refused_before_it_is_read(tmp_path: Path) -> None:
     path = tmp_path / "stage.toml"
     with path.open("wb") as stream:
         stream.truncate(100_000_000)
-    with pytest.raises(DesignError, match=r"larger than 5 MB"):
+    with pytest.raises(DesignError, match=r"file too large"):
         load(path)
 
 
 def test_a_text_that_is_too_large() -> None:
-    with pytest.raises(DesignError, match=r"larger than 5 MB"):
+    with pytest.raises(DesignError, match=r"file too large"):
         loads("#" * (LARGEST + 1))
 
 
 def test_bytes_that_are_no_text(tmp_path: Path) -> None:
     path = tmp_path / "stage.toml"
     path.write_bytes(b'name = "a"\nx = "\xff"\n')
-    with pytest.raises(DesignError, match=r"line 2: byte 16 is not UTF-8"):
+    with pytest.raises(DesignError, match=r":2: not UTF-8 \(byte 16\)"):
         load(path)
 
 
@@ -336,7 +341,7 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
         (part(Notch("steel", thickness=0.01, width=0.01, profile=Circular(0.005))), ["parts.p.thickness", "10 mm", "width, 10 mm"]),
         (part(Notch("steel", 0.001, 0.01, Filleted(length=0.01, radius=0.006))), ["profile.radius", "6 mm", "half the length, 5 mm"]),
         (part(Restricted(Notch("steel", 0.012, 0.01, Circular(0.005)), elastic=())), ["parts.p.part.thickness", "12 mm"]),
-        (part(Restricted(Rod("steel", 0.1, 0.01), (Freedom.X,), (Freedom.X,))), ["parts.p", "x is both elastic and free"]),
+        (part(Restricted(Rod("steel", 0.1, 0.01), (Freedom.X,), (Freedom.X,))), ["parts.p", "x both elastic and free"]),
         (part(Rod("steel", length=np.array([0.1, 0.2, -0.3]), diameter=0.01)), ["parts.p.length at index 2", "-300 mm"]),
         (part(Notch("steel", np.array([[0.001], [0.02]]), np.array([0.01, 0.03]), Circular(1.0))), ["at index 1, 0", "20 mm", "10 mm"]),
         (part(Rod("steel", length=np.ones(2), diameter=np.ones(3))), ["batch", "(2,)", "(3,)", "broadcast"]),
@@ -345,18 +350,18 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
         (part(ComplianceMatrix(matrix(x33=0.0), (Freedom.RZ,))), ["parts.p.compliance", "not positive definite", "Restricted"]),
         (part(dataclasses.replace(STACK, preload=20.0, maximum_load=10.0)), ["parts.p.preload", "20 N", "maximum load, 10 N"]),
         (part(dataclasses.replace(STACK, voltage_low=100.0, voltage_high=-20.0)), ["parts.p.voltage_low", "100 V", "-20 V"]),
-        (linked(Notch("steel", 0.001, 0.01, Circular(0.005))), ["links.l", 'part "p" is not round', 'bends = "y"']),
-        (linked(Neck("steel", 0.001, Straight(0.005), width=0.002)), ["links.l", "not round"]),
-        (linked(Joint((Freedom.RZ,))), ["links.l", "not round"]),
-        (linked(ComplianceMatrix(matrix(x11=2e-6), (Freedom.RX,))), ["links.l", "not round"]),
-        (linked(Rod("steel", 0.1, 0.01), free=(Freedom.RY,)), ["links.l", "not round"]),
+        (linked(Notch("steel", 0.001, 0.01, Circular(0.005))), ["links.l", 'part "p" is not axisymmetric', 'bends = "y"']),
+        (linked(Neck("steel", 0.001, Straight(0.005), width=0.002)), ["links.l", "not axisymmetric"]),
+        (linked(Joint((Freedom.RZ,))), ["links.l", "not axisymmetric"]),
+        (linked(ComplianceMatrix(matrix(x11=2e-6), (Freedom.RX,))), ["links.l", "not axisymmetric"]),
+        (linked(Rod("steel", 0.1, 0.01), free=(Freedom.RY,)), ["links.l", "not axisymmetric"]),
         (linked(Rod("steel", 0.1, 0.01), bends=(1.0, 0.0, 1.0)), ["links.l.bends", "45 deg", "90 deg"]),
         (linked(Rod("steel", 0.1, 0.01), bends=X), ["links.l.bends", "0 deg", "90 deg"]),
         (linked(Rod("steel", 0.1, 0.01), along=O), ["links.l.along", "zero"]),
         (linked(Rod("steel", 0.1, 0.01), along=(np.array([1.0, 0.0]), 0.0, 0.0)), ["links.l.along at index 1", "zero"]),
         (linked(Rod("steel", 0.1, 0.01), joins=("ground", "ground")), ["links.l.joins", "both ends"]),
-        (body(Body(mass=1.0, solids={"s": Block("steel", (1.0, 1.0, 1.0))})), ["bodies.b", "has solids and states its mass"]),
-        (body(Body(centre=O)), ["bodies.b", "states its centre without a mass"]),
+        (body(Body(mass=1.0, solids={"s": Block("steel", (1.0, 1.0, 1.0))})), ["bodies.b", "both solids and mass specified"]),
+        (body(Body(centre=O)), ["bodies.b", "centre without a mass"]),
         (body(Body(mass=1.0, inertia=Inertia(1.0, 1.0, 3.0))), ["bodies.b.inertia", "1, 1, 3", "sum of the other two"]),
         (body(Body(mass=1.0, inertia=Inertia(1.0, 1.0, 1.0, xy=2.0))), ["bodies.b.inertia", "-1", "negative"]),
         (body(Body(solids={"s": Block("steel", (0.1, 0.2, 0.1), hole=(0.05, 0.2))})), ["solids.s.hole.y", "200 mm", "block, 200 mm"]),
@@ -368,32 +373,32 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
             ["payloads.chuck.inertia", "0, 0, 1"],
         ),
         (dataclasses.replace(STAGE, payloads={"chuck": Payload("platfrom", 1.0, O)}), ["payloads.chuck.body", '"platfrom"', "platform"]),
-        (dataclasses.replace(STAGE, placements={}), ["platform", "no chain of links"]),
-        (dataclasses.replace(STAGE, bodies={**STAGE.bodies, "loose": Body(mass=1.0)}), ["loose", "no chain of links"]),
+        (dataclasses.replace(STAGE, placements={}), ["platform", "not connected to the ground"]),
+        (dataclasses.replace(STAGE, bodies={**STAGE.bodies, "loose": Body(mass=1.0)}), ["loose", "not connected to the ground"]),
         (dataclasses.replace(STAGE, bodies={**STAGE.bodies, "ground": Body()}), ["bodies.ground", "implied"]),
         (
             dataclasses.replace(part(STACK), bodies=DANGLING, links={"pzt": Link(("ground", "tip"), "p", O, X)}),
-            ["pzt", "ground and tip", "no path between ground and platform"],
+            ["pzt", "ground and tip", "not on a path from ground to platform"],
         ),
         (
             dataclasses.replace(STAGE, placements={**STAGE.placements, "L2": Placement("leg", Pose())}),
-            ["placements.L2", "L1-L3, L2 name it 2 times"],
+            ["placements.L2", "L1-L3, L2 use the name 2 times"],
         ),
         (
             dataclasses.replace(STAGE, placements={"leg": Placement("leg", Pose())}),
-            ["placements.leg", "a unit and a copy have this name"],
+            ["placements.leg", "a unit and an instance have this name"],
         ),
         (
             dataclasses.replace(STAGE, links={"L2": Link(("ground", "platform"), "wire", O, X)}),
-            ["placements.L2", "a link and a copy have this name"],
+            ["placements.L2", "a link and an instance have this name"],
         ),
         (
             dataclasses.replace(STAGE, placements={"L": Placement("leg", Pose(along=X, up=X))}),
-            ["placements.L.pose.up", "0 deg to along"],
+            ["placements.L.pose.up", "got 0 deg"],
         ),
         (
             dataclasses.replace(STAGE, units={"leg": dataclasses.replace(UNIT, bodies={"platform": Body()})}),
-            ["units.leg.bodies.platform", "the stage itself has a body"],
+            ["units.leg.bodies.platform", "the stage has a body"],
         ),
         (
             dataclasses.replace(STAGE, placements={"L" * 70: Placement("leg", Polar(0.1, 0.0, InstanceOrientation.AXIS))}),
@@ -402,8 +407,8 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
         (dataclasses.replace(STAGE, overrides={"L2/front.diameter": -0.001}), ['overrides."L2/front.diameter"', "-1 mm"]),
         (dataclasses.replace(STAGE, overrides={"L2/front.diameter": "1 mm"}), ['overrides."L2/front.diameter"', "'1 mm'", "a number"]),
         (dataclasses.replace(STAGE, overrides={"L9/front.diameter": 0.001}), ['overrides."L9/front.diameter"', '"L9"']),
-        (dataclasses.replace(STAGE, tags={"parts.wire.width": "assumed"}), ['tags."parts.wire.width"', "points nowhere"]),
-        (dataclasses.replace(STAGE, tags={"parts.wire.length": "stated"}), ["stated by no source", "paper"]),
+        (dataclasses.replace(STAGE, tags={"parts.wire.width": "assumed"}), ['tags."parts.wire.width"', "unknown address"]),
+        (dataclasses.replace(STAGE, tags={"parts.wire.length": "stated"}), ["source missing", "paper"]),
         (dataclasses.replace(STAGE, materials={"steel": dataclasses.replace(STEEL, poisson=0.5)}), ["poisson", "0.5", "less than 0.5"]),
     ],
 )
@@ -447,17 +452,17 @@ NUMBERS = TEXT.replace('length = "30 mm"         # as drawn', 'length = "long"')
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ('"long"', '"lnog"', ["parts.wire.length", 'no number "lnog"', "long"]),
+        ('"long"', '"lnog"', ["parts.wire.length", 'unknown number "lnog"', "long"]),
         ('"long"', '"long + 3 N"', ["parts.wire.length", '"long + 3 N"', "a length and a force"]),
-        ('"long"', '"long*arm"', ["parts.wire.length", "a quantity in m^2", "a length is expected"]),
+        ('"long"', '"long*arm"', ["parts.wire.length", "a quantity in m^2", "must be a length"]),
         ('"long"', '"sin(arm)*long"', ["parts.wire.length", '"sin(arm)"', "an angle", "a length"]),
         ('"long"', '"long/(arm - arm)"', ["parts.wire.length", "divides by nothing"]),
         ('"long"', '"sqrt(-long*long)"', ["parts.wire.length", "root", "below 0"]),
-        ('"long"', '"long*1e300*1e300"', ["parts.wire.length", "not finite"]),
+        ('"long"', '"long*1e300*1e300"', ["parts.wire.length", "finite"]),
         ('"long"', '"long^2"', ["parts.wire.length", '"^"', "arm*arm"]),
         ('"long"', '"2 long"', ["parts.wire.length", "long", "2*long"]),
         ('"long"', '"2*mm"', ["parts.wire.length", "mm is a unit", "1 mm"]),
-        ('"long"', '"abs(long)"', ["parts.wire.length", 'no function "abs"', "sqrt, sin, cos, tan"]),
+        ('"long"', '"abs(long)"', ["parts.wire.length", 'unknown function "abs"', "sqrt, sin, cos or tan"]),
         ('"long"', '"2,5*long"', ["parts.wire.length", '","', "point"]),
         ('"long"', '"long*"', ["parts.wire.length", "ends too early"]),
         ('"long"', f'"{"(" * 30}long{")" * 30}"', ["parts.wire.length", "deeper than 20"]),
@@ -466,13 +471,13 @@ NUMBERS = TEXT.replace('length = "30 mm"         # as drawn', 'length = "long"')
         ('"15 mm"', '"long/2"', ["numbers.arm", "arm -> long -> arm", "a number"]),
         ('"15 mm"', '"arm"', ["numbers.arm", "arm -> arm"]),
         ('"15 mm"', '"15 furlong"', ["numbers.arm", '"furlong" is not a known unit']),
-        ('"15 mm"', '["15 mm"]', ["numbers.arm", "no number", "26 mm"]),
+        ('"15 mm"', '["15 mm"]', ["numbers.arm", "not a number", "26 mm"]),
         ('"15 mm"', '"sqrt(sqrt(2 m))"', ["numbers.arm", "m^0.25"]),
         ('"2*arm"', '"2 arm"', ["numbers.long", "not a known unit"]),
         ("lean =", 'mm = "1 mm"\nlean =', ["parts.wire.diameter", '"mm" is a unit and a named number', "mm_1"]),
-        ("lean =", "sin =", ["numbers.sin", "meaning of its own"]),
+        ("lean =", "sin =", ["numbers.sin", "reserved in formulas"]),
         ("lean =", '"a-b" =', ["numbers.a-b", "letters, digits"]),
-        ("[numbers]", "[number]", ["number:", "not known", "numbers"]),
+        ("[numbers]", "[number]", ["number:", "unknown key", "numbers"]),
     ],
 )
 def test_each_mistake_in_a_formula_is_told_with_its_object_and_remedy(old: str, new: str, words: list[str]) -> None:

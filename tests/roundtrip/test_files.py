@@ -95,7 +95,7 @@ def test_data_in_other_files_are_refused_by_name(version: str, tmp_path: Path) -
         with h5py.File(tmp_path / f"{name}.h5", "w", libver=(version, "latest")) as file:
             file["fs"] = 50.0
             way(file)
-        assert "u: its data stand in another file" in refusal(tmp_path / f"{name}.h5")
+        assert "u: its data are in another file" in refusal(tmp_path / f"{name}.h5")
 
 
 def layout(path: Path) -> h5py.VirtualLayout:

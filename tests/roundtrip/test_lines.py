@@ -48,4 +48,4 @@ def test_a_finding_says_where_it_points():
     with pytest.raises(DesignError) as caught:
         loads("\n[parts \n", where="s.toml")
     assert spot_of(caught.value.findings[0], "s.toml") == Spot("", 2, 8)
-    assert spot_of(Finding("lib.toml: line 3: parts.wire", "b", "c"), "s.toml") == Spot("lib.toml: line 3: parts.wire")
+    assert spot_of(Finding("lib.toml:3: parts.wire", "b", "c"), "s.toml") == Spot("lib.toml:3: parts.wire")

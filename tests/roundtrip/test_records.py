@@ -131,7 +131,7 @@ def test_a_folder_that_is_missing_is_told(tmp_path: Path) -> None:
 
 
 def test_a_name_without_a_form_is_refused() -> None:
-    with pytest.raises(DesignError, match="does not say the form"):
+    with pytest.raises(DesignError, match="unknown file ending"):
         write("record.xyz", awkward_record())
 
 

@@ -70,7 +70,7 @@ def test_a_formula_under_overrides_is_not_the_units() -> None:
 
 
 def test_overrides_that_are_no_table_are_told() -> None:
-    with pytest.raises(DesignError, match="overrides: found 5 where a table is expected"):
+    with pytest.raises(DesignError, match=r"overrides: must be a table \(got 5\)"):
         loads(f"{START}overrides = 5\n")
 
 

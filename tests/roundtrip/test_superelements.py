@@ -102,7 +102,7 @@ def test_other_versions_are_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_another_component_is_told_apart() -> None:
-    assert from_bytes(DATA, "another") == "it holds something else"
+    assert from_bytes(DATA, "another") == "it has other content"
 
 
 def test_nothing_in_a_file_is_run() -> None:

@@ -1,16 +1,16 @@
 // Written by `python -m tools.protocol` from src/flexstage/apps/studio/protocol.py. Do not edit.
 
 /**
- * All messages between the studio's page and its server, a class each; `python -m tools.protocol` writes them for TypeScript.
+ * All messages between the studio's page and its server, one class each; `python -m tools.protocol` writes them for TypeScript.
  *
- * A message is a JSON object whose `kind` is the class's name in small letters. The page asks, each request with an `id` of its own; what
- * answers it says `to` whom. An answer follows every request (`Done` where there is nothing else to say, `Refusal` where it is refused), in
- * the order of asking but for `Drag` and `Pose`, of which the newest is answered and older ones are `Done`. Everything else is pushed to all
- * pages when it changes. Numbers are in SI units, null where unknown.
+ * A message is a JSON object whose `kind` is the class's name in small letters. The page sends requests, each with a unique `id`; the
+ * answer contains it as `to`. Every request has an answer (`Done` without a result, `Refusal` if it is refused), in the order of
+ * the requests except for `Drag` and `Pose`. Of these the newest is answered, and older ones are `Done`. Everything else is pushed to all
+ * pages when it changes. Numbers are in SI units, null if unknown.
  */
 export const VERSION = 4;
 
-/** A finding: the object or address it is about, what was found, what to do; line and column from 1 where the text shows them. */
+/** A finding: its object or address, problem, advice; line and column from 1 if the text shows them. */
 export interface Problem {
   where: string;
   what: string;
@@ -20,10 +20,10 @@ export interface Problem {
 }
 
 /**
- * A number of the stage: `value` in `si`, `text` as the file says it, `factor` what one `unit` is in SI.
+ * A number of the stage: `value` in `si`, `text` as in the file, `factor` the value of one `unit` in SI.
  *
- * `low` and `high` bound its slider, within what the number may be. `formula` is what it is worked out of. `old` is what the file on
- * disk says. `group` is the table it stands in. `line` where it stands, or the table around it.
+ * `low` and `high` bound its slider, within the bounds of the number. `formula` is its definition. `old` is its value in the file on
+ * disk. `group` is its table in the file, and `line` its line, or that of the table.
  */
 export interface Amount {
   address: string;
@@ -42,7 +42,7 @@ export interface Amount {
   tag: string;
 }
 
-/** An actuator, an axis of the platform or a gauge: its SI unit, the unit it is shown in (`factor` SI each), and its ends if known. */
+/** An actuator, an axis of the platform or a gauge: its SI unit, its display unit (`factor` SI each), and its ends if known. */
 export interface Channel {
   name: string;
   si: string;
@@ -52,7 +52,7 @@ export interface Channel {
   high: number | null;
 }
 
-/** A result: its `name` as requirements call it, where it belongs, its value in `si`, and of the file on disk the `old` one. */
+/** A result: its `name` as in requirements, its group, its value in `si`, and the `old` one of the file on disk. */
 export interface Figure {
   name: string;
   group: string;
@@ -80,7 +80,7 @@ export interface Floats {
 /**
  * A mode: the platform's `twist` (x y z rx ry rz, m and rad) of the mass-normalised shape, `share` of kinetic energy in the platform.
  *
- * `kinetic` shares by body and `strain` shares by link, those from one per cent, largest first. `local`: a mode of other bodies.
+ * `kinetic` shares by body and `strain` shares by link, at least one per cent, largest first. `local`: a mode of other bodies.
  */
 export interface ModeShape {
   number: number;
@@ -95,10 +95,10 @@ export interface ModeShape {
 }
 
 /**
- * A mode of the platform by finite elements, `error` the relative one estimated of its frequency, `motion` what a viewer plays of it.
+ * A mode of the platform by finite elements, `error` the relative one estimated of its frequency, `motion` its name in a viewer.
  *
- * `theory` is the number of the mode of theory that moves most like it, absent where none is alike enough: its `theory_frequency` [Hz],
- * what it is over that of finite elements less one, and the modal assurance of the two.
+ * `theory` is the number of the paired mode of theory, absent without one. Further fields are its `theory_frequency` [Hz],
+ * its relative difference from that of finite elements, and the modal assurance of the two.
  */
 export interface SolidMode {
   number: number;
@@ -112,7 +112,7 @@ export interface SolidMode {
   motion: unknown;
 }
 
-/** Frequency response of an output to an input: magnitude in `unit`, phase in degrees, at the frequencies beside it. */
+/** Frequency response of an output to an input: magnitude in `unit`, phase in degrees, at the listed frequencies. */
 export interface Curve {
   input: string;
   output: string;
@@ -121,7 +121,7 @@ export interface Curve {
   phase: Floats;
 }
 
-/** What an actuator's motion loses: its gain (1 is ideal), its loss, and the shares of it by link, which add up to the loss. */
+/** Lost motion of an actuator: its gain (1 is ideal), its loss, and the shares by link, which add up to the loss. */
 export interface Loss {
   actuator: string;
   gain: number;
@@ -129,7 +129,7 @@ export interface Loss {
   budget: Record<string, number>;
 }
 
-/** A requirement: its key and words, limit and value in `si`, margin (0.1 is 10 % to spare), or the reason why it is not known. */
+/** A requirement: its key and text, limit and value in `si`, margin (0.1 is 10 % to spare), or the reason why it is unknown. */
 export interface Judgement {
   key: string;
   text: string;
@@ -146,7 +146,7 @@ export interface Judgement {
   line: number | null;
 }
 
-/** How far the platform goes along a coordinate, and the actuator or stop that ends it. */
+/** Stroke of the platform along a coordinate, and the actuator or stop that limits it. */
 export interface Stroke {
   coordinate: string;
   low: number;
@@ -154,7 +154,7 @@ export interface Stroke {
   limiting: string;
 }
 
-/** What a number buys: change of each figure per unit of the number, and of the worst requirement's margin by one per cent of it. */
+/** Sensitivity to a number: change of each figure per unit of the number, and of the worst requirement's margin by one per cent. */
 export interface Slope {
   address: string;
   si: string;
@@ -163,7 +163,7 @@ export interface Slope {
   worst: number | null;
 }
 
-/** Two bodies that are meant to be apart and touch, or a gap between them: the `distance` [m] is negative where they overlap. */
+/** Two separate bodies that touch, or a gap between them: the `distance` [m] is negative for an overlap. */
 export interface Clash {
   first: string;
   second: string;
@@ -171,7 +171,7 @@ export interface Clash {
   text: string;
 }
 
-/** A free motion: the platform's twist (unit length), its axis through `point`, pitch [m/rad], null where it is a pure translation. */
+/** A free motion: the platform's twist (unit length), its axis through `point`, pitch [m/rad], null for a pure translation. */
 export interface Screw {
   name: string;
   twist: number[];
@@ -181,7 +181,7 @@ export interface Screw {
   links: string[];
 }
 
-/** What the palette offers: `text` is TOML with `{name}` where a field's text goes; fields by name with what stands there first. */
+/** A snippet of the palette: `text` is TOML with `{name}` for a field's text; fields by name with their initial texts. */
 export interface Snippet {
   name: string;
   group: string;
@@ -190,7 +190,7 @@ export interface Snippet {
   fields: Record<string, string>;
 }
 
-/** A job: where it stands, its fraction done and seconds left as far as can be told, what it said, and its report's address if any. */
+/** A job: its state, fraction done and estimated seconds left, its output, and its report's address if any. */
 export interface JobState {
   job: number;
   command: string;
@@ -202,14 +202,14 @@ export interface JobState {
   report: string | null;
 }
 
-/** The text that a studio had not saved when it ended: its last change [s since 1970], and whether the file was changed since. */
+/** The unsaved text of an ended studio: its last change [s since 1970], and whether the file was changed since. */
 export interface Draft {
   name: string;
   time: number;
   stale: boolean;
 }
 
-/** A line of a card: what it is, and what it says in words and units. */
+/** A line of a card: its name, and its value as text with units. */
 export interface Fact {
   name: string;
   text: string;
@@ -238,7 +238,7 @@ export interface Set {
   text: string;
 }
 
-/** A slider moves: answered by `Frequencies`, the text stays. */
+/** A moving slider: answered by `Frequencies`, the text is unchanged. */
 export interface Drag {
   kind: "drag";
   id: number;
@@ -246,7 +246,7 @@ export interface Drag {
   value: number;
 }
 
-/** A slider is let go: the number is written into the text. */
+/** A released slider: the number is written into the text. */
 export interface Rest {
   kind: "rest";
   id: number;
@@ -261,14 +261,14 @@ export interface Part {
   link: string;
 }
 
-/** What stands at a line of the text. */
+/** Request for the entries at a line of the text. */
 export interface Line {
   kind: "line";
   id: number;
   line: number;
 }
 
-/** Which frequency responses are shown from now on; without frequencies, those that show every resonance. */
+/** Choice of the frequency responses; without frequencies, those that show every resonance. */
 export interface Respond {
   kind: "respond";
   id: number;
@@ -284,23 +284,23 @@ export interface Jog {
   id: number;
 }
 
-/** What the stage does at those strokes (or forces) of its actuators, exactly: readings, stress, and what is beyond its limit. */
+/** Request for the exact displacement at those strokes (or forces) of the actuators: readings, stress, and exceeded limits. */
 export interface Pose {
   kind: "pose";
   id: number;
   inputs: Record<string, number>;
 }
 
-/** What each number buys. */
+/** Request for the sensitivities to each number. */
 export interface Derive {
   kind: "derive";
   id: number;
 }
 
 /**
- * Bring the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE.
+ * Move the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE.
  *
- * `path` names one that the design states, whose drive, ends, points and loads then hold.
+ * `path` names a path of the design, whose drive, ends, points and loads then apply.
  */
 export interface Travel {
   kind: "travel";
@@ -313,31 +313,31 @@ export interface Travel {
   path: string;
 }
 
-/** Give up the path that is computed. */
+/** Abort the running path. */
 export interface Halt {
   kind: "halt";
   id: number;
 }
 
-/** The platform's free motions, redundant constraints, and what locks it. */
+/** Request for the platform's free motions, redundant constraints, and locked motions. */
 export interface Free {
   kind: "free";
   id: number;
 }
 
-/** Clashes and gaps. */
+/** Request for clashes and gaps. */
 export interface Gaps {
   kind: "gaps";
   id: number;
 }
 
-/** The platform's modes by finite elements, as far as a verification has left them in the cache. */
+/** Request for the platform's modes by finite elements, if a verification has stored them in the cache. */
 export interface Solid {
   kind: "solid";
   id: number;
 }
 
-/** Keep the present design under a name (A, B, C); `keep` false lets it go. */
+/** Store the present design under a name (A, B, C); with `keep` false, remove it. */
 export interface Pin {
   kind: "pin";
   id: number;
@@ -345,45 +345,45 @@ export interface Pin {
   keep: boolean;
 }
 
-/** The figures of the file, of the pinned designs and of the present one side by side. */
+/** Request for the figures of the file, of the pinned designs and of the present one side by side. */
 export interface Compare {
   kind: "compare";
   id: number;
 }
 
-/** The text of a pinned design becomes the present one; the empty name is the file's own. */
+/** Make the text of a pinned design the present one; the empty name is the file's own. */
 export interface Recall {
   kind: "recall";
   id: number;
   name: string;
 }
 
-/** The text before the last change. */
+/** Restore the text before the last change. */
 export interface Undo {
   kind: "undo";
   id: number;
 }
 
-/** The text before the last undo. */
+/** Restore the text before the last undo. */
 export interface Redo {
   kind: "redo";
   id: number;
 }
 
-/** Write the text to its file. Refused if that changed on disk since, unless `over` says to write over it. */
+/** Write the text to its file. Refused after a change on disk, unless `over` allows overwriting. */
 export interface Save {
   kind: "save";
   id: number;
   over: boolean;
 }
 
-/** Take the text that is on disk now; the present one stays in undo. */
+/** Read the text from disk; the present one remains in undo. */
 export interface Reload {
   kind: "reload";
   id: number;
 }
 
-/** Take the unsaved text of a studio that ended, which `State.drafts` lists; without `keep` it is discarded. */
+/** Read the unsaved text of an ended studio in `State.drafts`; without `keep` it is discarded. */
 export interface Recover {
   kind: "recover";
   id: number;
@@ -391,7 +391,7 @@ export interface Recover {
   keep: boolean;
 }
 
-/** What can be inserted. */
+/** Request for the snippets. */
 export interface Palette {
   kind: "palette";
   id: number;
@@ -406,9 +406,9 @@ export interface Insert {
 }
 
 /**
- * What a page shows: only that is computed after a change, the rest when it is looked at.
+ * Panes of a page: only these are computed after a change, the others when they are shown.
  *
- * `stage`: the picture; `motions`: what plays in it; `reach`: strokes and strength.
+ * `stage`: the picture; `motions`: its motions; `reach`: strokes and strength.
  */
 export interface Look {
   kind: "look";
@@ -416,7 +416,7 @@ export interface Look {
   panes: ("stage" | "motions" | "reach")[];
 }
 
-/** Start a command beside; `study` is the study's or set-up's text where the command takes one, `record` a file's path. */
+/** Start a command as a job; `study` is the text of its study or set-up if it needs one, `record` a file's path. */
 export interface Run {
   kind: "run";
   id: number;
@@ -433,7 +433,7 @@ export interface Cancel {
   job: number;
 }
 
-/** The page is let in. */
+/** The page is admitted. */
 export interface Welcome {
   kind: "welcome";
   version: number;
@@ -443,12 +443,12 @@ export interface Welcome {
 }
 
 /**
- * The text and what it says; pushed at every change. `digest` is that of the file on disk.
+ * The text and its contents; pushed at every change. `digest` is that of the file on disk.
  *
- * `sound`: the design has no error. If not, `problems` list them; where they are of the text, numbers and figures are those of the last
- * text without. `changed` counts numbers that differ from the file's, `warnings` are those told last, `page` is the one whose request made
- * the change (0: the server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each. `unprotected` is
- * the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
+ * `sound`: the design has no error. If not, `problems` list them; for errors of the text, numbers and figures are those of the last
+ * text without. `changed` counts numbers that differ from the file's, `warnings` are the last reported ones, `page` is the one whose
+ * request made the change (0: the server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each.
+ * `unprotected` is the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
  */
 export interface State {
   kind: "state";
@@ -478,7 +478,7 @@ export interface State {
   drafts: Draft[];
 }
 
-/** What the process that computes is doing, for how long as far as can be told [s]; `ended` where it died and is started anew. */
+/** Task of the computing process, and its expected duration [s]; `ended` after a crash and restart. */
 export interface Engine {
   kind: "engine";
   state: "starts" | "ready" | "computes" | "ended";
@@ -486,14 +486,14 @@ export interface Engine {
   seconds: number | null;
 }
 
-/** The geometry of a revision for the viewer; without motions where no page looks at them. */
+/** The geometry of a revision for the viewer; without motions if no page shows them. */
 export interface Scene {
   kind: "scene";
   revision: number;
   data: unknown;
 }
 
-/** The platform's frequencies [Hz] while a slider moves. Null: none there. */
+/** The platform's frequencies [Hz] for a moving slider. Null: none. */
 export interface Frequencies {
   kind: "frequencies";
   to: number;
@@ -504,9 +504,9 @@ export interface Frequencies {
 }
 
 /**
- * Results of a revision: what is missing has its reason by name. `frequency` (f,) is what all curves stand along.
+ * Results of a revision: missing ones have a reason by name. `frequency` (f,) is the common axis of all curves.
  *
- * `loading` says what the dead load changes where it is felt: stiffness, modes and curves are then those of the loaded stage.
+ * `loading` describes a significant effect of the permanent load: stiffness, modes and curves are then those of the loaded stage.
  */
 export interface Figures {
   kind: "figures";
@@ -541,7 +541,7 @@ export interface Reach {
   milliseconds: number;
 }
 
-/** What is doubtful or taken by default in a revision; the last that is told of it. */
+/** Warnings and default values of a revision; the last message about it. */
 export interface Warnings {
   kind: "warnings";
   revision: number;
@@ -549,10 +549,11 @@ export interface Warnings {
 }
 
 /**
- * A link: its part, lines of the text it comes from, 6x6 about its centre in its own frame, what it bears and takes.
+ * A link: its part, its lines of the text, 6x6 about its centre in its own frame, its stress and lost motion.
  *
- * `stress` [Pa] is the peak over all strokes, `limit` what is allowed, `share` its share of every actuator's lost motion. `facts` say the
- * rest in words; `problems` where beam theory was not compared with elasticity. `verified` compares with stored finite elements.
+ * `stress` [Pa] is the peak over all strokes, `limit` the allowable one, `share` its share of every actuator's lost motion. `facts` are
+ * further properties as text; `problems` are missing comparisons of beam theory with elasticity. `verified` compares with stored finite
+ * elements.
  */
 export interface Card {
   kind: "card";
@@ -576,7 +577,7 @@ export interface Card {
   missing: Record<string, string>;
 }
 
-/** What stands at a line: links (one or several), and the addresses of the numbers there. */
+/** Entries at a line: links (one or several), and the addresses of the numbers there. */
 export interface Place {
   kind: "place";
   to: number;
@@ -587,7 +588,7 @@ export interface Place {
 }
 
 /**
- * Linear maps of a revision, elastic: `platform` is the platform's twist per unit input, `inputs` its inverse as far as there is one.
+ * Linear maps of a revision, elastic: `platform` is the platform's twist per unit input, `inputs` its (pseudo-)inverse.
  *
  * `gauges` are readings per input, `ideal` the twist without elasticity. `stress` (links x inputs) [Pa per unit input]: the sum of
  * magnitudes over all inputs bounds a link's stress from above, with `rest` at no stroke; `allowed` its limit.
@@ -606,7 +607,7 @@ export interface Motion {
   missing: Record<string, string>;
 }
 
-/** The stage at some strokes: twist, readings, stress of each link, and what is beyond its limit, in words by the name of its cause. */
+/** The stage at some strokes: twist, readings, stress of each link, and exceeded limits, as text by the name of their cause. */
 export interface Posed {
   kind: "posed";
   to: number;
@@ -616,7 +617,7 @@ export interface Posed {
   beyond: Record<string, string>;
 }
 
-/** What numbers buy, sorted by what they do for the requirement that is worst, `worst`. */
+/** Sensitivities, sorted by their effect on the worst requirement, `worst`. */
 export interface Slopes {
   kind: "slopes";
   to: number;
@@ -626,7 +627,7 @@ export interface Slopes {
   missing: Record<string, string>;
 }
 
-/** How far a path is that a page asked for with `request`: the fraction that is done, and what of it in words. */
+/** Progress of a path from a `request` of a page: the completed fraction, and a text. */
 export interface Underway {
   kind: "underway";
   request: number;
@@ -643,7 +644,7 @@ export interface Travelled {
   warnings: Problem[];
 }
 
-/** Free motions, constraints of which some are superfluous with what they hold, motions that nothing feels, and what locks it. */
+/** Free motions, constraints with the redundant ones, free internal modes, and locked motions. */
 export interface Freedoms {
   kind: "freedoms";
   to: number;
@@ -656,7 +657,7 @@ export interface Freedoms {
   blocked: Fact[];
 }
 
-/** Clashes first, then gaps, least first; `problems` say what does not fit into opening and envelope. */
+/** Clashes first, then gaps, smallest first; `problems` are violations of aperture and envelope. */
 export interface Clearances {
   kind: "clearances";
   to: number;
@@ -665,7 +666,7 @@ export interface Clearances {
   problems: Problem[];
 }
 
-/** The platform's modes by finite elements; without any, `missing` says why. */
+/** The platform's modes by finite elements; without any, `missing` is the reason. */
 export interface SolidModes {
   kind: "solidmodes";
   to: number;
@@ -674,7 +675,7 @@ export interface SolidModes {
   missing: string;
 }
 
-/** Figures of designs: a row a figure, a column a design; null where a design has none. */
+/** Figures of designs: one row for each figure, one column for each design; null for a missing one. */
 export interface Comparison {
   kind: "comparison";
   to: number;
@@ -690,13 +691,13 @@ export interface Snippets {
   snippets: Snippet[];
 }
 
-/** All jobs; pushed when one of them goes on. */
+/** All jobs; pushed at each progress. */
 export interface Jobs {
   kind: "jobs";
   jobs: JobState[];
 }
 
-/** A request was done, and nothing else answers it: the text's revision is this one now; a new job's number. */
+/** A completed request without another answer: the new revision of the text; a new job's number. */
 export interface Done {
   kind: "done";
   to: number;
@@ -704,7 +705,7 @@ export interface Done {
   job: number | null;
 }
 
-/** A request was refused. `stale`: another page or program changed the text or file first. */
+/** A refused request. `stale`: another page or program changed the text or file first. */
 export interface Refusal {
   kind: "refusal";
   to: number;

@@ -1,4 +1,4 @@
-"""Attempts: results that a stage may refuse to give, each on its own."""
+"""Collection of results that may be refused individually."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ _Result = TypeVar("_Result")
 
 
 class Attempts:
-    """Gathers the reasons of results that are refused, by name, while the others go on; those `left_out` are `None` without one.
+    """Collector of reasons for refused results, by name; the `left_out` ones are `None` without a reason.
 
     >>> from flexstage.base.finding import refuse
     >>> attempts = Attempts()
     >>> def nothing() -> None:
-    ...     raise refuse("gauges", "there are none", "Add some")
+    ...     raise refuse("gauges", "gauges missing", "Add some")
     >>> attempts.of("sum", lambda: 1 + 1), attempts.of("range", nothing), attempts.missing
-    (2, None, {'range': 'gauges: there are none. Add some.'})
+    (2, None, {'range': 'gauges: gauges missing. Add some.'})
     """
 
     def __init__(self, left_out: Container[str] = ()) -> None:
@@ -27,7 +27,7 @@ class Attempts:
         self._left_out = left_out
 
     def of(self, name: str, result: Callable[[], _Result]) -> _Result | None:
-        """The result, or `None` with its reason noted."""
+        """Return the result, or `None` and store the reason."""
         if name in self._left_out:
             return None
         try:
@@ -37,7 +37,7 @@ class Attempts:
             return None
 
     def of_ground(self, name: str, ground: _Ground | None, reason: str, result: Callable[[_Ground], _Result]) -> _Result | None:
-        """The result of its `ground` where that is there; else `None`, noted with the reason."""
+        """Return the result of `ground` if present; else `None`, and store the reason."""
         if ground is None and name not in self._left_out:
             self.missing[name] = reason
         return None if ground is None else self.of(name, lambda: result(ground))

@@ -1,4 +1,4 @@
-"""The bench on which a stage is measured: its models and results, each worked out when first asked for."""
+"""Bench: models and results of a stage, computed on first use."""
 
 from __future__ import annotations
 
@@ -23,12 +23,13 @@ from flexstage.analysis.workspace.load import LoadShare, load_share
 from flexstage.analysis.workspace.map_error import linear_map_error
 from flexstage.analysis.workspace.small import SmallMotion, small_motion
 from flexstage.analysis.workspace.stops import with_stops
-from flexstage.analysis.workspace.strength import HingeStress, hinge_stress
+from flexstage.analysis.workspace.strength import FROM_ZERO, HingeStress, hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, stroke_limits
+from flexstage.analysis.workspace.wrench import Command
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.lazy import Late
-from flexstage.base.number import Array
+from flexstage.base.number import Array, stack
 from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.design import design
 from flexstage.mechanism.geometry.outline import outlines
@@ -47,11 +48,11 @@ else:
 
 
 KEPT = 48
-"""Benches of single designs that a batch keeps: their models at large displacements take a megabyte each."""
+"""Number of cached benches of single designs of a batch; each uses about a megabyte."""
 
 
 class Bench:
-    """Models and results of one stage, each worked out when first asked for. `command`: the required strokes as a box."""
+    """Models and results of one stage, computed on first use. `command`: the required strokes as a box."""
 
     def __init__(self, mechanism: Mechanism, command: Mapping[str, float]) -> None:
         self.mechanism = mechanism
@@ -64,11 +65,11 @@ class Bench:
 
     @cached_property
     def nonlinear(self) -> displaced.Nonlinear:
-        """The stage for large displacements."""
+        """Model for large displacements."""
         return displaced.nonlinear(self.mechanism)
 
     def along(self, name: str, at: float | None = None) -> strokes.Points:
-        """What the stage does along a path that the design states, or at one value of its drive."""
+        """Stroke characteristics along a path of the design, or at one value of its drive."""
         if (name, at) not in self._points:
             found = course(self.mechanism, name)
             self._points[name, at] = found.points(self.nonlinear, None if at is None else np.array([at]))
@@ -76,7 +77,7 @@ class Bench:
 
     @staticmethod
     def all_along(benches: Sequence[Bench], name: str, at: float | None = None) -> None:
-        """Work out `along` of the benches of several designs of one structure, in one run."""
+        """Compute `along` for the benches of several designs of one structure, in one run."""
         new = [each for each in benches if (name, at) not in each._points]  # noqa: SLF001
         if not new:
             return
@@ -86,7 +87,7 @@ class Bench:
             bench._points[name, at] = each  # noqa: SLF001
 
     def one(self, place: int, share: float) -> Bench:
-        """The bench of one design of a batch, a share of imaginary parts added; the last are kept for measures that ask the same."""
+        """Bench of one design of a batch with a share of its imaginary parts added; the last ones are cached."""
         if (place, share) not in self._ones:
             if len(self._ones) >= KEPT:
                 self._ones.clear()
@@ -94,86 +95,90 @@ class Bench:
         return self._ones[place, share]
 
     def over(self, name: str) -> Bench:
-        """The bench of small motions about all points of a path, as a batch."""
+        """Bench of models linearised about all points of a path, as a batch."""
         if name not in self._along:
             found = course(self.mechanism, name)
             states = found.path(self.nonlinear, found.rest(self.nonlinear)).state
             lost = int(np.sum(~states.converged))
             if lost:
-                raise refuse(f"paths.{name}", f"{lost} of its {states.converged.size} points have no equilibrium", "Ask for less stroke")
-            other = Bench(self.mechanism, self.command)
-            other.__dict__["model"] = linearise.linearise(states, locked=found.locked)
-            self._along[name] = other
+                raise refuse(f"paths.{name}", f"no equilibrium found at {lost} of {states.converged.size} points", "Reduce the stroke")
+            self._along[name] = self.with_model(linearise.linearise(states, locked=found.locked))
         return self._along[name]
 
     def force_workspace(self, point: str) -> ForceWorkspace:
-        """How far forces move a point, and what limits it: by the drawn stage."""
+        """Force workspace of a point, for the nominal stage."""
         if point not in self._force_workspaces:
             self._force_workspaces[point] = force_workspace(self.mechanism, self.kinematics, self.drawn, point=point)
         return self._force_workspaces[point]
 
     @property
     def forced(self) -> bool:
-        """Whether forces move the platform, as strokes do not determine it."""
+        """Whether the stage is force-driven."""
         return bool(self.kinematics.thrusts) and not self.kinematics.actuated
 
     def correction(self, point: str) -> Matrix:
-        """Strokes per motion of a point, lost motion made up by command."""
+        """Strokes per motion of a point, lost motion corrected by command."""
         if point not in self._corrections:
             self._corrections[point] = mapping_at(self.mechanism, self.kinematics, point, mapping=self.lost.correction)
         return self._corrections[point]
 
     def stopped(self, point: str) -> tuple[Matrix, StrokeLimits]:
-        """Strokes per motion of a point, lost motion made up by command, with their limits and the stops that they reach."""
+        """Strokes per motion of a point, lost motion corrected by command, with stroke limits and stops within reach."""
         return with_stops(self.mechanism, self.kinematics, self.correction(point), self.limits, point)
 
     @cached_property
     def assembly(self) -> Assembly:
-        """The description expanded."""
+        """Expanded description."""
         return expand(self.mechanism)
 
     @cached_property
     def kinematics(self) -> Kinematics:
-        """The ideal model."""
+        """Ideal model."""
         return kinematics(self.mechanism)
 
     @cached_property
     def small_motion(self) -> SmallMotion:
-        """How much of the range of small motion the ideal motions take."""
+        """Limits of small displacements."""
         return small_motion(self.mechanism, self.kinematics)
 
     @cached_property
     def drawn(self) -> LinearModel:
-        """The lumped model, of a stage that stands under its dead load."""
+        """Lumped model of a stage that is stable under its permanent load."""
         return standing(self.mechanism)
 
     @cached_property
     def model(self) -> LinearModel:
-        """The model that is measured: the lumped one, or small motions about a state."""
+        """Linear model: the lumped one, or the one linearised about a state."""
         return self.drawn
 
     @cached_property
     def links(self) -> LinearModel:
-        """The model link by link, for lost motion and drift."""
+        """Linear model link by link, for lost motion and drift."""
         return self.model
 
     @cached_property
     def loaded(self) -> LoadEffect | None:
-        """What the dead load changes; `None` of a batch."""
+        """Effect of the permanent load; `None` for a batch."""
         return load_effect(self.mechanism)
 
     @cached_property
     def felt(self) -> Bench:
-        """The bench of stiffness, modes, lost motion and drift under the dead load: this one where that is not felt."""
+        """Bench of stiffness, modes, lost motion and drift under a significant permanent load; else this bench."""
         if self.loaded is None or self.loaded.model is None:
             return self
+        other = self.with_model(self.loaded.model)
+        other.__dict__ |= {"links": self.loaded.links, "kinematics": self.kinematics}
+        return other
+
+    def with_model(self, model: LinearModel) -> Bench:
+        """Return a bench of the same stage with another linear model."""
         other = Bench(self.mechanism, self.command)
-        other.__dict__ |= {"model": self.loaded.model, "links": self.loaded.links, "kinematics": self.kinematics}
+        other.__dict__["model"] = model
         return other
 
     @cached_property
     def stability(self) -> Stability:
-        """Load factors of the dead load."""
+        """Buckling load factors of the permanent load."""
         return under_load(self.mechanism) or stability(self.mechanism, self.model)
 
     @cached_property
@@ -188,41 +193,56 @@ class Bench:
 
     @cached_property
     def modes(self) -> Modes:
-        """Modes, the platform's among them."""
+        """Modes, including those of the platform."""
         return modes(self.model)
 
     @cached_property
     def stress(self) -> HingeStress:
-        """Stress of hinges over all strokes and forces, relaxed without voltage."""
-        return hinge_stress(self.mechanism, self.model, self._loaded)
+        """Stress of hinges over all strokes and forces, stress-free at zero voltage."""
+        condition = "of all strokes and forces (coils at peak current)" if self.assembly.thrusts else FROM_ZERO
+        return hinge_stress(self.mechanism, self.model, self._loaded, condition=condition)
+
+    @cached_property
+    def stress_at_strokes(self) -> HingeStress:
+        """Stress of hinges over the box of required strokes, from zero voltage."""
+        box = {name: value for name, value in self.box().items() if value > 0.0}
+        start = np.zeros(len(self.limits.actuators)) if self.limits.zero is None else -self.limits.zero
+        mapping = self.force_workspace(PLATFORM).per_motion if self.forced else self.lost.correction
+        known = dict(zip(self.limits.actuators, np.moveaxis(start, -1, 0), strict=True))
+        start = stack([known.get(name, 0.0) for name in mapping.rows])
+        for name in box.keys() - set(mapping.columns):
+            raise refuse(f"stroke.{name}", "no actuator moves the platform along it", f"Require strokes along {', '.join(mapping.columns)}")
+        half = stack(list(box.values()))
+        limits, command = StrokeLimits(tuple(box), -half, half), Command(mapping, start)
+        return hinge_stress(self.mechanism, self.model, limits, command=command, condition="of the required strokes")
 
     @cached_property
     def _loaded(self) -> StrokeLimits:
-        """Strokes from no voltage, and forces."""
+        """Strokes from zero voltage, and forces."""
         return input_limits(self.mechanism, self.model) if self.assembly.thrusts else self.limits.from_zero
 
     @cached_property
     def drift(self) -> Drift:
-        """Motion by temperature."""
+        """Thermal drift."""
         return drift(self.mechanism, self.links)
 
     @cached_property
     def buckling(self) -> Buckling:
-        """Columns and the whole stage over all strokes, from no voltage."""
+        """Buckling of columns and the whole stage over all strokes from zero voltage."""
         return buckling(self.mechanism, drawn(self.mechanism), self._loaded)
 
     def deflection(self, point: str) -> Deflection:
-        """Motion of a point under gravity and stated forces, strokes held."""
+        """Deflection of a point under gravity and specified forces, strokes fixed."""
         return deflection(self.mechanism, self.model, point=point)
 
     @cached_property
     def load_share(self) -> LoadShare:
-        """What the stacks bear."""
+        """Axial forces of the stacks."""
         return load_share(self.mechanism, self.model)
 
     @cached_property
     def clearance(self) -> Clearance:
-        """What the stage occupies."""
+        """Clearance of the stage."""
         return clearance(self.mechanism)
 
     @cached_property
@@ -237,18 +257,16 @@ class Bench:
         return linear_map_error(self.mechanism, self.kinematics, self.limits).worst
 
     def arm(self, point: str) -> Array:
-        """From the platform's reference to a point of the platform; refused for points of other bodies."""
+        """Vector from the platform's reference to a platform point; refuses points of other bodies."""
         if point == PLATFORM:
             return np.zeros(3)
         body, position = self.assembly.points[point]
         if body != PLATFORM:
-            raise refuse(point, f"is a point of {body}", "Name a point of the platform")
+            raise refuse(point, f"it is a point of {body}", "Use a point of the platform")
         return position - self.assembly.bodies[PLATFORM].reference
 
     def box(self) -> Mapping[str, float]:
-        """The box of all required strokes."""
+        """Box of all required strokes."""
         if not self.command:
-            raise refuse(
-                "requirements", "no stroke is required, so there is no corner to reach", 'Add for example "stroke.x" = "at least 50 um"'
-            )
+            raise refuse("requirements", "required strokes missing", 'Add e.g. "stroke.x" = "at least 50 um"')
         return self.command

@@ -1,4 +1,4 @@
-"""Caveats: what does not keep a stage from being read, but should be known with its results: warnings, and what was taken by default."""
+"""Caveats of results: warnings, and default values of unspecified fields."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from flexstage.analysis.assessment.measures import drift
 from flexstage.analysis.assessment.requirements import requirements
+from flexstage.analysis.linear_statics.body_effect import body_effects, body_findings
 from flexstage.analysis.loaded.course import path_findings
 from flexstage.analysis.loaded.seating import seating, seating_findings
 from flexstage.analysis.loaded.standing import drawn, kinematics, load_factors, standing
@@ -21,7 +22,7 @@ from flexstage.analysis.workspace.small import small_motion
 from flexstage.analysis.workspace.stops import single_strokes
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import StrokeLimits, stroke_limits
-from flexstage.base.finding import DesignError, DesignWarning, Finding
+from flexstage.base.finding import DesignError, DesignWarning, Finding, name_first
 from flexstage.base.number import stack
 from flexstage.base.processes.threads import one_thread
 from flexstage.base.record import INNER
@@ -37,6 +38,7 @@ from flexstage.mechanism.geometry.contact import contact_findings
 from flexstage.mechanism.geometry.outline import outlines
 from flexstage.mechanism.grammar.formulas import unused_findings
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism, StructuralDamping
+from flexstage.models.flexible_bodies import body_flexibilities
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.body import Body
 from flexstage.parts.compliance_matrix import ComplianceMatrix, Joint
@@ -48,7 +50,7 @@ from flexstage.parts.plausible import implausible
 
 @dataclass(frozen=True)
 class Default(Finding):
-    """What was taken where the description leaves it open, and the kinds of results that are the same `without` it."""
+    """Default value of an unspecified field, and the kinds of results that are independent of the field (`without`)."""
 
     without: Annotated[frozenset[str], INNER] = frozenset()
 
@@ -63,29 +65,29 @@ _MEASURED = frozenset({"rig", "identify", "compare", "update"})
 
 @dataclass(frozen=True)
 class Caveats:
-    """Known with every result: `warnings` (something is doubtful), and `defaults` (what the description leaves open, as taken)."""
+    """Caveats of a result: `warnings`, and `defaults` of unspecified fields."""
 
     warnings: tuple[Finding, ...] = ()
     defaults: tuple[Default, ...] = ()
 
     def defaults_of(self, kind: str) -> tuple[Default, ...]:
-        """Those a kind of result (`modes`, `workspace`) rests on."""
+        """Defaults that a kind of result (`modes`, `workspace`) depends on."""
         return tuple(each for each in self.defaults if kind not in each.without)
 
 
 @SESSION.keep(8)
 def caveats(mechanism: Mechanism) -> Caveats:
-    """Warnings and defaults of a description; those of the last ones are kept, as tables, document and report of one command all show them.
+    """Return warnings and defaults of a description. Cached for the last descriptions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> caveats(double_triangle()).warnings
-    ()
+    >>> [each.where for each in caveats(double_triangle()).warnings]
+    ['B4/lever, B5/lever, B6/lever', 'platform']
     """
     return Caveats(design_warnings(mechanism), defaults(mechanism))
 
 
 def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
-    """What a result may rest on that the description does not state, and the value taken: `what` was taken, and by what it is stated.
+    """Return the default values of unspecified fields, with the key that specifies each.
 
     >>> defaults(Mechanism("stage"))
     ()
@@ -96,6 +98,7 @@ def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
         *_sticking(mechanism),
         *_lossless(mechanism),
         *_ground_default(mechanism),
+        *_rigid_bodies(mechanism),
     )
 
 
@@ -103,15 +106,15 @@ def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
     for name, piezo in _shared_stacks(mechanism).items():
         if np.all(np.asarray(piezo.mass) == 0.0):
             advice = 'Its mass adds local modes and lowers others: mass = "0.12 kg"'
-            yield Default(f"parts.{name}", "the stack weighs nothing", advice, _STILL)
+            yield Default(f"parts.{name}", "stack mass 0 by default", advice, _STILL)
         if piezo.bias is None and piezo.voltage_low is not None and piezo.voltage_high is not None:
             middle = np.ravel(0.5 * (np.real(piezo.voltage_low) + np.real(piezo.voltage_high)))[0]
-            what, advice = f"the bias is the middle of the range, {middle:g} V", f'Strokes count from it: bias = "{middle:g} V"'
+            what, advice = f"bias {middle:g} V (mid-range) by default", f'Strokes are relative to it: bias = "{middle:g} V"'
             yield Default(f"parts.{name}", what, advice, _LINEAR | _MEASURED)
 
 
 def _massless_defaults(mechanism: Mechanism) -> Iterator[Default]:
-    """The mass of restricted parts, which count as springs only."""
+    """Mass of restricted parts, which are massless springs."""
     told: dict[str, float] = {}
     for link in expand(mechanism).links.values():
         if isinstance(link.part, Restricted) and not isinstance(link.part.part, Joint):
@@ -122,21 +125,19 @@ def _massless_defaults(mechanism: Mechanism) -> Iterator[Default]:
             told[f"parts.{link.link.part}"] = float(np.max(own[..., 0, 0] + 2.0 * own[..., 0, 6] + own[..., 6, 6]))
     for where, size in told.items():
         if size > 0.0:
-            advice = "Add it to the bodies that it joins, as it moves with them"
-            yield Default(where, f"a restricted part has no mass: its {size:.4g} kg are left out", advice, _STILL | {"stiffness"})
+            advice = "Add it to the adjacent bodies"
+            yield Default(where, f"mass of a restricted part omitted ({size:.4g} kg)", advice, _STILL | {"stiffness"})
 
 
 def _sticking(mechanism: Mechanism) -> Iterator[Default]:
-    """Contacts that state no friction."""
+    """Contacts without specified friction."""
     for name, part in mechanism.parts.items():
         if isinstance(part, Contact) and part.friction is None:
-            yield Default(
-                f"parts.{name}", "it is taken as sticking: slip is not judged", "State it: friction = 0.15", frozenset({"mapping"})
-            )
+            yield Default(f"parts.{name}", "no slip by default", "Specify it: friction = 0.15", frozenset({"mapping"}))
 
 
 def _lossless(mechanism: Mechanism) -> Iterator[Default]:
-    """Materials, stacks and matrices that structural damping takes as losing nothing, as they state no loss factor."""
+    """Materials, stacks and matrices without a specified loss factor under structural damping."""
     if not isinstance(mechanism.damping, StructuralDamping):
         return
     told: dict[str, str] = {}
@@ -148,27 +149,38 @@ def _lossless(mechanism: Mechanism) -> Iterator[Default]:
         if not isinstance(inner, Joint) and getattr(holder, "loss_factor", None) is None:
             where = f"materials.{material}" if material else f"parts.{link.link.part}"
             told[where] = (
-                "State the drawn part that it replaces" if isinstance(inner, ComplianceMatrix) else "State it: loss_factor = 0.002"
+                "Specify the drawn part that it replaces" if isinstance(inner, ComplianceMatrix) else "Specify it: loss_factor = 0.002"
             )
     for item in expand(mechanism).superelements.values():
         if item.part.loss_factor is None:
-            told[f"parts.{item.link.part}"] = "State it: loss_factor = 0.002"
+            told[f"parts.{item.link.part}"] = "Specify it: loss_factor = 0.002"
     for where, advice in told.items():
-        yield Default(where, "it states no loss factor: structural damping takes it as losing nothing", advice, _UNDAMPED)
+        yield Default(where, "loss factor 0 by default (structural damping)", advice, _UNDAMPED)
 
 
 def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
-    """What the ground is taken as, where a requirement asks for drift."""
+    """Default ground material, if a requirement is on drift."""
     try:
         asked = any(line.kind is drift for line in requirements(mechanism))
         ground = ground_of(mechanism) if asked else None
     except DesignError:
-        return  # the requirement says what is missing
+        return  # the requirement reports the missing field
     if ground is not None and not ground.stated:
-        advice = f'Drift rests on it: ground = "{ground.material}"'
+        advice = f'Drift depends on it: ground = "{ground.material}"'
         yield Default(
-            "ground", f"it is taken as {ground.material}: {ground.source}", advice, _LINEAR - {"drift"} | _MEASURED | {"workspace", "loop"}
+            "ground",
+            f"material {ground.material} by default: {ground.source}",
+            advice,
+            _LINEAR - {"drift"} | _MEASURED | {"workspace", "loop"},
         )
+
+
+def _rigid_bodies(mechanism: Mechanism) -> Iterator[Default]:
+    """Bodies that are rigid as their flexibility has no estimate, by reason."""
+    reasons = body_flexibilities(mechanism).reasons
+    for reason in dict.fromkeys(reasons.values()):
+        names = name_first([name for name, each in reasons.items() if each == reason])
+        yield Default(names, f"it is taken as rigid, its flexibility is not estimated: {reason}", "Compare with flexstage verify", _STILL)
 
 
 def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
@@ -180,13 +192,13 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
 
 @one_thread
 def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """What is doubtful: the loaded stage, parts beyond beam theory's range, blocked strokes, outlines that clash or leave their room.
+    """Return warnings: loaded stage, parts outside beam theory's range, blocked strokes, interfering or intruding outlines.
 
-    A part that departs from the shared one is told by its link.
+    An overridden part is named by its link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> design_warnings(double_triangle())
-    ()
+    >>> [each.where for each in design_warnings(double_triangle())]
+    ['B4/lever, B5/lever, B6/lever', 'platform']
     """
     factors = load_factors(mechanism)
     return (
@@ -201,19 +213,20 @@ def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
         *_large_motions(mechanism),
         *contact_findings(mechanism),
         *_room(mechanism),
+        *_flexible_bodies(mechanism),
         *unused_findings(mechanism),
     )
 
 
 def _large_motions(mechanism: Mechanism) -> Iterator[Finding]:
-    """Single-axis strokes beyond what linear models answer for; nothing where the strokes do not determine the platform."""
+    """Single-axis strokes beyond small displacements; none if the strokes do not determine the platform."""
     with suppress(DesignError):
         found = kinematics(mechanism)
         yield from small_motion(mechanism, found).warnings(single_strokes(mechanism, found))
 
 
 def _catalogue_items(mechanism: Mechanism) -> Iterator[tuple[str, Any]]:
-    """Materials, parts, gauges, payloads, bodies and their outlines by address; parts of single copies too."""
+    """Materials, parts, gauges, payloads, bodies and their outlines by address; also parts of single instances."""
     for name in ("materials", "parts", "sensors", "payloads"):
         yield from ((f"{name}.{key}", item) for key, item in getattr(mechanism, name).items())
     for link in expand(mechanism).links.values():
@@ -231,11 +244,11 @@ def _drawn_bodies(mechanism: Mechanism) -> dict[str, Body]:
 
 
 def _disproportions(mechanism: Mechanism) -> Iterator[Finding]:
-    """Gravity that no place has; envelope, opening, inertias and points of another order of size than the stage."""
+    """Implausible gravity; envelope, aperture, inertias and points of an order of magnitude unlike the stage."""
     check = "Check the unit and the power of ten"
     fall = float(np.max(np.linalg.norm(np.real(stack(mechanism.gravity)), axis=-1)))
     if fall and not _LEAST_FALL <= fall <= _MOST_FALL:
-        yield Finding("gravity", f"{fall:.4g} m/s^2 is not plausible: the moon has 1.6, Jupiter 25; a factor of 10 more either way", check)
+        yield Finding("gravity", f"gravity not plausible (got {fall:.4g} m/s^2, expected {_LEAST_FALL:g} to {_MOST_FALL:g} m/s^2)", check)
     assembly = expand(mechanism)
     yield from _far_links(assembly)
     low, high, _ = bounds(outlines(assembly))
@@ -244,23 +257,25 @@ def _disproportions(mechanism: Mechanism) -> Iterator[Finding]:
     points = {f"{body}.points.{name}": float(np.max(np.linalg.norm(at - middle, axis=-1))) for name, (body, at) in assembly.points.items()}
     for where, size, least, most in (*_sizes(mechanism), *((name, distance, 0.0, 50.0) for name, distance in points.items())):
         if extent and not least * extent <= size <= most * extent:
-            yield Finding(where, f"{show(size, LENGTH, digits=4)} is not plausible in a stage of {show(extent, LENGTH, digits=4)}", check)
+            yield Finding(
+                where, f"length not plausible (got {show(size, LENGTH, digits=4)} in a stage of {show(extent, LENGTH, digits=4)})", check
+            )
 
 
 def _far_links(assembly: Assembly) -> Iterator[Finding]:
-    """Links farther from the platform than any stage is large."""
+    """Links implausibly far from the platform."""
     if PLATFORM not in assembly.bodies:
         return
     centre = assembly.bodies[PLATFORM].reference
     for name, link in assembly.links.items():
         distance = float(np.max(np.linalg.norm(np.real(link.frame.position - centre), axis=-1)))
         if distance > _FARTHEST:
-            what = f"it stands {distance:.4g} m from the platform, which is not plausible: stages measure a metre"
-            yield Finding(name, f"{what}; a factor of 10 more is let pass", "Check the unit and the power of ten")
+            what = f"distance to the platform not plausible (got {distance:.4g} m, expected {_FARTHEST:g} m or less)"
+            yield Finding(name, what, "Check the unit and the power of ten")
 
 
 def _sizes(mechanism: Mechanism) -> Iterator[tuple[str, float, float, float]]:
-    """Lengths by address, and their plausible range in sizes of the stage; of an inertia the radius of gyration."""
+    """Lengths by address with their plausible range relative to the stage size; radius of gyration for an inertia."""
     for axis, side in zip("xyz", mechanism.envelope or (), strict=False):
         yield f"envelope.{axis}", float(np.max(np.real(side))), 0.0, 50.0
     if mechanism.opening is not None:
@@ -272,10 +287,18 @@ def _sizes(mechanism: Mechanism) -> Iterator[tuple[str, float, float, float]]:
 
 
 def _overload_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Hinges beyond yield, balls that leave their seats and stacks beyond their maximum load under weight, payloads and forces alone."""
+    """Yielding hinges, lifted balls and overloaded stacks under permanent load only."""
     for judged in (_stress_findings, _compression_findings, _seat_findings):
         with suppress(DesignError):
             yield from judged(mechanism, drawn(mechanism))
+
+
+def _flexible_bodies(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Rigid bodies with a significant flexibility; none if the lumped or the ideal model is refused."""
+    try:
+        return tuple(body_findings(body_effects(mechanism, drawn(mechanism), kinematics(mechanism))))
+    except DesignError:
+        return ()
 
 
 def _stress_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
@@ -283,8 +306,8 @@ def _stress_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Findi
     safety = np.nan_to_num(np.real(stress.safety).reshape(-1, len(stress.links))[0], nan=np.inf)
     if np.min(safety, initial=np.inf) < 1.0:
         limit = stress.governing[stress.links.index(stress.weakest)]
-        what = f"weight, payloads and forces alone bring it to {1.0 / float(np.min(safety)):.3g} times its {limit}"
-        yield Finding(stress.weakest, what, "Check masses and forces, or make it stronger")
+        what = f"stress under weight, payloads and forces is {1.0 / float(np.min(safety)):.3g} times its {limit}"
+        yield Finding(stress.weakest, what, "Check masses and forces, or strengthen it")
 
 
 def _seat_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
@@ -296,39 +319,41 @@ def _compression_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[
     uses = np.real(share.usage(share.compression)).reshape(-1, len(share.actuators))[0]
     for name, use in zip(share.actuators, uses, strict=True):
         if use > 1.0:
-            what = f"weight, payloads and forces alone press on its stack with {use:.3g} times its maximum load"
-            yield Finding(name, what, "Check masses and forces, or take a stronger stack")
+            what = f"compression under weight, payloads and forces is {use:.3g} times the maximum load of its stack"
+            yield Finding(name, what, "Check masses and forces, or use a stronger stack")
 
 
 def _points(mechanism: Mechanism) -> Iterator[Finding]:
-    """Masses without extent that nobody called a point."""
+    """Masses without inertia that are not marked as points."""
     bodies = _drawn_bodies(mechanism)
     loads = {f"payloads.{name}": load for name, load in mechanism.payloads.items()}
     for where, item in (bodies | loads).items():
         if item.mass is not None and np.any(np.real(item.mass) > 0.0) and item.inertia is None and not item.point:
             size = float(np.max(np.real(item.mass)))
-            what = f"its {size:.4g} kg count as a point, without inertia: rotations come out too fast or have no mode"
-            yield Finding(where, what, 'State inertia = { xx = "...", yy = "...", zz = "..." } or an outline, or point = true if it is one')
+            what = f"point mass of {size:.4g} kg without inertia: rotational frequencies are too high or missing"
+            yield Finding(
+                where, what, 'Specify inertia = { xx = "...", yy = "...", zz = "..." } or an outline, or point = true if it is one'
+            )
 
 
 def _tension_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Stacks in tension beyond what they bear; nothing where their forces are not known."""
+    """Stacks in tension beyond their limits; none if their forces are unknown."""
     with suppress(DesignError):
         yield from load_share(mechanism, drawn(mechanism)).tension_findings(stroke_limits(mechanism).from_zero)
 
 
 def _blockages(mechanism: Mechanism) -> Iterator[Finding]:
-    """Strokes that cannot move, or a platform that cannot; nothing where the ideal model is refused, which tells why."""
+    """Blocked strokes or a blocked platform; none if the ideal model is refused."""
     with suppress(DesignError):
         found = kinematics(mechanism)
         yield from found.blockages
         if not found.mobility and not found.actuators:
-            what = "its links hold it in all six freedoms: no ideal motion is left"
-            yield Finding(PLATFORM, what, "Free the freedoms of links that it is to move by")
+            what = "its links constrain all six degrees of freedom: no ideal motion remains"
+            yield Finding(PLATFORM, what, "Free the degrees of freedom of links for the required motion")
 
 
 def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """What keeps models from a sound description: actuators without a path, a mechanism that gives way, unreadable requirements.
+    """Return the errors that prevent models: actuators without a path, free internal modes, unreadable requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> model_findings(double_triangle())
@@ -349,8 +374,8 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     `severity` of a finding distinguishes them. An empty tuple means that the stage has neither.
 
     >>> from flexstage.cases.double_triangle import double_triangle
-    >>> check(double_triangle())
-    ()
+    >>> [finding.where for finding in check(double_triangle())]
+    ['B4/lever, B5/lever, B6/lever', 'platform']
     >>> [finding.severity.value for finding in check(Mechanism("empty"))]
     ['error']
     """
@@ -359,7 +384,7 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 
 def part_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Parts outside the range that beam theory was compared with, or not straight when free.
+    """Return warnings for parts outside the validated range of beam theory, or not straight when free.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> part_warnings(double_triangle())
@@ -369,11 +394,11 @@ def part_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 
 def _not_straight(mechanism: Mechanism) -> Iterator[Finding]:
-    """Flexures that are not straight when free, which linear models take as straight."""
+    """Flexures not straight when free, straight in linear models."""
     for name, part in mechanism.parts.items():
         if getattr(part, "is_bent", False):
-            what = "it is not straight when free; all models but that of large displacements take it as straight, without what holds it so"
-            yield Finding(f"parts.{name}", what, "Ask flexstage stroke, or modes --at, what it does")
+            what = "not straight when free; all models except for large displacements assume a straight, stress-free flexure"
+            yield Finding(f"parts.{name}", what, "Run flexstage stroke, or modes --at, for its effect")
 
 
 def _room(mechanism: Mechanism) -> tuple[Finding, ...]:

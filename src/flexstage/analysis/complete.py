@@ -1,4 +1,4 @@
-"""The complete analysis of a stage: every analysis of one model, as one value for reports and applications."""
+"""Complete analysis of a stage: all analyses of one model, for reports and applications."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.analysis.assessment.budget import budget
 from flexstage.analysis.assessment.error_budget import ErrorBudget
-from flexstage.analysis.assessment.judge import judge
+from flexstage.analysis.assessment.judge import bench_of, judge
 from flexstage.analysis.assessment.measures import stroke
 from flexstage.analysis.assessment.requirements import Sense, Verdict, asked_factor, requirements
 from flexstage.analysis.attempt import Attempts
@@ -18,6 +18,7 @@ from flexstage.analysis.dynamics.modes import Modes, modes
 from flexstage.analysis.dynamics.response import response, transmissibility
 from flexstage.analysis.linear_statics.deflection import Deflection, deflection
 from flexstage.analysis.linear_statics.drift import Drift, drift
+from flexstage.analysis.linear_statics.drive_force import DriveForce, drive_force
 from flexstage.analysis.linear_statics.lost_motion import LostMotion, lost_motion
 from flexstage.analysis.linear_statics.mass_matrix import MassMatrix, mass_matrix
 from flexstage.analysis.linear_statics.statics import FreedomStiffness, Statics, freedom_stiffness, statics
@@ -28,6 +29,7 @@ from flexstage.analysis.workspace.buckling import Buckling, buckling
 from flexstage.analysis.workspace.force_workspace import ForceWorkspace
 from flexstage.analysis.workspace.force_workspace import force_workspace as reach_of
 from flexstage.analysis.workspace.small import SecondOrder, second_order
+from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
 from flexstage.base.arguments import check_arguments
@@ -56,17 +58,18 @@ _UNLUMPED = "this needs the lumped model"
 
 @dataclass(frozen=True, eq=False)
 class Analysis(InNotebook):
-    """All results of one model of a stage; `None` where a model or a stage does not give them, and `missing` says why, by field name.
+    """All results of one model of a stage; a field without a result is `None`, with the reason in `missing` by field name.
 
-    `response` is that of the platform's twist and all gauges to the actuators' inputs, `transmissibility` that of the platform to the
-    ground. `deflection` under dead load, `buckling` under it and all strokes, drift, error budget, `units` (each distinct unit alone) and
-    the `verdicts` on the requirements are those of the lumped model; all but the verdicts are missing for the others. `loaded` says what
-    the dead load changes; where it is felt, statics, modes, responses (`felt`), lost motion, drift, error budget and their verdicts are
-    those of the loaded stage, all else and `linear` are of the drawn one. `second_order` is the error of small displacements over the
-    required strokes, or those reached. `ends` is what loads the stage against what it bears at the ends of the paths that it states, as far
-    as that is asked for; None where it states none. The error budget is that of the required strokes, or of all single-axis strokes at
-    once, and of one kelvin. `freedoms` (stiffness along the motions left and along what links hold; None where six are left) and `mass` of
-    the platform belong to the statics.
+    `response` is from the actuators' inputs to the platform's twist and all gauges, `transmissibility` from the ground to the platform. The
+    lumped model gives `deflection` and `buckling` under permanent load, drift, error budget, `units` (each distinct isolated unit) and the
+    `verdicts` on requirements. Other models have only the verdicts.
+
+    `loaded` is the effect of the permanent load. If it is significant, statics, modes, responses (`felt`), lost motion, drift, error budget
+    and their verdicts are for the loaded stage. Other results and `linear` are nominal. `second_order` is the small-displacement error over
+    the required strokes, or the available ones. `ends` has critical load factors at the ends of the paths, up to the required factor; None
+    without paths. The error budget is for the required strokes, or all single-axis strokes at once, and one kelvin. `freedoms` (stiffness
+    along ideal motions and constraints; None for six ideal motions) and `mass` of the platform belong to the statics.
+    `stress` is at the required strokes, or of force-driven stages without them at peak current.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("an analysis", "fs.analyse(stage)")
@@ -93,15 +96,17 @@ class Analysis(InNotebook):
     loaded: LoadEffect | None = None
     second_order: SecondOrder | None = None
     ends: load_cases.CaseFactors | None = None
+    stress: HingeStress | None = None
+    drive_force: DriveForce | None = None
 
     @property
     def felt(self) -> LinearModel | None:
-        """The model of statics, modes and responses: `linear`, or small motions about the loaded stage."""
+        """Model of statics, modes and responses: `linear`, or the one linearised about the loaded state."""
         return self.linear if self.loaded is None or self.loaded.model is None else self.loaded.model
 
 
 def felt(mechanism: Mechanism, model: Model) -> LinearModel | None:
-    """The linear model of a stage; of the lumped one where its dead load is felt, small motions about the loaded stage.
+    """Return the linear model of a stage; for a significant permanent load, the lumped one linearised about the loaded state.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> "geometric" in felt(double_triangle(), Model.LUMPED).stiffness
@@ -113,7 +118,7 @@ def felt(mechanism: Mechanism, model: Model) -> LinearModel | None:
 
 
 def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
-    """The linear model of a stage; `None` for the ideal one. Refused where the drawn position does not hold its dead load.
+    """Return the linear model of a stage; `None` for the ideal one. Refuses an unstable nominal position.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(read(double_triangle(), Model.MAPPED).coordinates)
@@ -131,16 +136,17 @@ def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
 @check_arguments
 @one_thread
 def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = True) -> Analysis:
-    """Every analysis of one model; unless `whole` without what the short form does not show, half of the time.
+    """Compute all analyses of one model; unless `whole`, only those of the short form, in half the time.
 
-    That is responses, units alone and most of the workspace. What a stage cannot give (an under-actuated one has no lost motion) is `None`,
-    its reason in `missing`. Raises `DesignError` where the model itself is refused.
+    The short form omits responses, isolated units and most of the workspace. Impossible results (lost motion of an under-actuated stage)
+    are `None`, with the reason in `missing`. Raises `DesignError` if the model is refused.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(float(analyse(double_triangle(), Model.MAPPED).modes.frequencies[0]), 2)
     110.91
     """
-    verdicts = judge(mechanism)
+    bench = bench_of(mechanism)
+    verdicts = judge(mechanism, bench)
     kinematics = ideal(mechanism)
     linear, loading = read(mechanism, model), load_effect(mechanism) if model is Model.LUMPED else None
     weighed, linked = (linear, linear) if loading is None or loading.model is None else (loading.model, loading.links)
@@ -152,12 +158,17 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
     hinged = linear if model is Model.LUMPED else None
 
     def responded(known: LinearModel) -> Response | None:
-        return response(known, seen, known.actuators) if whole or not known.actuators else None  # without one it is refused
+        return response(known, seen, known.actuators) if whole or not known.actuators else None  # requires an input
 
     def alone() -> Mapping[str, UnitResult] | None:
-        return units(mechanism) if whole or not kinematics.mapping.rows else None  # without strokes they are refused
+        return units(mechanism) if whole or not kinematics.mapping.rows else None  # requires strokes
 
     forced = kinematics if kinematics.thrusts and not kinematics.actuated else None
+    pushed = (
+        None
+        if forced is None
+        else attempt.of_ground("force_workspace", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known))
+    )
     stiff = attempt.of_ground("statics", weighed, _RIGID, statics)
     drifted = attempt.of_ground("drift", linked if model is Model.LUMPED else None, _UNLUMPED, lambda known: drift(mechanism, known))
     return Analysis(
@@ -177,20 +188,24 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
         error_budget=attempt.of_ground("error_budget", hinged, _UNLUMPED, lambda _: _errors(mechanism, command, reach, drifted)),
         units=attempt.of_ground("units", hinged, _UNLUMPED, lambda _: alone()),
         verdicts=verdicts,
-        force_workspace=None
-        if forced is None
-        else attempt.of_ground("force_workspace", hinged, _UNLUMPED, lambda known: reach_of(mechanism, forced, known)),
+        force_workspace=pushed,
+        drive_force=None
+        if pushed is None or hinged is None
+        else attempt.of("drive_force", lambda: drive_force(kinematics, hinged, pushed)),
         freedoms=None if stiff is None else freedom_stiffness(stiff, kinematics),
         mass=None if stiff is None or weighed is None else mass_matrix(mechanism, weighed),
         loaded=loading,
         second_order=second_order(mechanism, kinematics, command if command or reach is None else reach.command),
         ends=attempt.of_ground("ends", hinged, _UNLUMPED, lambda _: _ends(mechanism)) if mechanism.paths else None,
+        stress=attempt.of("stress", lambda: bench.stress_at_strokes if bench.command else bench.stress)
+        if model is Model.LUMPED and (bench.command or forced is not None)
+        else None,
         missing=Table(attempt.missing),
     )
 
 
 def _ends(mechanism: Mechanism) -> load_cases.CaseFactors:
-    """Load cases at the ends of paths, followed as far as a factor is asked for."""
+    """Load cases at the ends of paths, up to the required factor."""
     cases = [each for name in mechanism.paths for each in load_cases.path_cases(mechanism, name)]
     demand = asked_factor(mechanism)
     return load_cases.buckling_factors(mechanism, cases, most=max(demand, 1.0), demand=demand)
@@ -207,7 +222,7 @@ def _errors(mechanism: Mechanism, command: Mapping[str, float] | None, reach: Wo
 
 
 def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
-    """The strokes that are required of the platform, as a box of commands by coordinate [m, rad]; `None` where none is.
+    """Return the required platform strokes as a box of commands by coordinate [m, rad]; `None` without any.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> required_command(double_triangle())["z"]
@@ -219,7 +234,7 @@ def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
 
 
 def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
-    """Modes, listed up to the description's frequency limit.
+    """Compute modes, listed up to the description's frequency limit.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> platform_modes(double_triangle(), mapped(double_triangle())).limit

@@ -1,4 +1,4 @@
-"""Which of several results a comparison speaks for. Light: tables name it without loading what is compared."""
+"""Outcome of a comparison of theory and FEA. Separate module: tables import it without the comparison."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from enum import Enum
 
 
 class Trust(Enum):
-    """Which result a comparison speaks for."""
+    """Outcome of a comparison of theory and FEA."""
 
     DEPENDENT = "not independent"
     EITHER = "they agree"
     UNCLEAR = "FEA too coarse to tell"
-    THEORY = "theory will do"
+    THEORY = "theory suffices"
     CALIBRATED = "calibrated theory"
     FEA = "FEA"

@@ -1,4 +1,4 @@
-"""Where beam theory holds: for a part, and for every part of a stage as its links use it."""
+"""Validity of beam theory for a part, and for every part of a stage."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def validity(part: Mechanism, where: str = "part", material: Material | None = N
 
 @check_arguments
 def validity(part: Part | Mechanism, where: str = "part", material: Material | None = None) -> Validity | Mapping[str, Validity]:
-    """Range of validity and expected error of beam theory, of a part or of all parts of a stage.
+    """Assess the range of validity and expected error of beam theory, for a part or all parts of a stage.
 
-    Parameters: a part, which `where` names in the findings and whose Poisson's ratio is 0.3 unless a `material` is given; or a stage, whose
-    parts have their own names and materials (a material that is given goes before).
-    Returns the validity of the part (see `beams.validity`); of a stage by address: `parts.NAME`, or the link whose part departs from it.
+    Parameters: a part, named `where` in the errors, with a Poisson's ratio of 0.3 or that of `material`. Or a stage, whose parts have their
+    own names and materials (a `material` takes precedence).
+    Returns the validity of the part (see `beams.validity`); for a stage by address: `parts.NAME`, or the link of an overridden part.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> found = validity(parallelogram())

@@ -1,4 +1,4 @@
-"""The doctor: is this installation sound, and which command mends it? Returns rows, prints nothing, runs when any package is missing."""
+"""The doctor: check of the installation, with remedies. Returns rows, prints nothing, runs when any package is missing."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _THREADS = "import json, numpy.linalg, scipy.linalg, threadpoolctl as t; print(j
 
 
 class Verdict(Enum):
-    """What a row of the examination comes to. A note does not keep flexstage from working."""
+    """Verdict on a row. Flexstage also works with a note."""
 
     GOOD = "good"
     NOTE = "note"
@@ -36,7 +36,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Row:
-    """One thing examined: `what`, what was `found`, what is `wanted`, the `verdict` and the `remedy` in words."""
+    """One checked item: `what`, the `found` and the `wanted` state, the `verdict` and the `remedy` as text."""
 
     what: str
     found: str
@@ -46,22 +46,22 @@ class Row:
 
 
 def examine(folder: Path, self_test: Callable[[], Row] | None = None) -> tuple[Row, ...]:
-    """Examine the running environment and the `folder` that results would be written to.
+    """Examine the running environment and the `folder` for results.
 
-    `self_test` computes something known and returns its row; whatever it raises becomes a row too.
+    `self_test` computes a known result and returns its row; an exception becomes a row too.
     """
     rows = [*_examine_installed(), _threads(), examine_folder("current folder", folder), _figure_cache(), *native_code()]
     return tuple(rows + [_run_self_test(self_test)] * (self_test is not None))
 
 
 def _examine_installed() -> Iterator[Row]:
-    """Python, flexstage itself, and the packages it needs."""
+    """Python, flexstage itself, and the required packages."""
     try:
         wanted, lines = metadata("flexstage")["Requires-Python"], requires("flexstage") or []
         found = version("flexstage")
     except PackageNotFoundError:
         wanted, lines, found = "", [], "not installed"
-    yield Row("Python", platform.python_version(), wanted, Verdict.GOOD)  # an older one would not have come so far
+    yield Row("Python", platform.python_version(), wanted, Verdict.GOOD)  # an older one fails earlier
     good = found == __version__
     remedy = "" if good else "install it again: pip install --force-reinstall --no-deps flexstage, or make setup-runtime in a checkout"
     yield Row("flexstage", found, __version__, Verdict.GOOD if good else Verdict.BAD, remedy)
@@ -75,9 +75,9 @@ def _examine_installed() -> Iterator[Row]:
 
 
 def examine_package(need: Any) -> Row | None:
-    """Is what a requirement names there, in its range of versions, and does it import? None where it is not needed here.
+    """Check whether a required package is installed, in its range of versions, and importable. None if it is not needed here.
 
-    It is imported in a process of its own, which a broken library may take down. What only an extra asks for may be missing.
+    It is imported in a separate process, because a broken library may crash it. Packages of extras may be missing.
 
     >>> from packaging.requirements import Requirement
     >>> examine_package(Requirement("no-such-package>=1")).found
@@ -107,10 +107,10 @@ def _run(code: str) -> subprocess.CompletedProcess[str]:
 
 
 def _module(package: str) -> str:
-    """What is imported of a package: the module of its name, or the first it brings (PIL of pillow)."""
+    """The module of a package: the one of its name, or its first one (PIL of pillow)."""
     own = package.replace("-", "_")
     if find_spec(own):
-        return own  # without a look at what all that is installed brings
+        return own  # without a search in all installed packages
     known = [module for module, owners in packages_distributions().items() if package in map(str.lower, owners)]
     return own if own in known else next(iter(known), own)
 
@@ -130,14 +130,14 @@ def _threads() -> Row:
     try:
         counts = json.loads(_run(_THREADS).stdout)
     except (ValueError, subprocess.TimeoutExpired):
-        return Row("BLAS", "not examined", wanted, Verdict.NOTE, "mend the packages above first")
+        return Row("BLAS", "not examined", wanted, Verdict.NOTE, "correct the packages above first")
     most = max(counts, default=1)
     remedy = "" if most == 1 else "if sweeps are slow on a busy machine: export OPENBLAS_NUM_THREADS=1"
     return Row("BLAS", f"{most} thread{'s' * (most > 1)}", wanted, Verdict.NOTE if remedy else Verdict.GOOD, remedy)
 
 
 def examine_folder(what: str, folder: Path) -> Row:
-    """Can a file be written in a folder? Tried, not concluded from its mode.
+    """Check by a trial whether a file can be written in a folder, without relying on its mode.
 
     >>> examine_folder("folder", Path("no such folder")).verdict
     <Verdict.BAD: 'bad'>
@@ -150,7 +150,7 @@ def examine_folder(what: str, folder: Path) -> Row:
 
 
 def _figure_cache() -> Row:
-    """The folder where matplotlib keeps its list of fonts: made anew for every figure when it cannot be written."""
+    """The folder of matplotlib's list of fonts: if it is not writable, the list is rebuilt for every figure."""
     chosen = os.environ.get("MPLCONFIGDIR")
     path = Path(chosen) if chosen else Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "matplotlib")
     row = examine_folder("cache of figures", path.absolute())
@@ -160,7 +160,7 @@ def _figure_cache() -> Row:
 
 
 def native_code() -> Iterator[Row]:
-    """Whether the kernels load. A note only: without them numpy does the work.
+    """Whether the kernels load. Only a note: numpy replaces missing ones.
 
     >>> [row.verdict is Verdict.BAD for row in native_code()]
     [False]
@@ -169,7 +169,7 @@ def native_code() -> Iterator[Row]:
     try:
         loaded = [source for source in KERNELS if kernel_library(source)]
         found = f"{len(loaded)} for {kernel_lanes().name}" if os.environ.get(SWITCH) != "off" else f"off ({SWITCH})"
-    except Exception as error:  # noqa: BLE001 (lanes that this processor has not, or a package that its own row names)
+    except Exception as error:  # noqa: BLE001 (lanes missing on this processor, or a package with its own row)
         loaded, found = [], str(error)
     if len(loaded) == len(KERNELS):
         yield Row(what, found, wanted, Verdict.GOOD)
@@ -181,5 +181,7 @@ def native_code() -> Iterator[Row]:
 def _run_self_test(self_test: Callable[[], Row] | None) -> Row:
     try:
         return self_test() if self_test else Row("self-test", "none", "none", Verdict.NOTE)
-    except Exception as error:  # noqa: BLE001 (the doctor reports whatever is wrong)
-        return Row("self-test", f"{type(error).__name__}: {error}", "passes", Verdict.BAD, "mend the rows above; else report this as a bug")
+    except Exception as error:  # noqa: BLE001 (the doctor reports all errors)
+        return Row(
+            "self-test", f"{type(error).__name__}: {error}", "passes", Verdict.BAD, "correct the rows above; else report this as a bug"
+        )

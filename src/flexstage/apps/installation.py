@@ -1,4 +1,4 @@
-"""The doctor's consultation, in plain Python: it runs when typer itself is missing."""
+"""The doctor's examination, in plain Python: it runs when typer itself is missing."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _TOLERANCE = 1e-5
 
 
 def consult() -> int:
-    """Examine the installation and print the rows; the exit code says whether all is good."""
+    """Examine the installation and print the rows; the exit code is the verdict."""
     rows = doctor.examine(Path.cwd(), self_test)
     _print_rows(rows)
     bad = [row for row in rows if row.verdict is Verdict.BAD]
-    print_result("The installation is sound." if not bad else f"{len(bad)} thing{'s' * (len(bad) > 1)} to mend.")
+    print_result("The installation is sound." if not bad else f"{len(bad)} problem{'s' * (len(bad) > 1)} found.")
     return BAD_INPUT if bad else DONE
 
 
@@ -33,7 +33,7 @@ def _print_rows(rows: Iterable[Row]) -> None:
 
 def self_test() -> Row:
     """Compute the paper's frequencies of the shipped stage and compare."""
-    # Imported here: a package that is missing or broken is a row of the examination.
+    # Imported here: a missing or broken package is a row of the examination.
     from flexstage.analysis.dynamics.modes import modes
     from flexstage.cases.double_triangle import double_triangle
     from flexstage.models.mapped import mapped

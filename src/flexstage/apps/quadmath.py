@@ -1,7 +1,7 @@
-"""The library that NGSolve's wheels leave out: their OpenBLAS wants `libquadmath.so.0`, which a bare machine does not have.
+"""The library missing in NGSolve's wheels: their OpenBLAS needs `libquadmath.so.0`, which a bare machine does not have.
 
-numpy's wheels carry it under another name. A copy beside the library that wants it is found first by the loader, whatever else the
-machine has. `python -m flexstage.apps.quadmath` puts it there.
+numpy's wheels contain it under another name. The loader prefers a copy next to the library that needs it, on any
+machine. `python -m flexstage.apps.quadmath` copies it.
 Standard library only: `tools/setup.py` calls it too.
 """
 
@@ -21,7 +21,7 @@ _CARRIERS = ("numpy.libs", "scipy.libs")
 
 
 def missing_place(folders: Iterable[Path | str]) -> Path | None:
-    """Where the library has to be put within these `site-packages` folders; None if nothing there wants it or it is there.
+    """Folder for the library within these `site-packages` folders; None if no library needs it or it exists.
 
     >>> missing_place([]) is None
     True
@@ -30,7 +30,7 @@ def missing_place(folders: Iterable[Path | str]) -> Path | None:
 
 
 def provide(folders: Iterable[Path | str]) -> str:
-    """Put the library where it is lacking; says why if that is not possible, else nothing. Doing it twice is the same as once.
+    """Copy the library into its folder; returns the reason of a failure, else nothing. A second call has no effect.
 
     >>> provide([])
     ''
@@ -53,13 +53,13 @@ def provide(folders: Iterable[Path | str]) -> str:
 def _find_missing(folders: Iterable[Path]) -> Iterator[Path]:
     for folder in folders:
         for library in folder.glob(_WANTING):
-            # Some builds (64-bit ARM) do not want it: the name of what a library wants stands in its dynamic section.
+            # Some builds (64-bit ARM) do not need it: the dynamic section of a library lists its dependencies.
             if not library.with_name(_NAME).exists() and _NAME.encode() in library.read_bytes():
                 yield library.with_name(_NAME)
 
 
 def _copy(source: Path, place: Path) -> None:
-    # Made whole, then renamed: another process may be importing at this moment.
+    # Written completely, then renamed: another process may be importing.
     handle, unfinished = tempfile.mkstemp(dir=place.parent, prefix=f".{_NAME}.")
     os.close(handle)
     try:

@@ -1,4 +1,4 @@
-"""Words that options of commands choose from."""
+"""Choices of options."""
 
 from enum import Enum
 

@@ -1,1 +1,1 @@
-"""Ground floor: numbers, units, findings, digests and labelled arrays. Knows nothing of mechanics."""
+"""Base layer: numbers, units, errors, digests and labelled arrays; independent of mechanics."""

@@ -1,7 +1,7 @@
-"""Arguments of classes and functions: each is converted, or refused, by the annotation of its field or parameter.
+"""Conversion and validation of arguments by the annotation of their field or parameter.
 
-The annotations are those that files and their schemas are made of: `section: LeafSection` takes a member or its spelling in files ("beam"),
-`Annotated[Number, LENGTH]` a finite number or an array of them. What is neither is refused where it is given, under its name.
+Annotations are as in files and schemas: `section: LeafSection` accepts a member or its spelling in files ("beam"), `Annotated[Number,
+LENGTH]` a finite number or an array. Other values raise an error with the name of the argument.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from typing import Annotated, Any, ClassVar, ParamSpec, TypeAlias, TypeVar, get_
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.finding import DesignError, list_choices, refuse
 from flexstage.base.number import Table, freeze
 from flexstage.base.units.quantity import COMPLIANCE_MATRIX, DIRECTION, DIRECTIONS, STIFFNESS_MATRIX, Bound
 
@@ -29,47 +29,47 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 Rule: TypeAlias = Callable[[Any], Any]
-"""A function that returns what an argument means, or raises `MismatchError`."""
+"""Function that converts an argument, or raises `MismatchError`."""
 
 
 @dataclass(frozen=True)
 class Demand:
-    """How values are taken: whether all numbers must be finite, and whether what can be changed is replaced by what cannot."""
+    """Rules of conversion: whether numbers must be finite, and whether mutable values become immutable."""
 
     finite: bool = True
     frozen: bool = False
 
 
 GAPS = Demand(finite=False)
-"""Annotation of an array in which samples may be missing: it may hold NaN."""
+"""Annotation of an array with possibly missing samples (NaN)."""
 
 
 UNLIMITED = Demand(finite=False)
-"""Annotation of a number that may be infinite, where it limits nothing."""
+"""Annotation of a number that may be infinite (no limit)."""
 
 
 WRITTEN = "WRITTEN"
-"""Class attribute of a description, and of results that are made of one: a noun, and how a call writes it (`fs.lumped(stage)`)."""
+"""Class attribute of descriptions and results: a noun, and the call that creates it (`fs.lumped(stage)`)."""
 
 
 class MismatchError(Exception):
-    """An argument is not of its kind: the value, what is expected instead, advice, and at which place inside the argument it is."""
+    """Argument of the wrong kind: value, expected kind, hint, and position inside the argument."""
 
     def __init__(self, value: Any, expected: str, advice: str) -> None:
         super().__init__(expected)
         self.value, self.expected, self.advice, self.place = value, expected, advice, ""
 
     def refusal(self, where: str) -> DesignError:
-        """The error of a field or parameter.
+        """Return the error of a field or parameter.
 
         >>> str(MismatchError(3.0, "a text", "Give a str").refusal("Leaf.material"))
-        'Leaf.material: found 3.0, expected a text. Give a str.'
+        'Leaf.material: must be a text (got 3.0). Give a str.'
         """
-        return refuse(where + self.place, f"found {_shown(self.value)}, expected {self.expected}", self.advice)
+        return refuse(where + self.place, f"must be {self.expected} (got {_shown(self.value)})", self.advice)
 
 
 class CheckedFields:
-    """Base of frozen dataclasses whose fields are converted, or refused, at construction."""
+    """Base of frozen dataclasses with fields converted or refused at construction."""
 
     __slots__ = ()
     frozen_values: ClassVar[bool] = False
@@ -88,10 +88,10 @@ class CheckedFields:
 
 
 def check_arguments(function: Callable[P, T]) -> Callable[P, T]:
-    """The function with its arguments converted, or refused, by its annotations.
+    """Decorate a function to convert or refuse its arguments by its annotations.
 
-    Raises `DesignError` under the name of the parameter; `TypeError` with the call that was probably meant where a stage is given in the
-    place of what is made of it.
+    Raises `DesignError` under the name of the parameter; `TypeError`, with the probable call, for a stage instead of an
+    object created from it.
 
     >>> def bend(ends: tuple[str, ...], *, load: float = 1.0) -> float:
     ...     return load
@@ -99,7 +99,7 @@ def check_arguments(function: Callable[P, T]) -> Callable[P, T]:
     2.0
     >>> check_arguments(bend)("ab")
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: bend: ends: found the text 'ab', expected several values. Give a tuple or a list of them.
+    flexstage.base.finding.DesignError: bend: ends: must be several values (got the text 'ab'). Give a tuple or a list of them.
     """
 
     @functools.wraps(function)
@@ -113,7 +113,7 @@ def check_arguments(function: Callable[P, T]) -> Callable[P, T]:
 def convert_arguments(
     function: Callable[..., Any], args: tuple[Any, ...], kwargs: Mapping[str, Any]
 ) -> tuple[tuple[Any, ...], dict[str, Any]]:
-    """The arguments of a call as its function's annotations mean them, by place and by name.
+    """Convert positional and keyword arguments of a call by the function's annotations.
 
     >>> def bend(ends: tuple[str, ...], *, load: float = 1.0) -> float:
     ...     return load
@@ -144,7 +144,7 @@ def _refusal(function: Callable[..., Any], faults: Mapping[str, MismatchError]) 
 
 
 def _meant_call(function: Callable[..., Any], faults: Mapping[str, MismatchError]) -> str:
-    """The call as its parameters are written: those that are needed, and those that are at fault; empty where none is made of a stage."""
+    """Text of the correct call with required and wrong parameters; empty if none is created from a stage."""
     hints, written, made = typing.get_type_hints(function), list[str](), False
     for name, each in inspect.signature(function).parameters.items():
         kinds = (hints.get(name), *get_args(hints.get(name)))
@@ -168,11 +168,11 @@ def _parameter_rules(function: Callable[..., Any]) -> Mapping[str, Rule]:
 
 
 def _parameter_rule(hint: Any, default: Any, *, frozen: bool = False) -> Rule:
-    """The rule of a field or parameter; a default that is not finite says that another value may be infinite too."""
+    """Rule of a field or parameter; a default that is not finite allows infinite values."""
     return _rule(hint, Demand(finite=not (isinstance(default, float) and np.isinf(default)), frozen=frozen))
 
 
-# --- the rule of an annotation ---
+# --- rules of annotations ---
 
 
 def _rule(hint: Any, demand: Demand) -> Rule:
@@ -260,7 +260,7 @@ def _choice(kind: type[Enum], words: Mapping[str, Enum], value: Any) -> Any:
 
 
 def _word(node: Any, value: Any) -> Any:
-    """One of the words of a node that states them: a member, or its spelling."""
+    """A choice of a node: a member, or its spelling."""
     words = node.words
     if isinstance(value, str) and type(value) is str and value in words:
         return words[value]
@@ -271,7 +271,7 @@ def _word(node: Any, value: Any) -> Any:
 
 def _no_word(value: Any, words: list[str]) -> MismatchError:
     near = difflib.get_close_matches(str(value)[:80], words, n=1, cutoff=0.0)
-    return MismatchError(value, f"one of {', '.join(words)}", f'Write for example "{near[0]}"')
+    return MismatchError(value, list_choices(words), f'Use e.g. "{near[0]}"')
 
 
 def _text(value: Any) -> Any:
@@ -326,12 +326,12 @@ def _as_float(value: Any) -> float:
 
 
 def _no_number(value: Any) -> MismatchError:
-    advice = "Write a number in SI units, for example 0.4 * fs.mm; texts with units stand in design files (fs.load)"
+    advice = "Use a number in SI units, e.g. 0.4 * fs.mm; texts with units are for design files (fs.load)"
     return MismatchError(value, "a number", advice if isinstance(value, str) else "Give a number or an array in SI units")
 
 
 def _array(demand: Demand, value: Any) -> Any:
-    if getattr(value, "__array_ufunc__", _array) is None:  # a matrix of its own kind that is used as an array, such as a sparse one
+    if getattr(value, "__array_ufunc__", _array) is None:  # an array-like object, e.g. a sparse matrix
         return value
     array = _as_array(value) if isinstance(value, list | tuple) else value
     if not isinstance(array, np.ndarray) or array.dtype.kind not in "fciu":
@@ -360,7 +360,7 @@ def _direction(rule: Rule, value: Any) -> Any:
 
 
 def _row(rules: list[Rule], value: Any) -> Any:
-    """As many values as there are rules."""
+    """One value per rule."""
     if not isinstance(value, tuple | list) or len(value) != len(rules):
         raise MismatchError(value, f"{len(rules)} values", "Give a tuple of them")
     return _same_or(tuple, value, [_inside(rule, str(place), each) for place, (rule, each) in enumerate(zip(rules, value, strict=True))])
@@ -374,7 +374,7 @@ def _items(kind: type, rule: Rule, value: Any) -> Any:
 
 
 def _same_or(kind: type, value: Any, items: list[Any]) -> Any:
-    """The value itself where its items are as they were, which spares the garbage collector."""
+    """The same object if its items are unchanged, to spare the garbage collector."""
     return value if type(value) is kind and all(map(operator.is_, value, items)) else kind(items)
 
 

@@ -1,17 +1,24 @@
-"""Findings: what is wrong with a user's input, told so that it can be mended.
+"""Findings: faults in a user's input, each with a message of one form.
 
-A check returns findings (ask); `require` raises them together as one `DesignError` (throw).
+The form is `KEY: PROBLEM (got VALUE, expected CONDITION). HINT.`; the key may begin with file and line.
+
+A check returns findings; `require` raises them together as one `DesignError`.
 """
 
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, ClassVar
 
 from flexstage.base.renamed import new_name
+
+_SUGGESTIONS = 6
+_VALUE = re.compile(r"got ([0-9][0-9.]*(?:e[+-]?[0-9]+)?)(?=.* or (less|more)\))(.*)", re.DOTALL)
+"""The value of a text that states a bound, and which side of the bound is allowed."""
 
 
 class Severity(Enum):
@@ -23,7 +30,7 @@ class Severity(Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing wrong: the user's object (`B4/pivot`, or file and key), what was found with the numbers compared, and what to do."""
+    """One fault: file, line and key or the user's object (`B4/pivot`), the problem with its value, and an imperative hint."""
 
     where: str
     what: str
@@ -31,7 +38,7 @@ class Finding:
     severity: ClassVar[Severity] = Severity.ERROR
 
     def __str__(self) -> str:
-        return f"{self.where}: {self.what}. {self.advice}."
+        return f"{self.where}: {self.what}.{f' {self.advice}.' if self.advice else ''}"
 
 
 @dataclass(frozen=True)
@@ -42,7 +49,7 @@ class DesignWarning(Finding):
 
 
 class DesignError(ValueError):
-    """All findings that keep a description, a file or a question from being answered."""
+    """All faults found in a description, a file or a request."""
 
     def __init__(self, findings: Iterable[Finding]) -> None:
         self.findings = tuple(findings)
@@ -53,7 +60,7 @@ class DesignError(ValueError):
 
 
 class LowerBoundError(DesignError):
-    """A quantity that is at least `bound`, and not known beyond."""
+    """A quantity of which only a lower bound, `bound`, is known."""
 
     def __init__(self, findings: Iterable[Finding], bound: float) -> None:
         super().__init__(findings)
@@ -83,7 +90,7 @@ def refuse(where: str, what: str, advice: str) -> DesignError:
 
 
 def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Findings that say the same of several objects of one file (`file: name`) as one, which names them all.
+    """Merge equal errors of several objects of one file (`file: name`) into one with all names.
 
     >>> print(*join_findings([Finding("a.csv: S1", "no unit", "State it"), Finding("a.csv: S2", "no unit", "State it")]))
     a.csv: S1, S2: no unit. State it.
@@ -96,8 +103,30 @@ def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     return tuple(Finding(where, what, advice) for where, (_, what, advice) in zip(wheres, groups, strict=True))
 
 
+def combine_warnings(warnings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Warnings that differ in their object and in the value of one bound, as one: the worst, and their number.
+
+    >>> large = [Finding(f"B{each}", f"stress too large (got {each} MPa, expected 1 MPa or less)", "Reduce it") for each in (2, 4, 3)]
+    >>> print(*combine_warnings(large))
+    B4 (worst of 3): stress too large (got 4 MPa, expected 1 MPa or less). Reduce it.
+    """
+    groups: dict[tuple[str, str], list[Finding]] = {}
+    for each in warnings:
+        groups.setdefault((_VALUE.sub(r"\3", each.what), each.advice), []).append(each)
+    return tuple(map(_worst, groups.values()))
+
+
+def _worst(group: Sequence[Finding]) -> Finding:
+    """The finding with the value farthest beyond the bound; of equal texts the first, with the other names."""
+    values = [float(found[1]) * (1.0 if found[2] == "less" else -1.0) for each in group if (found := _VALUE.search(each.what))]
+    if len(group) == 1 or not values:
+        return replace(group[0], where=name_first(list(dict.fromkeys(each.where for each in group)), most=3))
+    worst = group[values.index(max(values))]
+    return replace(worst, where=f"{worst.where} (worst of {len(group)})")
+
+
 def name_first(names: Sequence[str], most: int = 8) -> str:
-    """The first of some names, and how many more there are.
+    """The first names, and the number of the others.
 
     >>> name_first(["b2"]), name_first(["b2", "b3", "b4", "b5"], most=2)
     ('b2', 'b2, b3 and 2 more')
@@ -105,19 +134,34 @@ def name_first(names: Sequence[str], most: int = 8) -> str:
     return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
-def suggest_nearest(name: str, names: Iterable[str]) -> str:
-    """Advice that names what is near to a misspelt or renamed name, or what there is.
+def suggest_nearest(name: str, names: Iterable[str], *, otherwise: str = "") -> str:
+    """Hint for an unknown name: its new name, at most six similar names (the nearest first), else `otherwise`, else known names.
 
     >>> suggest_nearest("plattform", ["ground", "platform"]), suggest_nearest("xyz", ["ground", "platform"])
-    ('The nearest name is platform', 'There are ground, platform')
+    ('Use platform', 'Use ground or platform')
     """
-    known = sorted(set(names))
+    known = list(dict.fromkeys(names))
     renamed = new_name(name, known)
     if renamed is not None:
-        return f"It is called {renamed}"
-    close = difflib.get_close_matches(name[:80], known, n=3, cutoff=0.6)
-    if close:
-        return f"The nearest name is {close[0]}" if len(close) == 1 else f"Near to it are {', '.join(close)}"
+        return f"Use {renamed}"
+    lowered = {each.lower(): each for each in reversed(known)}
+    word = name[:80].lower()
+    begin = [each for each in lowered if len(word.strip("-")) > 2 and each.startswith(word)]
+    close = difflib.get_close_matches(word, lowered, n=_SUGGESTIONS, cutoff=0.6)
+    similar = [lowered[each] for each in dict.fromkeys([*begin, *close])][:_SUGGESTIONS]
+    if otherwise and not similar:
+        return otherwise
     if not known:
-        return "There are none"
-    return f"There are {', '.join(known[:12])}{' and more' if len(known) > 12 else ''}"
+        return "None is defined"
+    if similar or len(known) <= _SUGGESTIONS:
+        return f"Use {list_choices(similar or known)}"
+    return f"Use e.g. {list_choices(known[:3])}"
+
+
+def list_choices(names: Sequence[str]) -> str:
+    """Names as alternatives.
+
+    >>> list_choices(["x", "y", "z"]), list_choices(["x"])
+    ('x, y or z', 'x')
+    """
+    return " or ".join([*filter(None, [", ".join(names[:-1])]), *names[-1:]])

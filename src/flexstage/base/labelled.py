@@ -1,4 +1,4 @@
-"""Labelled matrices: results whose rows and columns have names and whose entries have units."""
+"""Labelled matrices: named rows and columns, entries with units."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from flexstage.base.number import Array
 
 NOISE = 1e-9
 NOISE_RULE = "0 stands for rounding noise: below 1e-9 of the geometric mean of the largest entries (SI) in the row and the column."
-"""The rule by which rounding noise is shown as 0; tables that use it say so."""
+"""Rule for rounding noise as 0, for table notes."""
 
 
 @dataclass(frozen=True, eq=False)
 class Matrix(InNotebook):
-    """A matrix (..., rows, columns) with names on both axes; `unit` is one text, or a text for every entry."""
+    """Matrix (..., rows, columns) with names on both axes; `unit` is one text, or a text for every entry."""
 
     values: Array
     rows: tuple[str, ...]
@@ -25,7 +25,7 @@ class Matrix(InNotebook):
     unit: str | tuple[tuple[str, ...], ...]
 
     def at(self, row: str, column: str) -> Any:
-        """The entry of that row and column name (an array over the batch axes).
+        """Return the entry of a row and a column name (an array over the batch axes).
 
         >>> import numpy as np
         >>> Matrix(np.array([[2.0]]), ("a",), ("b",), "m").at("a", "b").item()
@@ -34,7 +34,7 @@ class Matrix(InNotebook):
         return self.values[..., self.rows.index(row), self.columns.index(column)]
 
     def part(self, rows: tuple[str, ...], columns: tuple[str, ...]) -> Matrix:
-        """The sub-matrix of the named rows and columns."""
+        """Return the sub-matrix of named rows and columns."""
         row_index = [self.rows.index(row) for row in rows]
         column_index = [self.columns.index(column) for column in columns]
         unit = self.unit
@@ -43,7 +43,7 @@ class Matrix(InNotebook):
         return Matrix(self.values[..., row_index, :][..., column_index], rows, columns, unit)
 
     def to_json(self) -> dict[str, Any]:
-        """The matrix as {rows, columns, unit, values}.
+        """Return the matrix as {rows, columns, unit, values}.
 
         >>> import numpy as np
         >>> Matrix(np.array([[2.0]]), ("a",), ("b",), "m").to_json()
@@ -53,13 +53,13 @@ class Matrix(InNotebook):
         return {"rows": list(self.rows), "columns": list(self.columns), "unit": unit, "values": self.values.tolist()}
 
     def to_pandas(self) -> Any:
-        """The matrix as a pandas DataFrame (one design)."""
+        """Return the matrix as a pandas DataFrame (one design)."""
         import pandas
 
         return pandas.DataFrame(self.values, index=list(self.rows), columns=list(self.columns))
 
     def to_xarray(self) -> Any:
-        """The matrix as an xarray DataArray with dimensions `row` and `column` after its batch axes; `unit` is an attribute."""
+        """Return the matrix as an xarray DataArray with dimensions `row` and `column` after its batch axes; `unit` is an attribute."""
         import xarray
 
         batch = tuple(f"batch {number + 1}" for number in range(self.values.ndim - 2))
@@ -67,7 +67,7 @@ class Matrix(InNotebook):
         return xarray.DataArray(self.values, dims=(*batch, "row", "column"), coords=coords, attrs={"unit": self.unit})
 
     def __str__(self) -> str:
-        """A text with names on both sides, units where they belong and six digits; arrays over batch axes are shown by the first design.
+        """Return a text with names, units and six digits; of a batch, the first design.
 
         >>> import numpy as np
         >>> print(Matrix(np.array([[1.0, -0.025]]), ("B1",), ("x", "rx"), (("1", "m/rad"),)))
@@ -85,7 +85,7 @@ class Matrix(InNotebook):
 
     @property
     def unit_places(self) -> tuple[list[str], list[str], list[list[str]]]:
-        """Units of the columns, of the rows and of the entries: each said once, as far out as they are alike."""
+        """Common units of columns, rows and entries: each unit once, at the outermost common level."""
         across, down = len(self.columns), len(self.rows)
         blank = [[""] * across] * down
         if isinstance(self.unit, str):
@@ -102,9 +102,9 @@ def _with(text: str, unit: str, form: str = "{} [{}]") -> str:
 
 
 def quiet(values: Array, against: Array | None = None) -> Array:
-    """A copy of a matrix (rows, columns) in which rounding noise is 0 (`NOISE_RULE`); the argument is not changed.
+    """Return a copy of a matrix (rows, columns) with rounding noise set to 0 (`NOISE_RULE`).
 
-    `against` is the matrix of the same shape whose rows and columns set the scale (absent: the matrix itself).
+    `against` is a matrix of equal shape that determines the scale of rows and columns (default: the matrix).
 
     >>> quiet(np.array([[1.0, 1e-15], [1e-15, 2.0]])).tolist()
     [[1.0, 0.0], [0.0, 2.0]]
@@ -117,7 +117,7 @@ def quiet(values: Array, against: Array | None = None) -> Array:
 
 
 def ratio_units(rows: tuple[str, ...], columns: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
-    """Units of a matrix that takes quantities in the columns' units to quantities in the rows' units.
+    """Return units of a matrix that maps quantities in the columns' units to quantities in the rows' units.
 
     >>> ratio_units(("m",), ("m", "rad"))
     (('1', 'm/rad'),)

@@ -1,4 +1,4 @@
-"""What is imported at first use: names of a package (PEP 562), and modules that few calls of their importer need."""
+"""Lazy import: names of a package (PEP 562), and rarely used modules."""
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
@@ -9,9 +9,9 @@ from flexstage.base.renamed import new_name
 
 
 def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
-    """`__getattr__` and `__dir__` of a package whose names live in the modules that `homes` gives: module below the package -> names.
+    """Return `__getattr__` and `__dir__` of a package with names in the modules of `homes`: module below the package -> names.
 
-    Raises `AttributeError` for other names. No name may be that of a module of the package: an import would put the module in its place.
+    They raise `AttributeError` for other names. A name must not be a module of the package: an import would replace it.
     """
     home = {name: module for module, names in homes.items() for name in names.split()}
 
@@ -27,7 +27,7 @@ def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[s
 
 
 class Late:
-    """A module by its whole name, imported when the first of its names is asked for; type checkers are shown the import itself.
+    """Module by its full name, imported at first use; type checkers see the import.
 
     >>> Late("math").floor(1.5)
     1
@@ -37,5 +37,5 @@ class Late:
         self._module = module
 
     def __getattr__(self, name: str) -> Any:
-        """A name of the module. Raises `AttributeError` for others, and `ImportError` where the module itself is missing."""
+        """Return a name of the module. Raises `AttributeError` for others, and `ImportError` if the module is missing."""
         return getattr(import_module(self._module), name)

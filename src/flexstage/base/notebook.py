@@ -1,4 +1,4 @@
-"""Notebook display: the hook by which `show`, above all values, offers its renderer."""
+"""Notebook display: hook for the renderer of `show`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from flexstage.base.lazy import Late
 
 
 class RenderHook:
-    """The modules that show values, offered by `flexstage` itself when it is imported and loaded when a value is shown.
+    """Display modules, registered at import of `flexstage` and loaded at first display.
 
     `tables` has `to_html(value)` and `to_text(value)`, `views` has `view(mechanism, *, motion)`.
     """
@@ -36,7 +36,7 @@ class InNotebook:
 
 @dataclass_transform(eq_default=False, frozen_default=True, field_specifiers=(field,))
 class Result(InNotebook):
-    """Base of results: its subclasses are frozen dataclasses, equal to themselves alone, that notebooks show.
+    """Base of results: frozen dataclasses, compared by identity, with notebook display.
 
     >>> class Speed(Result):
     ...     value: float

@@ -1,4 +1,4 @@
-"""Numbers of a description: a float, or a read-only array whose axes are batch axes."""
+"""Numbers of a description: a float, or a read-only array of batch axes."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 Number: TypeAlias = float | NDArray[np.float64]
-"""A physical value: one design (float) or a batch (array). During differentiation it may be complex."""
+"""Physical value: one design (float) or a batch (array); complex for differentiation."""
 
 Array: TypeAlias = NDArray[Any]
-"""A real or complex array, leading axes are batch axes."""
+"""Real or complex array with leading batch axes."""
 
 Vector: TypeAlias = tuple[Number, Number, Number]
-"""Three numbers, the components x, y, z."""
+"""Vector of components x, y, z."""
 
 
 class Table(Mapping[str, Any]):
-    """An immutable mapping from names to values that keeps its order and can be pickled.
+    """Immutable, ordered, picklable mapping from names to values.
 
     >>> Table({"a": 1})["a"]
     1
@@ -30,7 +30,7 @@ class Table(Mapping[str, Any]):
     def __init__(self, items: Mapping[str, Any], rule: object = None) -> None:
         self._items = {name: freeze(value) for name, value in items.items()}
         self.rule = rule
-        """The rule that all values were found to follow, so that copies of a description need not apply it again."""
+        """Rule that all values satisfy, so that copies of a description skip it."""
 
     def __reduce__(self) -> tuple[type[Table], tuple[dict[str, Any]]]:
         return Table, (self._items,)
@@ -103,7 +103,7 @@ def _depth(values: Any) -> int:
 
 
 def magnitude(value: Any) -> Any:
-    """|x| as derivatives by complex step pass through it: x or -x, told by the real part.
+    """Return |x|, valid for complex-step derivatives: x or -x by the sign of the real part.
 
     >>> magnitude(np.array([-2.0 + 1e-20j])).tolist()
     [(2-1e-20j)]
@@ -112,9 +112,9 @@ def magnitude(value: Any) -> Any:
 
 
 def with_step(value: Array, slope: Array, number: Array) -> Array:
-    """f(x + ih) = f(x) + ih f'(x) of a number with a step, which is so small that no more counts, from f and f' at its real part.
+    """Return f(x + ih) = f(x) + ih f'(x) for a complex step, from f and f' at the real part.
 
-    Complex functions beyond products take many times as long.
+    Faster than complex functions.
 
     >>> number = np.array([0.5 + 1e-20j])
     >>> bool(with_step(np.sin(number.real), np.cos(number.real), number) == np.sin(number))
@@ -124,7 +124,7 @@ def with_step(value: Array, slope: Array, number: Array) -> Array:
 
 
 def first_design(values: Array, axes: int) -> Array:
-    """The first design of a batch: the last `axes` axes at index 0 of all leading ones.
+    """Return the first design of a batch: the last `axes` axes at index 0 of all leading ones.
 
     >>> first_design(np.array([[1.0, 2.0], [3.0, 4.0]]), 1).tolist()
     [1.0, 2.0]
@@ -136,9 +136,9 @@ _ALIKE = 1e-9
 
 
 def index_of_largest(values: Array, slack: Array | float = 0.0) -> Array:
-    """Index of the largest real value along the last axis; of those within a billionth of it, or within `slack`, the first.
+    """Return the index of the largest real value along the last axis; of equal ones (within 1e-9 or `slack`), the first.
 
-    So a tie of what is alike is broken by its order, not by rounding.
+    Ties are thus broken by order, not by rounding.
 
     >>> int(index_of_largest(np.array([1.0, 3.0 - 1e-15, 3.0])))
     1
@@ -149,7 +149,7 @@ def index_of_largest(values: Array, slack: Array | float = 0.0) -> Array:
 
 
 def argsort_descending(values: Array, alike: float = _ALIKE) -> list[int]:
-    """Indices from the largest value to the smallest; values that are `alike`, by that share of the largest, stay in their order.
+    """Return indices in descending order; values equal within `alike` (relative to the largest) keep their order.
 
     >>> argsort_descending(np.array([1.0, 3.0 - 1e-15, 3.0]))
     [1, 2, 0]
@@ -163,7 +163,7 @@ def argsort_descending(values: Array, alike: float = _ALIKE) -> list[int]:
 
 
 def distinct_values(values: Array) -> Array:
-    """Values above 0 in ascending order, each once: of those within a billionth of one another, the least.
+    """Return distinct values above 0 in ascending order: of values within 1e-9 of one another, the least.
 
     >>> distinct_values(np.array([2.0, 1.0, 2.0 + 1e-12])).tolist()
     [1.0, 2.0]

@@ -1,9 +1,9 @@
-"""Records: results whose annotated fields say what they hold; one walker reads them for documents, tables and their description.
+"""Records: results with annotated fields, read by one walker for documents, tables and their description.
 
-A field is told under its name, a number in its SI unit, which stands in the key: `natural: Annotated[Array, FREQUENCY]` is `natural_hz`.
-An array whose last axis has the names in a field beside it, `Annotated[Array, LENGTH, Along("actuators")]`, is told name by name. A
-property is told where its type is annotated: with a quantity, or as a `VIEW`. Bare arrays are for arithmetic and not told, neither is
-what is `INNER` nor a description. What a result does not have is None, and its `reasons` say why, by field.
+The key of a field is its name, for a number with its SI unit: `natural: Annotated[Array, FREQUENCY]` is `natural_hz`. An array with the
+names of its last axis in another field, `Annotated[Array, LENGTH, Along("actuators")]`, is written name by name. A property is included if
+its type is annotated with a quantity or `VIEW`. Bare arrays, `INNER` fields and descriptions are omitted. Absent values are None, with
+`reasons` by field.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _Kind = TypeVar("_Kind")
 
 
 class Walked(Enum):
-    """Whether a field is told, where its type alone does not say."""
+    """Inclusion of a field, independent of its type."""
 
     VIEW = True
     INNER = False
@@ -39,14 +39,14 @@ VIEW, INNER = Walked.VIEW, Walked.INNER
 
 @dataclass(frozen=True)
 class Along:
-    """The last axis of an array has the names in a field beside it."""
+    """Name field of the last axis of an array."""
 
     names: str
 
 
 @dataclass(frozen=True, init=False)
 class Axes:
-    """The last axes of an array stand along fields beside it, of names or numbers; a document tells it as it is."""
+    """Fields (names or numbers) of the last axes of an array; a document contains the array unchanged."""
 
     fields: tuple[str, ...]
 
@@ -56,27 +56,27 @@ class Axes:
 
 @dataclass(frozen=True)
 class UnitOf:
-    """Numbers by name, of which each has the SI unit of its name."""
+    """Numbers by name, each with the SI unit of its name."""
 
     unit: Callable[[str], str]
 
 
 @dataclass(frozen=True)
 class UnitIn:
-    """Numbers of which each has the SI unit in a field beside it; tables show it."""
+    """Numbers with SI units in another field, shown in tables."""
 
     field: str
 
 
 @dataclass(frozen=True)
 class Called:
-    """The key where the field has a symbol that is no name in Python, as R_a."""
+    """Key of a field with a symbol that is not a Python name, e.g. R_a."""
 
     key: str
 
 
 class Mark(Enum):
-    """What a cell means besides its text; a renderer shows it by colour, weight or a sign."""
+    """Meaning of a cell, shown by colour, weight or a sign."""
 
     PLAIN = "plain"
     STRONG = "strong"
@@ -91,14 +91,14 @@ class Mark(Enum):
 
 @dataclass(frozen=True)
 class Graded:
-    """Grades a number: `best` up to the size `good`, a warning up to `poor`, failed beyond; where `good` exceeds `poor`, more is better."""
+    """Grades of a number: `best` up to the size `good`, warning up to `poor`, failed beyond; if `good` exceeds `poor`, more is better."""
 
     good: float
     poor: float = np.inf
     best: Mark = Mark.PASS
 
     def __call__(self, value: float) -> Mark:
-        """The grade; an unknown number fails.
+        """Return the grade; an unknown number fails.
 
         >>> [Graded(0.02, 0.1)(value).value for value in (-0.01, 0.05, -0.2)]
         ['pass', 'warn', 'fail']
@@ -111,11 +111,11 @@ class Graded:
 
 @dataclass(frozen=True)
 class Heading:
-    """How tables show a field where its name and its quantity do not say it.
+    """Table format of a field, in addition to its name and quantity.
 
-    `text` stands over the column (absent: the name in words). `digits` are significant ones of each number (absent: decimals are
-    aligned). `unit` is the display unit (absent: that of the quantity); a ratio may be shown in `%`. `varying`: each number has the unit
-    that suits it. `infinite` is the word for an infinite value, `absent` for an absent one. `mark` grades a value.
+    `text` is the column heading (default: the name in words). `digits` are significant ones of each number (default: aligned decimals).
+    `unit` is the display unit (default: that of the quantity); a ratio may be in `%`. `varying`: each number has a suitable unit.
+    `infinite` is the word for an infinite value, `absent` for an absent one. `mark` grades a value.
     """
 
     text: str = ""
@@ -129,11 +129,11 @@ class Heading:
 
 @dataclass(frozen=True)
 class Layout:
-    """The table of a result class, its `TABLE`: title, fields in their order (absent: all that a cell holds), head over names, notes.
+    """Table of a result class, its `TABLE`: title, fields in order (default: all that fit a cell), head over names, notes.
 
-    Fields may be paths (`requirement.key`) and `INNER`; of a labelled matrix, its columns are shown; fields without a value in any row are
-    left out. Title and notes may hold attributes of the result, as `{self.point}`: of several results a title those of the first, notes by
-    name those of each where they differ. A result adds notes that depend on its values by a property `notes`.
+    Fields may be paths (`requirement.key`) and `INNER`; a labelled matrix is shown by columns; fields without any value are omitted. Title
+    and notes may have attributes of the result, as `{self.point}`. For several results, the title uses the first one; different notes are
+    listed by name. A property `notes` of the result adds notes on its values.
     """
 
     title: str
@@ -144,7 +144,7 @@ class Layout:
 
 @dataclass(frozen=True)
 class Field:
-    """What is told of a result: its name, type, annotations, and the first line that explains it."""
+    """Field of a result: name, type, annotations, and the first line of its explanation."""
 
     name: str
     type: Any
@@ -153,7 +153,7 @@ class Field:
 
     @property
     def key(self) -> str:
-        """The name with the unit.
+        """Name with the unit.
 
         >>> from flexstage.base.units.quantity import STIFFNESS
         >>> Field("axial", float, (STIFFNESS,)).key
@@ -164,13 +164,13 @@ class Field:
 
     @property
     def unit(self) -> str:
-        """The SI unit, `1` of what has none."""
+        """SI unit; `1` without one."""
         quantity = self.annotation(Quantity)
         return quantity.si if quantity else "1"
 
     @property
     def heading(self) -> Heading:
-        """How tables show it.
+        """Table format.
 
         >>> Field("blocking_force", float, (Heading(digits=4),)).heading
         Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf', absent='', mark=None)
@@ -180,22 +180,22 @@ class Field:
 
     @property
     def words(self) -> str:
-        """Its name, or what it is called, in words."""
+        """Name in words."""
         called = self.annotation(Called)
         return (called.key if called else self.name).replace("_", " ")
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """The fields that its last axes stand along."""
+        """Fields of its last axes."""
         axes = self.annotation(Axes)
         return axes.fields if axes else (self.along,) if self.along else ()
 
     def annotation(self, kind: type[_Kind]) -> _Kind | None:
-        """The annotation of a kind, a quantity or a bound for example."""
+        """Return the annotation of a kind, e.g. a quantity or a bound."""
         return next((each for each in self.annotations if isinstance(each, kind)), None)
 
     def of(self, record: Any) -> Any:
-        """Its value."""
+        """Return its value."""
         value = getattr(record, self.name)
         by_name = self.annotation(UnitOf)
         return (
@@ -206,13 +206,13 @@ class Field:
 
     @property
     def along(self) -> str | None:
-        """The field with the names of its last axis."""
+        """Field with the names of its last axis."""
         along = self.annotation(Along)
         return along.names if along else None
 
 
 def key_with_unit(name: str, unit: str) -> str:
-    """A name with a unit behind it.
+    """Return a name followed by a unit.
 
     >>> key_with_unit("gain", "m/V"), key_with_unit("gain", "1"), key_with_unit("mass_factor", "1/s")
     ('gain_m_per_v', 'gain', 'mass_factor_per_s')
@@ -225,7 +225,7 @@ def key_with_unit(name: str, unit: str) -> str:
 
 @functools.cache
 def result_fields(kind: type) -> Mapping[str, Field]:
-    """All fields of results of that class by name, then its properties; also those that only tables show."""
+    """Return all fields of a result class by name, then its properties; including table-only ones."""
     hints = get_type_hints(kind, include_extras=True)
     own = [(each.name, hints[each.name], "") for each in fields(kind)]
     return {name: Field(name, *_unwrap(hint), doc) for name, hint, doc in (*own, *_properties(kind))}
@@ -233,7 +233,7 @@ def result_fields(kind: type) -> Mapping[str, Field]:
 
 @functools.cache
 def walked_fields(kind: type) -> tuple[Field, ...]:
-    """The fields of results of that class that documents hold: fields, then annotated properties."""
+    """Return the document fields of a result class: fields, then annotated properties."""
     own = {each.name for each in fields(kind)}
     found = {name: each for name, each in result_fields(kind).items() if name != "reasons"}
     return tuple(
@@ -244,9 +244,9 @@ def walked_fields(kind: type) -> tuple[Field, ...]:
 
 
 def field_of(kind: type, path: str) -> Field:
-    """A field of results of that class by its name, or by its path through results within it.
+    """Return a field of a result class by its name, or by its path through nested results.
 
-    Within a field it has that one's quantity and heading, if none of its own.
+    A nested field inherits quantity and heading by default.
 
     >>> field_of(Field, "heading.digits").heading.text
     'digits'
@@ -262,7 +262,7 @@ def field_of(kind: type, path: str) -> Field:
 
 
 def field_at(record: Any, path: str) -> tuple[Field, Any]:
-    """A field of a result as `field_of` finds it, and its value; None where it, or a result on the path, is absent.
+    """Return a field of a result as `field_of`, and its value; None if it or a result on the path is absent.
 
     >>> field_at(Field("mass", float, ()), "heading.text")[1]
     'mass'
@@ -285,7 +285,7 @@ def _is_walked(kind: Any, annotations: tuple[Any, ...]) -> bool:
 
 
 def _parts(kind: Any) -> Iterator[Any]:
-    """A type and those that it is made of."""
+    """A type and its component types."""
     yield kind
     if kind != Array:
         for part in get_args(kind):
@@ -301,7 +301,7 @@ def _properties(kind: type) -> Iterator[tuple[str, Any, str]]:
 
 
 def walk(record: Any) -> dict[str, Any]:
-    """What is told of a result, one level deep, and the `reasons` for what is absent."""
+    """Return the fields of a result, one level deep, and the `reasons` for absent values."""
     values, reasons = values_of(record)
     named, found = {each.along for each in values}, dict[str, Any]()
     for each, value in values.items():
@@ -316,15 +316,15 @@ def walk(record: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class SideBySide:
-    """Results, or mappings with results in them, that stand in one document side by side."""
+    """Several results, or mappings of results, in one document."""
 
     results: tuple[Any, ...]
 
 
 def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
-    """The fields that are told of a result with their values, and why values are absent, by the field's name.
+    """Return the document fields of a result with values, and the reasons for absent values by field name.
 
-    Keys of a mapping are fields without annotations, but for its `reasons`.
+    Keys of a mapping are fields without annotations, except for its `reasons`.
     """
     if isinstance(record, SideBySide):
         values, why = dict[Field, Any](), dict[str, str]()
@@ -344,14 +344,14 @@ def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
 
 
 def by_name(value: Any) -> Any:
-    """The values of a field along names, a name each."""
+    """Return the values of a field along names, one per name."""
     return np.moveaxis(value, -1, 0) if isinstance(value, np.ndarray) else value
 
 
 def paths(kind: type, before: str = "") -> Iterator[tuple[str, str, str]]:
-    """Where everything that is told of results of that class stands in a document, what it is, and what it says of itself.
+    """Yield path, kind and explanation of all document fields of a result class.
 
-    A result within the result says itself what its fields mean.
+    A nested result explains its own fields.
     """
     kinds = walked_fields(kind)
     named = {each.along for each in kinds}
@@ -388,5 +388,5 @@ def _word(kind: Any) -> str:
 
 
 def explanation(kind: type) -> str:
-    """The docstring of a class as one line, without its example."""
+    """Return the docstring of a class as one line, without its example."""
     return " ".join((inspect.getdoc(kind) or "").partition(">>>")[0].split())

@@ -1,4 +1,4 @@
-"""Registers: what a floor knows of each kind of thing. Its own kinds it states itself; other packages offer theirs by entry points."""
+"""Registers of kinds: own kinds of a layer, and kinds of other packages by entry points."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from flexstage.base.finding import refuse
 
 PREFIX = "flexstage."
 GROUPS = tuple(f"{PREFIX}{name}" for name in ("parts", "laws", "shapes", "gauges", "measures", "formats", "controllers", "amplifiers"))
-"""Groups of entry points by which packages offer what they add, a group a register."""
+"""Entry-point groups for additions by packages, one per register."""
 Entry = TypeVar("Entry")
 
 
 @dataclass(frozen=True)
 class Register(Generic[Entry]):
-    """Entries by kind: the floor's `own`, and those that installed packages offer in the entry-point `group`, loaded when asked for.
+    """Entries by kind: `own` ones, and those of installed packages in the entry-point `group`, loaded on first use.
 
-    A kind without an entry is unknown there, which is for who asks to say. Processes that are started later load the same packages.
+    The caller reports unknown kinds. Processes started later load the same packages.
     """
 
     group: str
     own: Mapping[str, Entry]
 
     def __iter__(self) -> Iterator[str]:
-        """All kinds, the floor's own first."""
+        """Iterate over all kinds, own ones first."""
         yield from self.own
         yield from dict.fromkeys(offer.name for offer in _offered(self.group) if offer.name not in self.own)
 
     def get(self, kind: str) -> Entry | None:
-        """The entry of a kind; `None` where there is none. Raises `DesignError` for one that cannot be loaded, or is offered twice.
+        """Return the entry of a kind; `None` if there is none. Raises `DesignError` for an unloadable or duplicate one.
 
         >>> Register("flexstage.nothing", {"leaf": 1.0}).get("leaf")
         1.0
@@ -44,20 +44,20 @@ class Register(Generic[Entry]):
         return self.own[kind] if kind in self.own else _load(offers[0]) if offers else None
 
     def offer(self, kind: str) -> str:
-        """Name and version of the package that offers a kind; empty for the floor's own."""
+        """Return name and version of the package of a kind; empty for own kinds."""
         return ", ".join(_distribution(offer) for offer in _offered(self.group) if offer.name == kind)
 
     @property
     def all(self) -> dict[str, Entry]:
-        """Every entry by kind."""
+        """Return every entry by kind."""
         found = {kind: self.get(kind) for kind in self}
         return {kind: entry for kind, entry in found.items() if entry is not None}
 
 
 def origin(module: str) -> str:
-    """Name and version of the installed package that offers what stands in a module; empty for flexstage's own and for scripts.
+    """Return name and version of the installed package of a module; empty for flexstage and scripts.
 
-    It is part of digests: what a class of another package computes may change with its version.
+    Part of digests: results of a class may change with its package's version.
 
     >>> origin("flexstage.parts.leaf")
     ''
@@ -66,7 +66,7 @@ def origin(module: str) -> str:
 
 
 def offered_packages() -> tuple[str, ...]:
-    """Names and versions of all installed packages that offer something, sorted."""
+    """Return names and versions of all installed packages with entries, sorted."""
     return tuple(sorted({_distribution(offer) for group in GROUPS for offer in _offered(group)}))
 
 
@@ -83,7 +83,7 @@ def _offered(group: str) -> tuple[EntryPoint, ...]:
 
 @functools.cache
 def _known_offers() -> Mapping[str, tuple[EntryPoint, ...]]:
-    """What packages offer to all registers, read once: every installed package has a file of its own."""
+    """Entry points of all registers, cached: every installed package has a separate file."""
     found = entry_points()
     return {group: tuple(found.select(group=group)) for group in GROUPS}
 

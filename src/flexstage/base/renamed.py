@@ -1,4 +1,4 @@
-"""Names of options, keys and Python objects before the first release, with the names that replaced them: refused with the new name."""
+"""Old names of options, keys and Python objects, refused with the new name."""
 
 from collections.abc import Collection
 
@@ -27,11 +27,11 @@ Tap InputSignal            Recorded InputQuantity      load_wanted load_optimisa
 """
 _WORDS = iter(_TEXT.split())
 RENAMED = tuple(zip(_WORDS, _WORDS, strict=True))
-"""Pairs of an old and a new name; an old name may have several, one a command or file."""
+"""Pairs of an old and a new name; an old name may have several, one per command or file."""
 
 
 def new_name(old: str, known: Collection[str]) -> str | None:
-    """Return the name that replaced `old` among the `known` ones; `None` where there is none, or where `old` is itself known.
+    """Return the name that replaced `old` among the `known` ones; `None` without one, or if `old` is known.
 
     >>> new_name("mode_limit", ["name", "max_mode_frequency"]), new_name("by", ["by", "method"])
     ('max_mode_frequency', None)

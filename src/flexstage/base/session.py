@@ -1,6 +1,6 @@
-"""The session: results that functions keep for later calls in this process; they can be listed and cleared.
+"""Session cache: results of functions for later calls in this process; can be listed and cleared.
 
-Results of pure functions of small constants stay with `functools.lru_cache`: they are part of the program, not of what it computed.
+Pure functions of small constants use `functools.lru_cache` instead.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 class Session:
-    """Results kept by function, the least recently used dropped first."""
+    """Results cached by function, least recently used dropped first."""
 
     def __init__(self) -> None:
         self._kept: dict[str, Any] = {}
 
     def keep(self, most: int) -> Callable[[_Function], _Function]:
-        """Decorate a pure function of hashable values: its last results, `most` at most, are kept.
+        """Decorate a pure function of hashable values to cache its last results, `most` at most.
 
         >>> session = Session()
         >>> half = session.keep(2)(lambda value: value / 2)
@@ -38,15 +38,15 @@ class Session:
         return kept
 
     def held(self) -> dict[str, int]:
-        """Number of results kept, by function."""
+        """Return the number of cached results by function."""
         counts = {name: each.cache_info().currsize for name, each in self._kept.items()}
         return {name: count for name, count in counts.items() if count}
 
     def clear(self) -> None:
-        """Drop all results kept."""
+        """Clear all results."""
         for each in self._kept.values():
             each.cache_clear()
 
 
 SESSION = Session()
-"""That of this process."""
+"""Session of this process."""

@@ -1,4 +1,4 @@
-"""Matrices without their zeros: rows of large stages that are zero but in few columns, and what is made of them."""
+"""Sparse matrices: rows with few nonzero columns, and operations on them."""
 
 from __future__ import annotations
 
@@ -15,10 +15,9 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Sparse:
-    """A real matrix (r, n) that is zero but in few `columns` (c,), where it is `values` (r, c); columns named twice add up.
+    """Real matrix (r, n) with few nonzero `columns` (c,) of `values` (r, c); repeated columns add up.
 
-    It stands where an operator (r, n) does: products with arrays are arrays, and whatever else numpy does with it, it does with the
-    dense matrix.
+    It replaces an operator (r, n): products with arrays are arrays; other numpy functions use the dense matrix.
 
     >>> import numpy as np
     >>> rows = Sparse(np.array([2]), np.array([[3.0]]), 4)
@@ -41,7 +40,7 @@ class Sparse:
 
     @property
     def dtype(self) -> Any:
-        """That of the values."""
+        """Type of the values."""
         return self.values.dtype
 
     @property
@@ -68,7 +67,7 @@ class Sparse:
         return Sparse(self.columns, np.real(factor) * self.values, self.size)
 
     def __getitem__(self, index: Any) -> Any:
-        """Some of the rows, `[..., rows, :]`, of this kind; any other part of it dense."""
+        """Rows `[..., rows, :]` as a sparse matrix; any other part dense."""
         if index == ():
             return self
         if isinstance(index, tuple) and len(index) == 3 and index[0] is ... and isinstance(index[2], slice) and index[2] == slice(None):
@@ -76,12 +75,12 @@ class Sparse:
         return np.asarray(self)[index]
 
     def swapaxes(self, first: int, second: int) -> Array:
-        """The dense transpose."""
+        """Dense transpose."""
         return np.swapaxes(np.asarray(self), first, second)
 
 
 def few(matrix: Array | Sparse) -> Sparse:
-    """A real matrix (r, n) without its empty columns.
+    """Return a real matrix (r, n) without empty columns.
 
     >>> import numpy as np
     >>> few(np.array([[0.0, 2.0, 0.0]])).columns.tolist()
@@ -94,7 +93,7 @@ def few(matrix: Array | Sparse) -> Sparse:
 
 
 def below(rows: Iterable[Sparse], size: int) -> Sparse:
-    """Several one below the other.
+    """Stack several matrices vertically.
 
     >>> import numpy as np
     >>> one = Sparse(np.array([1]), np.array([[3.0]]), 2)
@@ -113,7 +112,7 @@ def below(rows: Iterable[Sparse], size: int) -> Sparse:
 
 
 def as_csr(rows: Iterable[Sparse], size: int) -> Any:
-    """Many one below the other, as one `scipy.sparse.csr_array` (R, size)."""
+    """Stack many matrices vertically as one `scipy.sparse.csr_array` (R, size)."""
     parts = list(rows)
     data = np.concatenate([part.values.ravel() for part in parts]) if parts else np.zeros(0)
     columns = [np.broadcast_to(part.columns, part.values.shape).ravel() for part in parts]
@@ -125,7 +124,7 @@ def as_csr(rows: Iterable[Sparse], size: int) -> Any:
 
 
 def block_diagonal(blocks: Iterable[Array]) -> Any:
-    """Square blocks along the diagonal, as one `scipy.sparse.csr_array`.
+    """Return a block-diagonal matrix as one `scipy.sparse.csr_array`.
 
     >>> block_diagonal([np.eye(1), 2.0 * np.eye(2)]).toarray().diagonal().tolist()
     [1.0, 2.0, 2.0]
@@ -138,7 +137,7 @@ def block_diagonal(blocks: Iterable[Array]) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """A tall matrix (p, n) by its nonzero entries: it stands where an output matrix does, and gives the rows asked for dense.
+    """Tall matrix (p, n) by its nonzero entries: an output matrix with dense requested rows.
 
     >>> import numpy as np
     >>> tall = Rows.of([Sparse(np.array([2]), np.array([[3.0]]), 4)], 4)
@@ -154,7 +153,7 @@ class Rows:
 
     @staticmethod
     def of(rows: Iterable[Sparse], size: int) -> Rows:
-        """Those one below the other."""
+        """Stack matrices vertically."""
         return Rows(as_csr(rows, size))
 
     @property
@@ -163,7 +162,7 @@ class Rows:
         return self.entries.shape
 
     def few(self, first: int, count: int) -> Sparse:
-        """So many rows from one on, without their empty columns."""
+        """Return consecutive rows without empty columns."""
         starts = self.entries.indptr[first : first + count + 1]
         own = self.entries.indices[starts[0] : starts[-1]]
         columns = np.unique(own)
@@ -174,7 +173,7 @@ class Rows:
 
     @cached_property
     def dtype(self) -> Any:
-        """That of the entries."""
+        """Type of the entries."""
         return self.entries.dtype
 
     @property
@@ -197,5 +196,5 @@ class Rows:
         return np.asarray(self)[index]
 
     def swapaxes(self, first: int, second: int) -> Array:
-        """The dense transpose."""
+        """Dense transpose."""
         return np.swapaxes(np.asarray(self), first, second)

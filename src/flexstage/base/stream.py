@@ -1,4 +1,4 @@
-"""Random numbers by seed and key: any stream, in any order, is always the same."""
+"""Reproducible random streams by seed and key, in any order."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def generator(seed: int, *key: int) -> np.random.Generator:
-    """The generator of a stream: the same seed and key give the same numbers, other keys independent ones.
+    """Return the generator of a stream: equal seed and key give equal numbers, other keys independent ones.
 
     >>> first, again, other = (generator(7, *key).standard_normal() for key in ((1, 0), (1, 0), (1, 1)))
     >>> first == again, first == other

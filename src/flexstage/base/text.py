@@ -1,4 +1,4 @@
-"""How text that others wrote is shown: what would steer a terminal, a reader's eye or a parser stands as its escape."""
+"""Safe display of foreign text: terminal controls and invisible characters are escaped."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _STEERING = re.compile(f"[{_CONTROLS}{_DIRECTIONS}{_UNSEEN}{_TAGS}{_NO_CHARACTER
 
 
 def printable(text: str, keep: str = "") -> str:
-    r"""Text in which control characters, bidirectional overrides, invisible formats, line separators and lone surrogates are escaped.
+    r"""Escape control characters, bidirectional overrides, invisible formats, line separators and lone surrogates.
 
-    Each stands as Python writes it (`\x1b`, `\u202e`), so that it is seen and two names do not become one; so do U+FFFE, U+FFFF and their
-    like, which XML forbids. Letters, marks and spaces of any script stay, and what is in `keep` ("\n" for text of several lines).
+    Escapes are as in Python (`\x1b`, `\u202e`), visible and unambiguous; also for U+FFFE, U+FFFF and other characters that XML forbids.
+    Letters, marks and spaces of any script are unchanged, as is `keep` ("\n" for text of several lines).
 
     >>> printable("a\x1b[31m\u202e b\u00e9\n"), printable("two\nlines", keep="\n")
     ('a\\x1b[31m\\u202e bé\\n', 'two\nlines')
@@ -24,6 +24,6 @@ def printable(text: str, keep: str = "") -> str:
     rest = text
     for sign in keep:
         rest = rest.replace(sign, "")
-    if rest.isprintable():  # most texts are: a twentieth of the search
+    if rest.isprintable():  # fast path for most texts
         return text
     return _STEERING.sub(lambda found: found[0] if found[0] in keep else found[0].encode("unicode_escape").decode("ascii"), text)

@@ -1,3 +1,3 @@
-"""The version of flexstage, which every layer may import."""
+"""Version of flexstage, importable by every layer."""
 
 __version__ = "0.2.0"

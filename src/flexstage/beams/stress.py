@@ -12,6 +12,12 @@ from flexstage.beams.compliance import beam_of, law_of
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, inner
 
+FACES = ("faces +-y", "faces +-z", "whole section", "shear and torsion")
+"""Place in the section of the largest stress of M_z, M_y, N, and of shear force and torque."""
+_ALONE: Array = np.array([[0.0, 1, 0, 0, 0, 1], [0, 0, 1, 0, 1, 0], [1, 0, 0, 0, 0, 0]])
+"""Components of the wrench that make M_z, M_y and N."""
+_ALIKE = 1e-9
+
 
 @dataclass(frozen=True, eq=False)
 class Stress:
@@ -71,6 +77,28 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     where = np.argmax(equivalent, axis=-1)[..., None]
     nominal = np.take_along_axis(equivalent, where, axis=-1)[..., 0]
     return Stress(nominal, np.take_along_axis(position, where, axis=-1)[..., 0], np.asarray(factor))
+
+
+def stressed_place(part: Part, material: Material | None, wrench: Array) -> tuple[Array, Array]:
+    """Place of the largest stress of one part under wrenches (k, 6): end (-1 first, 0 neither, 1 second), index in `FACES`.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
+    >>> leaf = Leaf("steel", length=0.05, thickness=0.001, width=0.01)
+    >>> end, face = stressed_place(leaf, steel, np.array([[0.0, 1.0, 0.0, 0.0, 0.0, 0.025]]))  # cantilever: M = 0 at its second end
+    >>> end.item(), FACES[face.item()]
+    (-1, 'faces +-y')
+    """
+    beam, load = beam_of(inner(part), material), np.moveaxis(wrench, -1, 0)[..., None, None]
+    position = np.stack([-beam.points.position, beam.points.position], axis=-2)
+    shear = np.sqrt(3.0) * _tangential(beam, load)
+    alone = [_normal(beam, position, load * each[:, None, None, None]) for each in _ALONE]
+    whole = np.sqrt(_normal(beam, position, load) ** 2 + shear**2)
+    size = (len(wrench), *np.broadcast_shapes(position.shape, whole.shape)[-2:])
+    whole, position, *parts = (np.broadcast_to(each, size).reshape(len(wrench), -1) for each in (whole, position, *alone, shear))
+    where = np.argmax(whole >= (1.0 - _ALIKE) * np.max(whole, axis=-1, keepdims=True), axis=-1)[:, None]
+    x, *there = (np.take_along_axis(each, where, axis=-1)[:, 0] for each in (position, *parts))
+    return np.where(np.abs(x) < 0.5 * np.max(position), 0, np.sign(x)).astype(int), np.argmax(np.stack(there), axis=0)
 
 
 def _normal(beam: Beam, position: Array, load: Array) -> Array:

@@ -1,4 +1,4 @@
-"""A shipped case: the description in its design file, some of its parameters stated otherwise, and the file that a user starts from."""
+"""A shipped case: the description in its design file, with changed parameters, and the initial file for a user."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ FILES = Path(__file__).parent / "files"
 
 @dataclass(frozen=True)
 class Case:
-    """A shipped case in the design file of its `name`, and what it is, in one line."""
+    """A shipped case in the design file of its `name`, and a one-line summary."""
 
     name: str
     summary: str
 
     def build(self, stated: Mapping[str, Stated] | None = None) -> Mechanism:
-        """The description with some parameters `stated` otherwise: texts with units, or SI numbers; arrays make it a batch.
+        """Build the description with some `stated` parameters: texts with units, or SI numbers; arrays make it a batch.
 
-        Tags of numbers that come out otherwise are dropped: their source no longer says them.
+        Tags of changed numbers are removed: their source does not contain the new values.
 
         >>> from flexstage.cases.registry import CASES
         >>> CASES["hexapod"].build({"slope": "50 deg"}).name
@@ -34,7 +34,7 @@ class Case:
         return with_parameters(_description(self.name), stated or {})
 
     def text(self, stated: Mapping[str, Stated], heading: str) -> str:
-        """The design file, its comments included, with some parameters `stated` otherwise, under a `heading` of its own."""
+        """The design file with comments, with some `stated` parameters, under a new `heading`."""
         own = {PREFIX + parameter(_description(self.name), name).name: value for name, value in stated.items()}
         text = file_text(self.name)
         head = "".join(f"# {line}".rstrip() + "\n" for line in heading.splitlines())

@@ -1,4 +1,4 @@
-"""Parameters of a case: the named numbers of its file that are no formulas, and the stage in which some are others."""
+"""Parameters of a case: the named numbers of its file without formulas, and the stage with changed ones."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from flexstage.mechanism.grammar.node import NumberNode
 from flexstage.mechanism.mechanism import Mechanism
 
 Stated: TypeAlias = str | float | Array
-"""A parameter as a user gives it: a text with its unit, or a number or an array of numbers in SI."""
+"""A parameter of a user: a text with its unit, or a number or an array of numbers in SI."""
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a case: its name, its quantity, and its `value` unless another is stated [SI]."""
+    """A parameter of a case: its name, its quantity, and its default `value` [SI]."""
 
     name: str
     quantity: Quantity
@@ -30,7 +30,7 @@ class Parameter:
 
     @property
     def text(self) -> str:
-        """Its value as a person writes it."""
+        """Its value as in a design file."""
         return show(self.value, self.quantity, digits=12)
 
 
@@ -54,14 +54,14 @@ def parameter(stage: Mechanism, name: str, where: str = "") -> Parameter:
     """
     known = parameters(stage)
     if name not in known:
-        raise refuse(where or name, f'there is no parameter "{name}"', suggest_nearest(name, known))
+        raise refuse(where or name, f'unknown parameter "{name}"', suggest_nearest(name, known))
     return known[name]
 
 
 def with_parameters(stage: Mechanism, stated: Mapping[str, Stated], where: str = "parameters") -> Mechanism:
-    """The case in which the parameters named are `stated`: texts with units, numbers or arrays in SI; its formulas follow.
+    """The case with the `stated` parameters: texts with units, numbers or arrays in SI; its formulas are re-evaluated.
 
-    Raises `DesignError` with all findings: unknown names, wrong units, values out of bounds.
+    Raises `DesignError` with all errors: unknown names, wrong units, values out of bounds.
 
     >>> from flexstage.cases.registry import case
     >>> with_parameters(case("double-triangle"), {"long_arm": "80 mm"}).units["vertical"].links["front"].at[0]

@@ -49,11 +49,11 @@ CASES: Mapping[str, Case] = {name: Case(name, line) for name, line in _SUMMARIES
 
 @check_arguments
 def case(name: str, parameters: Mapping[str, Stated] | None = None) -> Mechanism:
-    """The description of a shipped case, its numbers as a file shows them; with some of its `parameters` stated otherwise.
+    """The description of a shipped case, its numbers as a file shows them; with some changed `parameters`.
 
-    A parameter is named as `flexstage new --list-parameters` lists it, and is a text with its unit, or a number in SI. Arrays make
-    the description a batch. Numbers that do not vary are rounded to twelve digits. Raises `DesignError` with the nearest name where there
-    is no case or no parameter of this name, and for values that cannot be.
+    A parameter is named as in `flexstage new --list-parameters`, and is a text with its unit, or a number in SI. Arrays make
+    the description a batch. Constant numbers are rounded to twelve digits. Raises `DesignError` with the nearest name for an unknown
+    case or parameter, and for invalid values.
 
     >>> import numpy as np
     >>> case("hexapod", {"slope": "50 deg", "neck_thickness": np.array([2.5e-3, 3e-3])}).parts["neck"].thickness.tolist()
@@ -68,13 +68,13 @@ def _as_shipped(name: str) -> Mechanism:
 
 
 def shipped_case(name: str) -> Case:
-    """The shipped case of that name. Raises `DesignError` with the nearest name where there is none.
+    """The shipped case of that name. Raises `DesignError` with the nearest name for an unknown one.
 
     >>> shipped_case("hexapod").summary
     'six axes: six flexure struts in three pairs'
     """
     if name not in CASES:
-        raise refuse(name, "there is no case of this name", suggest_nearest(name, CASES))
+        raise refuse(name, "unknown case", suggest_nearest(name, CASES))
     return CASES[name]
 
 
@@ -87,11 +87,11 @@ class Variant:
 
     @property
     def start(self) -> Mechanism:
-        """The description with what is stated."""
+        """The description with the changed parameters."""
         return shipped_case(self.case).build(dict(self.stated))
 
     def value(self, name: str) -> Any:
-        """What it has for a parameter [SI].
+        """The value of a parameter [SI].
 
         >>> round(Variant("hexapod", (("rise", 0.01),)).value("rise"), 9)
         0.01
@@ -99,7 +99,7 @@ class Variant:
         return parameter(self.start, name).value
 
     def mechanism_at(self, values: Mapping[str, Number]) -> Mechanism:
-        """The description at other `values` of some parameters [SI], numbers or arrays: to the last bit, and without tags.
+        """The description at other `values` of some parameters [SI], numbers or arrays: not rounded, and without tags.
 
         >>> Variant("hexapod").mechanism_at({"neck_radius": 0.005}).parts["neck"].profile
         Circular(radius=0.005)

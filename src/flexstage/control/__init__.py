@@ -1,4 +1,4 @@
-"""The control wing: from reference command to nanometres."""
+"""Control of a positioning stage: plant, controller, hysteresis, simulation and export."""
 
 from flexstage.base.lazy import lazy_attributes
 

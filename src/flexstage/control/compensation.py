@@ -1,4 +1,4 @@
-"""Compensation of lost motion and dead load in open loop: static gains and strokes, and the error that is left with and without them."""
+"""Compensation of lost motion and permanent loads in open loop: static gains, strokes, and the residual static error."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 @dataclass(frozen=True, eq=False)
 class Compensation:
-    """What a pose is commanded by: strokes a = `gains` xi + `offset`.
+    """Open-loop compensation of a commanded pose: strokes a = `gains` xi + `offset`.
 
-    `gains` (n, f) are strokes by coordinate, R_a or those that correct lost motion; `offset` (n,) [m] the strokes that hold up loads.
-    `provenance` says by which model.
+    `gains` (n, f) are strokes per coordinate: R_a, or gains that correct lost motion. `offset` (n,) [m] are the strokes that balance the
+    loads. `provenance` names the model.
     """
 
     gains: Matrix
@@ -33,7 +33,7 @@ class Compensation:
 
 
 def ideal_compensation(kinematics: Kinematics) -> Compensation:
-    """The strokes of the ideal kinematics alone, a = R_a xi (Eq. 13 of Shin & Moon).
+    """Compute the strokes of the ideal kinematics, a = R_a xi (Eq. 13 of Shin & Moon).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
@@ -44,11 +44,11 @@ def ideal_compensation(kinematics: Kinematics) -> Compensation:
 
 
 def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflection: Array | None = None) -> Compensation:
-    """Gains that correct lost motion and, with the platform's `deflection` (6,) under loads, the strokes that take it back.
+    """Compute gains that correct lost motion, and strokes that cancel the platform's `deflection` (6,) under loads.
 
-    a = (R_a V^+ T)^-1 R_a (xi - V^+ C w): Eq. 11 of Shin & Moon turned round, its load term included; C w is the twist of the platform's
-    reference point with all strokes zero (`analysis.deflection`, or a statics' compliance times a wrench). What a load does outside the
-    ideal motions no stroke takes back. Linear; raises `DesignError` for a deflection that is no twist.
+    a = (R_a V^+ T)^-1 R_a (xi - V^+ C w): Eq. 11 of Shin & Moon solved for the strokes, with its load term. C w is the twist of the
+    platform's reference point with all strokes zero (`analysis.deflection`, or a static compliance times a wrench). Strokes cannot cancel
+    load motions outside the ideal ones. Linear. Raises `DesignError` for a deflection that is not a twist.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -65,16 +65,18 @@ def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflectio
         return Compensation(gains, np.zeros(len(gains.rows)), lost.provenance)
     twist = np.asarray(deflection)
     if twist.shape != (6,):
-        raise refuse("deflection", f"it has the shape {twist.shape}", "Give the platform's twist of six components, of one design")
+        raise refuse(
+            "deflection", f"not a twist (got shape {twist.shape}, expected 6 components)", "Use the platform's twist, of one design"
+        )
     return Compensation(gains, -gains.values @ (kinematics.projection @ twist), lost.provenance)
 
 
 @dataclass(frozen=True, eq=False)
 class StaticError(InNotebook):
-    """What is missing at rest in open loop: `error` (f, f) commanded less reached, by coordinate reached (row) and commanded (column).
+    """Static error in open loop: `error` (f, f) commanded less reached, by coordinate reached (row) and commanded (column).
 
-    Its diagonal is each axis' own error, the rest crosstalk; `parasitic` (6, f) is the motion outside the ideal ones; `offset` (6,) the
-    twist that loads leave at a command of zero. `largest` is the largest motion missing per unit of command, rotations as lengths.
+    The diagonal is each axis' own error, the rest crosstalk. `parasitic` (6, f) is the motion outside the ideal motions. `offset` (6,) is
+    the twist caused by loads at zero command. `largest` is the largest error per unit of command, rotations as lengths.
     """
 
     error: Matrix
@@ -84,16 +86,16 @@ class StaticError(InNotebook):
     provenance: str
 
     def of(self, command: Array) -> Array:
-        """Missing coordinates (..., f) [m, rad] of commanded poses (..., f), loads aside."""
+        """Error (..., f) [m, rad] of commanded poses (..., f), without loads."""
         return np.asarray(command) @ self.error.values.T
 
 
 def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, deflection: Array | None = None) -> StaticError:
-    """The error at rest of a compensation on a plant by any model.
+    """Compute the static error of a compensation on a plant of any model.
 
     E = I - V^+ T G for the plant's `plant` = T (6, n), the platform's twist per stroke (`lost_motion(...).gain`, or `static_gain` of any
-    model); with G = R_a it is R_a^+ Lambda R_a, what the lost-motion analysis predicts. `deflection` (6,) is the plant's under the loads,
-    strokes held. Raises `DesignError` for a plant of other actuators.
+    model). With G = R_a this is R_a^+ Lambda R_a, the result of the lost-motion analysis. `deflection` (6,) is the plant's deflection under
+    the loads, strokes fixed. Raises `DesignError` for a plant of other actuators.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -107,8 +109,8 @@ def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, def
     True
     """
     if plant.columns != given.gains.rows or len(plant.rows) != len(COMPONENTS):
-        what = f"it has {len(plant.rows)} motions by {', '.join(plant.columns)}, the gains are for {', '.join(given.gains.rows)}"
-        raise refuse("plant", what, "Give the platform's twist by these actuators")
+        what = f"other actuators than the gains (got {', '.join(plant.columns)}, expected {', '.join(given.gains.rows)})"
+        raise refuse("plant", what, "Use the platform's twist by these actuators")
     names, length = kinematics.coordinates, kinematics.first_length
     reached = plant.values @ given.gains.values
     error = np.eye(len(names)) - kinematics.projection @ reached

@@ -1,4 +1,4 @@
-"""What the command `loop` writes: plants, controllers, whole loops and paths, and why some cannot be."""
+"""Output files of the command `loop`: plants, controllers, whole loops and paths, with their checks."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from flexstage.show.command.output import announce, write
 
 
 def written_files(exports: Sequence[Path], hardware: Path | None) -> Iterator[tuple[str, Path]]:
-    """Each file that `--export` and `--hardware` come as, beside its option: source and header of what is C."""
+    """Each file of `--export` and `--hardware`, with its option: source and header for C."""
     for target in exports:
         yield from (("--export", each) for each in ((target, target.with_suffix(".h")) if target.suffix == ".c" else (target,)))
     if hardware is not None:
@@ -42,7 +42,7 @@ def written_files(exports: Sequence[Path], hardware: Path | None) -> Iterator[tu
 
 
 def require_names(exports: Sequence[Path], hardware: Path | None) -> None:
-    """Refuse what no export is, before anything is computed."""
+    """Refuse invalid file names before any computation."""
     found = [("--export", each) for target in exports for each in export_findings(target)]
     if hardware is not None:
         found += [("--hardware", each) for each in hardware_findings(hardware)]
@@ -50,28 +50,28 @@ def require_names(exports: Sequence[Path], hardware: Path | None) -> None:
 
 
 def write_export(found: LoopStudy, target: Path) -> None:
-    """Write what one `--export` asks for, by the end of its name."""
+    """Write one `--export`, according to the ending of its name."""
     for path, content in _contents(found, target).items():
         write(path, content, "--export")
         announce(f"Wrote {path}")
     if target.suffix == ".fmu" and (name := identifier(target.stem)) != target.stem:
-        announce(f"Within {target} the model is called {name}: its own name would not do in C.")
+        announce(f"Within {target} the model is named {name}: its own name is reserved in C.")
 
 
 def file_findings(asked: forms.LoopSetup, exports: Sequence[Path], hardware: Path | None) -> Iterator[Finding]:
-    """What keeps a controller from hardware, and a path from being written as it is commanded."""
+    """Findings for controllers without embedded form, and paths that are not commanded as specified."""
     if hardware is not None and Compensation.HYSTERESIS in asked.compensate:
         yield Finding("--hardware", *NO_INVERSE)
     for target in (each for each in exports if each.suffix == ".csv"):
         if asked.follow is None:
             advice = f"Add --tracking: {', '.join(each.value for each in Following)}"
-            yield Finding(f"--export {target}", "nothing but the trajectory itself is commanded", advice)
+            yield Finding(f"--export {target}", "the command equals the trajectory", advice)
         elif isinstance(asked.trajectory, forms.StepMotion) and len(stated_motions(asked.trajectory.amplitude)) != 1:
-            yield Finding(f"--export {target}", "steps of several motions are several paths", "Step along one of them: --amplitude x=1um")
+            yield Finding(f"--export {target}", "steps of several motions are not one path", "Step along one of them: --amplitude x=1um")
 
 
 def write_hardware(found: LoopStudy, target: Path, precision: Precision) -> None:
-    """Write the controller for a processor of its own: source, header and its test."""
+    """Write the controller for an embedded processor: source, header and test."""
     machine, made_of = driven_machine(found.settled, found.controller, found.stacks), found.controller.made_of
     law = made_of if isinstance(made_of, Decentralised) else None
     files = hardware_files(
@@ -83,7 +83,7 @@ def write_hardware(found: LoopStudy, target: Path, precision: Precision) -> None
 
 
 def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
-    """What is written for one option, by file."""
+    """Contents of one option, by file."""
     if target.suffix == ".mat":
         return {target: plant_file(found.plant)}
     if target.suffix == ".csv" and (commanded := found.runs[0].commanded) is not None:
@@ -97,7 +97,7 @@ def _contents(found: LoopStudy, target: Path) -> Mapping[Path, str | bytes]:
 
 
 def _legs(found: LoopStudy) -> SampledLegs | None:
-    """Force feedback that is part of what is exported: that of a computer."""
+    """Sampled force feedback, which is part of the export."""
     inner = found.damping
     if inner is None or inner.rate is None:
         return None
@@ -105,7 +105,7 @@ def _legs(found: LoopStudy) -> SampledLegs | None:
 
 
 def _about(found: LoopStudy) -> str:
-    """What the head of exported code says of the loop, and of inner loops that are not part of it."""
+    """Header comment of exported code: the loop, and inner loops outside it."""
     said = f"{found.settled.mechanism.name or 'stage'}: {found.stability.sentence}"
     if found.damping is None:
         return said
@@ -113,5 +113,5 @@ def _about(found: LoopStudy) -> str:
     gains = ", ".join(f"{each.actuator} {each.stiffness:.6g} N/m" for each in sensed)
     form = "g/(s + a)" if law.order == 1 else "g s/(s + a)^2"
     numbers = f"g = {law.gain:.6g} 1/s, a = {2.0 * math.pi * law.corner:.6g} 1/s"
-    where = "With" if found.damping.rate is not None else "Not in it, analogue and around it:"
+    where = "With" if found.damping.rate is not None else "Not included, analogue and around it:"
     return f"{said}. {where} force feedback, stroke = {form} tension / k, {numbers}, k: {gains}."

@@ -8,6 +8,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Annotated, Any, TypeAlias
 
+import typer
+
 from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.units.quantity import ACCELERATION_NOISE, NOISE_DENSITY, RATIO, VELOCITY_NOISE
 from flexstage.control.study.choices import Axes, Compensation, Criterion, Following
@@ -51,7 +53,7 @@ _UNITS = {"bandwidth": "Hz", "resistance": "ohm", "current": "A"}
 
 @dataclass(frozen=True)
 class LoopOptions:
-    """The set-up of a loop as the command line states it."""
+    """Loop set-up from the command line."""
 
     setup: Setup = None
     controller: Annotated[
@@ -69,8 +71,9 @@ class LoopOptions:
     bandwidth: Annotated[str | None, text_option("--bandwidth", "VALUE", "Bandwidth to tune to. Default: maximum at the margin.")] = None
     tune_for: Annotated[
         TuningObjective | None,
-        word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: none.", show_default=False),
+        word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: balance.", show_default=False),
     ] = None
+    quick: Annotated[bool, typer.Option("--quick", help="Plain tuning: maximum bandwidth at the margin, without optimisation.")] = False
     max_sensitivity: Annotated[
         str | None, text_option("--max-sensitivity", "NUMBER", "Maximum peak sensitivity Ms of a tuned loop. Default: 2.")
     ] = None
@@ -94,7 +97,9 @@ class LoopOptions:
         list[str] | None,
         text_option("--amplitude", "AXIS=VALUE", "Amplitude of a step or sine, e.g. x=1um. Repeatable. Default: 1 um, 10 urad, all axes."),
     ] = None
-    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until all has settled.")] = None
+    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until all axes have settled.")] = (
+        None
+    )
     feedforward: Annotated[
         list[str] | None,
         text_option(
@@ -118,7 +123,7 @@ class LoopOptions:
     model: Annotated[Model | None, MODEL] = None
 
     def read(self) -> tuple[LoopSetup, list[Finding]]:
-        """The set-up without the options that are wrong, and what is wrong with these."""
+        """Read the options: the set-up without invalid ones, and their findings."""
         changes, findings = dict[str, SetupChange](), list[Finding]()
         for each in (self._plain(), self._compensate(), self._floor(), self._trajectory(), self._amplifier()):
             try:
@@ -133,6 +138,8 @@ class LoopOptions:
         for name, address in _ADDRESSES.items():
             if (value := given[name]) is not None:
                 yield address, SetupChange(f"--{name.replace('_', '-')}", value.value if isinstance(value, Enum) else value)
+        if self.quick:
+            yield "controller.quick", SetupChange("--quick", value=True)
         if self.seconds is not None:
             yield "seconds", SetupChange("--seconds", f"{self.seconds!r} s")
         if self.hysteresis is not None:
@@ -142,7 +149,7 @@ class LoopOptions:
     def _compensate(self) -> Iterator[tuple[str, SetupChange]]:
         words, known = self.feedforward or (), [each.value for each in Compensation]
         require(
-            Finding(f"--feedforward {word}", "this is no feedforward", f"It is one of {', '.join(known)}, or {_NOTHING} alone")
+            Finding(f"--feedforward {word}", "unknown feedforward", f"Use {', '.join(known)}, or {_NOTHING}")
             for word in words
             if word not in known and (word != _NOTHING or len(words) > 1)
         )
@@ -153,7 +160,7 @@ class LoopOptions:
         for text in self.floor or ():
             axis, sign, value = (part.strip() for part in text.rpartition("="))
             if sign and axis not in _AXES:
-                raise refuse(f"--floor {text}", f'"{axis}" is no axis of the floor', "Write x, y or z, or no axis for all three")
+                raise refuse(f"--floor {text}", f'"{axis}" is no axis of the floor', "Use x, y or z, or no axis for all three")
             shaking = _shaking(text, value)
             yield from ((f"floor.{each}", SetupChange(f"--floor {text}", shaking)) for each in _AXES if not sign or each == axis)
 
@@ -177,12 +184,12 @@ class LoopOptions:
 
 
 def _shaking(text: str, value: str) -> dict[str, Any]:
-    """The table of a floor's vibration: a criterion, or an amplitude density."""
+    """Table of a floor vibration: a criterion, or an amplitude density."""
     known = [each.value for each in Criterion]
     if value in known:
         return {"criterion": value}
     fit = first_that_parses(value, {"acceleration": ACCELERATION_NOISE, "velocity": VELOCITY_NOISE, "displacement": NOISE_DENSITY})
     if fit is None:
         advice = f'Write one of {", ".join(known)}, or an amplitude density, for example "3 um/s^2/Hz^0.5"'
-        raise refuse(f"--floor {text}", f'"{value}" is no criterion and no amplitude density', advice)
+        raise refuse(f"--floor {text}", f'unknown criterion or amplitude density "{value}"', advice)
     return {fit[0]: [value]}

@@ -33,12 +33,12 @@ _HALF = 0.5
 
 @dataclass(frozen=True, eq=False)
 class NoiseBudget(InNotebook):
-    """Mean squares of outputs by source, which are uncorrelated and add up; of a sampled loop, at the samples.
+    """Noise budget: mean squares of outputs by uncorrelated sources, which add up; for a sampled loop, at the samples.
 
-    `squares` (p, k) [unit^2] by `outputs` and `sources`. `density` (f, p, k) is one-sided [unit^2/Hz] over `frequencies` (f,) [Hz]: what
-    the floor does at its own frequencies, what white sources do up to half the sampling rate, aliased. `changes` (g,) is by how much each
-    of the `gauges` moves from one sample to the next, rms, in its steps, rounding left out (NaN: it rounds nothing). `notes` say how each
-    kind was taken and what was not stated.
+    `squares` (p, k) [unit^2] by `outputs` and `sources`. `density` (f, p, k) is one-sided [unit^2/Hz] over `frequencies` (f,) [Hz]: the
+    floor at its own frequencies, white sources up to half the sampling rate, with aliasing. `changes` (g,) is the rms change of each of the
+    `gauges` between samples, in its resolution steps, without rounding (NaN: no rounding). `notes` list the assumptions and missing data of
+    each kind.
     """
 
     outputs: Annotated[tuple[Channel, ...], INNER]
@@ -53,7 +53,7 @@ class NoiseBudget(InNotebook):
 
     @property
     def slowly_rounding(self) -> tuple[str, ...]:
-        """Gauges whose rounding is no white noise, where that matters: their readings move by less than half a step a sample.
+        """Gauges whose rounding is significant and not white: their readings change by less than half a step per sample.
 
         Errors of successive samples of a Gaussian series with changes of s steps correlate by about exp(-2 pi^2 s^2), 0.7 % at a half
         (Widrow & Kollar, Quantization Noise, 2008).
@@ -64,12 +64,12 @@ class NoiseBudget(InNotebook):
 
     @property
     def rms(self) -> Annotated[Array, Axes("output_names")]:
-        """The rms value (p,) of each output, all sources together."""
+        """Rms value (p,) of each output, all sources together."""
         return np.sqrt(np.sum(self.squares, axis=1))
 
     @property
     def kinds(self) -> tuple[Kind, ...]:
-        """Kinds of source that are there."""
+        """Kinds of sources in the budget."""
         return tuple(kind for kind in Kind if any(source.kind is kind for source in self.sources))
 
     @property
@@ -82,22 +82,22 @@ class NoiseBudget(InNotebook):
 
     @property
     def output_names(self) -> Annotated[tuple[str, ...], Called("outputs")]:
-        """The motions."""
+        """Names of the motions."""
         return tuple(channel.name for channel in self.outputs)
 
     @property
     def units(self) -> Annotated[tuple[str, ...], Axes("output_names")]:
-        """Their units; mean squares are in these squared."""
+        """Units of the motions; mean squares are in these squared."""
         return tuple(channel.unit for channel in self.outputs)
 
     @property
     def steps_per_sample(self) -> Annotated[Mapping[str, float], VIEW]:
-        """By how much each gauge that rounds moves from sample to sample, rms, in its steps."""
+        """Rms change of each rounding gauge between samples, in its steps."""
         return {name: float(each) for name, each in zip(self.gauges, self.changes, strict=True) if not np.isnan(each)}
 
     @property
     def rounding_is_white(self) -> Annotated[bool, VIEW]:
-        """Whether rounding is white noise, as the budget counts it; otherwise take the simulated rms."""
+        """Whether rounding is white noise, as the budget assumes; otherwise use the simulated rms."""
         return not self.slowly_rounding
 
 
@@ -105,14 +105,14 @@ class NoiseBudget(InNotebook):
 def noise_budget(
     closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, float], outputs: tuple[str, ...] | None = None
 ) -> NoiseBudget:
-    """Mean squares of `outputs` (absent: the platform's six motions against the ground) by floor, gauges, converters and amplifiers.
+    """Compute the noise budget of a loop: mean squares of `outputs` by floor, gauges, converters and amplifiers.
 
-    `floor` gives one-sided densities by motion of the ground, `ground.x` ...; `band` (low, high) [Hz] is where it is counted. White sources
-    by Lyapunov's equation over all frequencies (`white_system`); the floor by Gauss's rule over the band. Between gauges and hold a
-    motion e^{j omega t} of the ground is seen as e^{j omega k T}, so that with S_y the noise response of the sampled loop and G those of
-    the stage y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w at the samples: aliasing is exact, also above half the
-    sampling rate. Amplifier noise without lag is taken the same way over the band. Raises `DesignError` for an unstable loop, with its
-    rate of growth.
+    Default outputs: the platform's six motions relative to the ground. `floor` contains one-sided densities by ground motion, `ground.x`
+    ..., counted within `band` (low, high) [Hz]. White sources use Lyapunov's equation over all frequencies (`white_system`); the floor uses
+    Gauss quadrature over the band. Between gauges and hold a ground motion e^{j omega t} is sampled as e^{j omega k T}. With S_y the noise
+    response of the sampled loop and G the stage's responses, y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w at the samples:
+    aliasing is exact, also above half the sampling rate. Amplifier noise without lag is integrated in the same way over the band. Raises
+    `DesignError` for an unstable loop, with its growth rate.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = noise_budget(integral_loop(), {"ground.x": Spectrum(1e-18)}, (0.1, 1000.0), ("relative.x",))
@@ -121,7 +121,7 @@ def noise_budget(
     """
     require_stable(closed, "rms values")
     if closed.step is None:
-        raise refuse("loop", "it is continuous, and its noise is that of samples", "State the sampling rate")
+        raise refuse("loop", "it is continuous, and its noise is that of samples", "Specify the sampling rate")
     require([*spectrum_findings(floor, band), *_findings(floor)] if floor else _findings(floor))
     outputs = tuple(f"relative.{name}" for name in COMPONENTS) if outputs is None else outputs
     gauges = closed.plant.gauges
@@ -152,12 +152,12 @@ def noise_budget(
 
 
 def _differences(closed: Loop, frequencies: Array) -> Array:
-    """|e^{j omega T} - 1|^2 (f, 1): what is left of a square in the difference of successive samples."""
+    """Factor |e^{j omega T} - 1|^2 (f, 1) of a square in the difference of successive samples."""
     return 4.0 * np.sin(np.pi * frequencies * (closed.step or 0.0))[:, None] ** 2
 
 
 def _changes(closed: Loop, readings: System, sources: tuple[Source, ...], driven: Array) -> Array:
-    """Rms changes (g,) of readings from sample to sample, in their steps: white sources through y[k] - y[k-1], and what is `driven`."""
+    """Rms changes (g,) of readings between samples, in their steps: white sources through y[k] - y[k-1], and the `driven` part."""
     gauges = closed.plant.gauges
     steps = np.array([closed.plant.hardware.sensors.get(name, Sensor()).resolution for name in gauges])
     states, count = len(readings.A), len(gauges)
@@ -169,21 +169,21 @@ def _changes(closed: Loop, readings: System, sources: tuple[Source, ...], driven
 
 
 def _sum_by_source(squares: Array, sources: tuple[Source, ...]) -> tuple[Array, tuple[Source, ...]]:
-    """Columns of one source added."""
+    """Sum of the columns of each source."""
     listed = tuple(dict.fromkeys(sources))
     columns = [np.sum(squares[..., [each == source for each in sources]], axis=-1) for source in listed]
     return np.stack(columns, axis=-1) if columns else np.zeros((*squares.shape[:-1], 0)), listed
 
 
 def _white_density(white: System, sources: tuple[Source, ...], frequencies: Array) -> Array:
-    """One-sided densities (f, p, k) of white sources: 2 T |H|^2, or 2 |H|^2 of a continuous loop; none above half the sampling rate."""
+    """One-sided densities (f, p, k) of white sources: 2 T |H|^2, or 2 |H|^2 of a continuous loop; zero above half the sampling rate."""
     step = white.step or np.nan
     size = np.where((frequencies <= 0.5 / step)[:, None, None], 2.0 * step * np.abs(white.sweep(frequencies)) ** 2, 0.0)
     return _sum_by_source(size, sources)[0]
 
 
 def band_spectra(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str, ...]) -> dict[str, Spectrum]:
-    """Spectra that are integrated over a band, by plant input: the floor's, and those of amplifiers that nothing bounds.
+    """Spectra integrated over a band, by plant input: of the floor, and of amplifiers without bandwidth.
 
     >>> from flexstage.control.example import integral_loop
     >>> list(band_spectra(integral_loop(), {"ground.x": Spectrum(1e-18)}, ("relative.x",)))
@@ -204,9 +204,9 @@ def _source(name: str) -> Source:
 
 
 def disturbance_response(closed: Loop, inputs: tuple[str, ...], outputs: tuple[str, ...], frequencies: Array) -> Array:
-    """Response (f, p, m) of a loop to disturbances of its stage between the samples: `ground.x` ... or an actuator's stroke.
+    """Compute the response (f, p, m) of a loop to disturbances of its stage between the samples: `ground.x` ... or an actuator's stroke.
 
-    At the samples y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w, at `frequencies` (f,) in Hz, above half the sampling rate too.
+    At the samples y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w, at `frequencies` (f,) in Hz, also above half the sampling rate.
     """
     given = closed.plant
     own = [name for name in outputs if name in given.system.output_names]
@@ -218,7 +218,7 @@ def disturbance_response(closed: Loop, inputs: tuple[str, ...], outputs: tuple[s
 
 
 def _panels(closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, float]) -> Array:
-    """Ends of the panels [Hz]: around every resonance of stage and loop, those of a sampled loop mirrored at multiples of its rate."""
+    """Panel ends [Hz]: around every resonance of stage and loop, mirrored at multiples of the sampling rate for a sampled loop."""
     low, high = band
     step = closed.step or np.nan
     near = points_around(rates_of(closed.system.poles, step))
@@ -232,22 +232,22 @@ def _panels(closed: Loop, floor: Mapping[str, Spectrum], band: tuple[float, floa
 
 def _findings(floor: Mapping[str, Spectrum]) -> list[Finding]:
     known = [f"{GROUND}.{name}" for name in COMPONENTS]
-    return [Finding(name, "the ground has no such motion", suggest_nearest(name, known)) for name in floor if name not in known]
+    return [Finding(name, "unknown motion of the ground", suggest_nearest(name, known)) for name in floor if name not in known]
 
 
 def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Iterator[str]:
-    """How each kind of source was taken, and what was not stated."""
+    """Assumptions for each kind of source, and missing data."""
     given = closed.plant
     sensors = {name: given.hardware.sensors.get(name, Sensor()) for name in given.gauges}
     silent = [name for name, sensor in sensors.items() if sensor.noise_density is None]
     bare = [name for name, sensor in sensors.items() if sensor.noise_density and np.isinf(sensor.bandwidth) and not sensor.filter_order]
     if silent:
-        yield f"no noise is stated of {', '.join(silent)}: counted as none"
+        yield f"no specified noise for {', '.join(silent)}: counted as zero"
     if bare:
         end = f"half the sampling rate, {0.5 / (closed.step or np.nan):g} Hz"
-        yield f"{', '.join(bare)}: neither bandwidth nor filter is stated; noise is taken to end at {end}"
+        yield f"{', '.join(bare)}: no specified bandwidth or filter; noise is limited to {end}"
     if len(bare) < len(sensors) - len(silent):
-        yield "gauge noise is white before the gauge's lag and filter; what passes them above half the sampling rate is aliased, exactly"
+        yield "gauge noise is white before the gauge's lag and filter; its remainder above half the sampling rate is aliased, exactly"
     if budget.slowly_rounding:
         units = {channel.name: channel.unit for channel in given.coordinates.readings()}
         half = ", ".join(
@@ -263,7 +263,7 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
         )
     quiet = [name for name in given.actuators if given.hardware.amplifiers.get(name, Amplifier()).noise_density is None]
     if quiet:
-        yield f"no amplifier noise is stated of {', '.join(quiet)}: counted as none"
+        yield f"no specified amplifier noise for {', '.join(quiet)}: counted as zero"
     unbounded = list(band_spectra(closed, {}, outputs))
     heard = [name for name in unbounded if name.startswith(f"{SENSED}.")]
     driven = [name for name in unbounded if name not in heard]
@@ -271,9 +271,9 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
         yield f"the amplifiers of {', '.join(driven)} have no lag: their noise is counted over the band only"
     if heard:
         legs = ", ".join(name.removeprefix(f"{SENSED}.") for name in heard)
-        yield f"noise of what senses the legs of {legs} is counted over the band only"
+        yield f"sensor noise of the legs of {legs} is counted over the band only"
 
 
 def _half_step(sensors: list[Sensor], unit: str) -> str:
-    """Half the largest step of gauges of one unit, in billionths of it."""
+    """Half the largest step of gauges of one unit, in nano-units."""
     return f"{1e9 * 0.5 * max(sensor.resolution for sensor in sensors):.3g} n{unit}"

@@ -1,4 +1,4 @@
-"""White sources of a loop as columns of one linear system: gauges, converters, amplifiers; and mean squares by Lyapunov's equation."""
+"""White noise sources of a loop as inputs of one linear system, and mean squares by Lyapunov's equation."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flexstage.models.linear.model import Channel
 
 
 class Kind(Enum):
-    """What disturbs a loop."""
+    """Kind of disturbance."""
 
     FLOOR = "floor"
     GAUGE = "gauge noise"
@@ -28,14 +28,14 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Source:
-    """A source of noise: its kind, and the gauge, actuator or motion of the ground where it enters."""
+    """Noise source: its kind, and the gauge, actuator or ground motion of its input."""
 
     kind: Kind
     channel: str
 
 
 def mean_squares(system: System) -> Array:
-    """Mean squares (p, m) of each output from each input, unit white and alone.
+    """Compute mean squares (p, m) of each output for each unit white input.
 
     Sampled: variances 1, e^2 = b^T X b + d^2 with X = A^T X A + c^T c. Continuous: two-sided densities 1, A^T X + X A + c^T c = 0; infinite
     where d is not zero. The system must be stable.
@@ -60,9 +60,9 @@ def mean_squares(system: System) -> Array:
 
 
 def held_noise(A: Array, B: Array, step: float) -> Array:
-    """A factor L (n, k) of the covariance L L^T = int_0^T e^{As} B B^T e^{A^T s} ds that white noise (density 1) leaves after a step.
+    """Compute a factor L (n, k) of the covariance L L^T = int_0^T e^{As} B B^T e^{A^T s} ds by white noise (density 1) over a step.
 
-    Taylor's series over a small part of the step, then doubling, Q(2t) = Q(t) + e^{At} Q(t) e^{A^T t}: no growing exponential occurs.
+    Taylor series over a small part of the step, then doubling, Q(2t) = Q(t) + e^{At} Q(t) e^{A^T t}, without growing exponentials.
 
     >>> factor = held_noise(-np.eye(1), np.eye(1), 0.5)
     >>> round(float(factor[0, 0] ** 2), 12), round(float(0.5 * (1.0 - np.exp(-1.0))), 12)
@@ -86,11 +86,11 @@ def held_noise(A: Array, B: Array, step: float) -> Array:
 
 
 def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
-    """The closed loop driven by unit white inputs, and the source of each input.
+    """Return the closed loop driven by unit white inputs, and the source of each input.
 
-    Gauge noise is white before lag and filter and comes to the samples as these leave it, aliased exactly; without either, it is
-    taken to end at half the sampling rate. Rounding is white with step^2/12. Amplifier noise drives the stage between the samples too,
-    and is left out here where no amplifier lag bounds it.
+    Gauge noise is white before lag and filter, and sampled after them with exact aliasing; without both it is limited to half the sampling
+    rate. Rounding is white with step^2/12. Amplifier noise also drives the stage between the samples; it is omitted here for an amplifier
+    without lag.
 
     >>> from flexstage.control.example import integral_loop
     >>> system, sources = white_system(integral_loop(), ("relative.x",))
@@ -120,7 +120,7 @@ def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[
 
 
 def gauge_noise(given: Plant, gauge: str, density: float) -> System:
-    """The samples of a gauge's white noise of a `density` behind its lag and filter, from unit white inputs (sampled loops).
+    """Generate the samples of a gauge's white noise of a `density` after its lag and filter, from unit white inputs (sampled loops).
 
     >>> from flexstage.control.example import integral_loop
     >>> found = gauge_noise(integral_loop().plant, "S", 1e-12)
@@ -139,7 +139,7 @@ def gauge_noise(given: Plant, gauge: str, density: float) -> System:
 def _with_amplifiers(
     whole: System, closed: Loop, outputs: tuple[str, ...], sources: tuple[Source, ...]
 ) -> tuple[System, tuple[Source, ...]]:
-    """Noise of the amplifiers as what it leaves in the plant's states, the first of all, after each step."""
+    """Amplifier noise as its contribution to the plant's states, the first of all, after each step."""
     given, step = closed.plant, closed.step
     for name in bounded_amplifiers(closed, outputs):
         density = given.hardware.amplifiers[name].noise_density or 0.0
@@ -154,7 +154,7 @@ def _with_amplifiers(
 
 
 def bounded_amplifiers(closed: Loop, outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """Actuators with amplifier noise that neither gauge nor output feels at once: a lag bounds it, its mean square is finite.
+    """Find actuators with amplifier noise without direct effect on gauges and outputs: a lag limits it to a finite mean square.
 
     >>> from flexstage.control.example import integral_loop
     >>> bounded_amplifiers(integral_loop(), ("relative.x",))  # no noise is stated

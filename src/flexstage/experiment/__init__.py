@@ -1,4 +1,4 @@
-"""The experiment wing: records of tests, the modes found in them, theory beside them."""
+"""Test records, identification of modes, and comparison with models."""
 
 from flexstage.base.lazy import lazy_attributes
 

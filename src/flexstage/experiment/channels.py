@@ -1,4 +1,4 @@
-"""Channels of a test that look exchanged, inverted or scaled: what the modes would say if they were not."""
+"""Channels of a test that appear exchanged, inverted or scaled, from the effect of a correction on the modes."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ import scipy
 from flexstage.base.number import Array
 
 _ALIKE, _UNLIKE = 0.9, 0.6
-"""Correlation of a channel with theory's that a doubt must lead to, and that it must do without."""
+"""Required correlation of a channel with the model after a correction, and its maximum before."""
 _LEFT = 0.25
-"""Share of what shapes lack of theory's that may be left where what they gain is less than a tenth."""
+"""Residual difference of shapes below which a correction must improve it tenfold."""
 _SCALED, _ALL_SCALED = 1.5, 3.0
-"""How many times larger than others one channel must be to be named, and than theory's all: its masses are less sure."""
+"""Minimum scale of one channel relative to others, and of all relative to the model, whose masses are less certain."""
 _LEAST = 0.02
 _BOTH_INVERTED = "look inverted against the others", "with their signs changed"
 _ROUNDS = 5
 _FEWEST = 3
 _MOST_OUTPUTS, _MOST_TOGETHER = 24, 8
 _COMPLETE = 0.95
-"""How alike two doubts together must make shapes, where one alone does not."""
+"""Required similarity of shapes after two corrections together, if one is insufficient."""
 
 Score = Callable[[Array], float]
-"""How alike theory and measured shapes (p, k) are, 0 to 1."""
+"""Similarity of model and measured shapes (p, k), 0 to 1."""
 
 
 @dataclass(frozen=True, eq=False)
 class Residues:
-    """Modal gains (groups, outputs, inputs) of theory and test, in the same units; `inputs_known` (m,) whose units lead to theory's.
+    """Modal gains (groups, outputs, inputs) of model and test, in equal units; `inputs_known` (m,) are inputs with convertible units.
 
-    `direct` (m,) are inputs in the actuator's own quantity or a force: before voltages an amplifier may be missing.
+    `direct` (m,) are inputs in the actuator's own quantity or a force; a voltage may precede an unknown amplifier.
     """
 
     outputs: tuple[str, ...]
@@ -46,7 +46,7 @@ class Residues:
 
 @dataclass(frozen=True, eq=False)
 class Doubt:
-    """What looks wrong with outputs, in words; put right, output i is `factors[i]` times what is called `order[i]`."""
+    """Suspected fault of outputs; corrected, output i is `factors[i]` times the channel `order[i]`."""
 
     what: str
     how: str
@@ -55,19 +55,19 @@ class Doubt:
     text: str = ""
 
     def put_right(self, values: Array) -> Array:
-        """Values (p, ...) of the outputs as they would be without it."""
+        """Values (p, ...) of the outputs after correction."""
         return self.factors[:, None] * values[self.order]
 
     def then(self, other: Doubt) -> Doubt:
-        """Both."""
+        """Both corrections in sequence."""
         return Doubt(f"{self.what} and {other.what}", "put right", self.order[other.order], other.factors * self.factors[other.order])
 
 
 def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Callable[[], Array] | None = None) -> Doubt | None:
-    """What makes shapes alike that are unlike as they are: two outputs exchanged, one or two inverted, or all divided by `scales` (p,).
+    """Find the correction that makes shapes similar: two outputs exchanged, one or two inverted, or all divided by `scales` (p,).
 
-    Where none of these does, two of them together are tried, and must leave almost nothing. Of several that say as much the first counts;
-    of two together that name others as well, none. `scales` are worked out only where something is left to gain.
+    If none suffices, two corrections together are tried, with an almost complete match required. Of several equal ones the first counts; of
+    equal pairs with different channels, none. `scales` are computed only if an improvement is possible.
 
     >>> theory = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
     >>> theory = theory / np.linalg.norm(theory, axis=0)
@@ -80,7 +80,7 @@ def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: C
         return None
     before = score(shapes)
     if before > 1.0 - _LEAST:
-        return None  # nothing is left to gain
+        return None  # no improvement possible
     tried = list(_remedies(outputs, None if scales is None else scales()))
     single, alone = _best(tried, shapes, score)
     chosen, best = single, alone
@@ -96,7 +96,7 @@ def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: C
 
 
 def _best(tried: list[Doubt], shapes: Array, score: Score, *, sole: bool = False) -> tuple[Doubt | None, float]:
-    """The first of the best; `sole`: none where others as good do something else."""
+    """First of the best; with `sole` None if equally good ones differ in effect."""
     scores = np.array([score(unit_length(each.put_right(shapes))) for each in tried])
     best = np.flatnonzero(scores > np.max(scores) - 1e-6)
     if sole and any(not _same(tried[best[0]], tried[each]) for each in best):
@@ -105,13 +105,13 @@ def _best(tried: list[Doubt], shapes: Array, score: Score, *, sole: bool = False
 
 
 def _same(one: Doubt, other: Doubt) -> bool:
-    """Whether two do the same, up to the sign of all."""
+    """Whether two corrections are equal, up to a common sign."""
     sign = np.sign(one.factors[0] * other.factors[0])
     return bool(np.all(one.order == other.order) and np.allclose(one.factors, sign * other.factors))
 
 
 def unit_length(shapes: Array) -> Array:
-    """Shapes (p, k) of unit length.
+    """Normalise shapes (p, k) to unit length.
 
     >>> unit_length(np.array([[3.0], [4.0]])).ravel().tolist()
     [0.6, 0.8]
@@ -120,7 +120,7 @@ def unit_length(shapes: Array) -> Array:
 
 
 def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[Doubt]:
-    """One or two outputs inverted, two exchanged, all scaled."""
+    """Corrections: one or two outputs inverted, two exchanged, all scaled."""
     as_is, one = np.arange(len(outputs)), np.ones(len(outputs))
     pairs = list(combinations(range(len(outputs)), 2))
     for chosen in (*combinations(range(len(outputs)), 1), *pairs):
@@ -139,7 +139,7 @@ def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[Doubt]
 
 
 def output_scales(theory: Array, measured: Array) -> Array:
-    """How much larger each output (p, groups) is measured than theory has it, against the usual one; groups may have any size.
+    """Estimate the measured size of each output (p, groups) relative to the model and to the typical one; groups have any size.
 
     >>> theory = np.array([[1.0, 2.0, 1.0], [3.0, 1.0, 2.0], [1.0, 1.0, 3.0]])
     >>> output_scales(theory, theory * [[1.0], [1.0], [1000.0]] / [1.0, 2.0, 7.0]).round(3).tolist()
@@ -148,16 +148,16 @@ def output_scales(theory: Array, measured: Array) -> Array:
     seen = (theory > 0.1 * np.max(theory, axis=0, initial=0.0)) & (measured > 0.0)
     ratio = np.ma.masked_array(np.log(np.where(seen, measured, 1.0) / np.where(seen, theory, 1.0)), ~seen)
     rows = np.zeros(len(theory))
-    for _ in range(_ROUNDS):  # rows and columns in turn, by medians
+    for _ in range(_ROUNDS):  # alternate over rows and columns, by medians
         columns = np.ma.median(ratio - rows[:, None], axis=0).filled(0.0)
         rows = np.ma.median(ratio - columns, axis=1).filled(0.0)
     return np.exp(rows - np.percentile(rows, 50.0, method="lower"))
 
 
 def gain_doubts(residues: Residues) -> tuple[str, ...]:
-    """Inputs or outputs that look exchanged or inverted, and such that look scaled, by their part in the modes.
+    """Find inputs or outputs that appear exchanged or inverted, or scaled, from their part in the modes.
 
-    Where an exchange on either side would do, the side counts that leaves less; inputs are looked at anew when outputs are put right.
+    If an exchange on either side suffices, the side with the smaller residual counts; inputs are evaluated again after corrected outputs.
 
     >>> theory = np.array([[[1.0, 0.2], [0.1, 1.0]], [[0.3, -1.0], [1.0, 0.5]]])
     >>> gain_doubts(Residues(("S1", "S2"), ("B1", "B2"), theory, theory[:, :, ::-1], *np.ones((2, 2), dtype=bool)))
@@ -185,7 +185,7 @@ def gain_doubts(residues: Residues) -> tuple[str, ...]:
 
 
 def _columns(values: Array) -> Array:
-    """Every channel of the last axis as one vector, each group of modes of theory's size."""
+    """Every channel of the last axis as one vector, each group of modes scaled to the model's size."""
     return values.reshape(-1, values.shape[2])
 
 
@@ -195,18 +195,18 @@ def _correlations(theory: Array, measured: Array) -> Array:
 
 
 def _assigned(likeness: Array) -> tuple[Array, Array]:
-    """Which measured channel is most like each of theory's, no one twice, and with which sign."""
+    """Assignment of measured channels to the model's, one to one, with signs."""
     _, order = scipy.optimize.linear_sum_assignment(-np.abs(likeness))
     return order, np.where(likeness[np.arange(len(order)), order] < 0.0, -1.0, 1.0)
 
 
 def _explained(likeness: Array) -> float:
-    """How alike the channel that is least so is, all put right."""
+    """Lowest similarity of a channel after all corrections."""
     return float(np.min(np.abs(likeness[np.arange(len(likeness)), _assigned(likeness)[0]])))
 
 
 def _exchange_doubts(names: tuple[str, ...], likeness: Array, among: Array) -> Iterator[str]:
-    """Channels whose part in the modes is another's, or its own inverted; not those that theory has alike."""
+    """Channels whose part in the modes matches another's, or is inverted; except those with equal parts in the model."""
     order, _ = _assigned(likeness)
     own = np.diag(likeness)
     moved = [index for index in range(len(names)) if order[index] != index and own[index] < _UNLIKE]
@@ -226,20 +226,20 @@ def _exchange_doubts(names: tuple[str, ...], likeness: Array, among: Array) -> I
 
 
 def _ratios(theory: Array, measured: Array, known: Array) -> tuple[Array, Array]:
-    """How much larger each channel's part in the modes is measured than theory has it, and whether that is sure; both (m,)."""
+    """Measured part in the modes of each channel relative to the model, and its significance; both (m,)."""
     sizes = np.linalg.norm(theory, axis=0)
     sure = known & (sizes > 1e-3 * np.max(sizes)) & (np.diag(_correlations(theory, measured)) > _ALIKE)
     return np.linalg.norm(measured, axis=0) / np.maximum(sizes, 1e-300), sure
 
 
 def _common_scale_doubts(ratio: Array, sure: Array) -> Iterator[str]:
-    """All gains together: not as large as theory's masses lead to."""
+    """Common scale of all gains, relative to the model's masses."""
     if np.any(sure) and not 1.0 / _ALL_SCALED < (usual := _nearest_median(ratio[sure])) < _ALL_SCALED:
         yield f"all gains are {usual:.3g} times theory's: the unit or the scale of all inputs or of all outputs looks wrong"
 
 
 def _scale_doubts(names: tuple[str, ...], ratio: Array, sure: Array) -> Iterator[str]:
-    """Channels whose part in the modes is not as large as that of the others leads one to expect."""
+    """Channels with a part in the modes that differs in scale from the others."""
     if np.sum(sure) < _FEWEST:
         return
     beside = ratio / _nearest_median(ratio[sure])
@@ -249,12 +249,12 @@ def _scale_doubts(names: tuple[str, ...], ratio: Array, sure: Array) -> Iterator
 
 
 def _nearest_median(ratios: Array) -> float:
-    """The median; between two, the one nearer to theory's: half of the channels may be scaled."""
+    """Median; between two, the one nearer to the model's: half of the channels may be scaled."""
     both = np.percentile(ratios, 50.0, method="lower"), np.percentile(ratios, 50.0, method="higher")
     return float(min(both, key=lambda ratio: abs(np.log(ratio))))
 
 
 def normalise(residues: Residues) -> Residues:
-    """Both divided, group by group, by theory's size, so that every mode counts alike."""
+    """Divide both, group by group, by the model's size, for equal weight of every mode."""
     size = np.maximum(np.linalg.norm(residues.theory, axis=(1, 2)), 1e-300)[:, None, None]
     return replace(residues, theory=residues.theory / size, measured=residues.measured / size)

@@ -1,4 +1,4 @@
-"""Theory, FEA and experiment side by side (the paper's Fig. 12): modes paired by shape at the sensors, repeated ones as a subspace."""
+"""Comparison of model, finite elements and test (the paper's Fig. 12), with modes paired by shape at the sensors."""
 
 from __future__ import annotations
 
@@ -47,9 +47,9 @@ _TURNED = np.deg2rad(20.0)
 
 @dataclass(frozen=True)
 class Measured:
-    """A mode of the experiment as it is compared: its index (from 0), frequency [Hz] and damping ratio with their 95 % intervals.
+    """Identified mode in a comparison: its index (from 0), frequency [Hz] and damping ratio with their 95 % intervals.
 
-    `widening` is how many times wider these are than noise makes them.
+    `widening` is the interval inflation factor relative to noise.
     """
 
     index: Annotated[int, INNER]
@@ -61,17 +61,17 @@ class Measured:
 
     @property
     def number(self) -> Annotated[int, VIEW, Heading("mode of the record")]:
-        """Its number in the record, from 1."""
+        """Number in the record, from 1."""
         return self.index + 1
 
 
 @dataclass(frozen=True)
 class ComparedMode:
-    """One platform mode by theory, by FEA and in the experiment, frequencies in Hz.
+    """Platform mode by model, finite elements and test, frequencies in Hz.
 
-    `number` counts the platform's modes from 1. `assurance` is the modal assurance of theory and experiment at the sensors, of repeated
-    modes the share of the measured shape within theory's subspace; `fea_assurance` that of theory and FEA by all motions both give:
-    below 0.8 `fea` is absent.
+    `number` counts the platform's modes from 1. `assurance` is the modal assurance of model and test at the sensors; for repeated modes the
+    share of the measured shape within the model's subspace. `fea_assurance` compares model and finite elements by all common motions: below
+    0.8 `fea` is absent.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -79,7 +79,7 @@ class ComparedMode:
         "number name theory fea fea_error experiment.frequency experiment.frequency_interval experiment.widening difference fea_difference "
         "uncertainty assurance fea_assurance experiment.damping",
         notes=(
-            "Differences: relative to the experiment, which had damping; theory and FEA are undamped. +-: half of the 95 % interval.",
+            "Differences: relative to the test, which includes damping; theory and FEA are undamped. +-: half of the 95 % interval.",
             "MAC: modal assurance of theory and experiment at the sensors; of repeated modes, within their subspace.",
             INFLATION,
         ),
@@ -96,17 +96,17 @@ class ComparedMode:
 
     @property
     def difference(self) -> Annotated[float | None, RATIO, _DIFFERENCE]:
-        """Theory over experiment less one."""
+        """Model relative to test, minus one."""
         return None if self.experiment is None else self.theory / self.experiment.frequency - 1.0
 
     @property
     def fea_difference(self) -> Annotated[float | None, RATIO, replace(_DIFFERENCE, text="FEA difference")]:
-        """FEA over experiment less one."""
+        """FEA relative to test, minus one."""
         return None if self.experiment is None or self.fea is None else self.fea / self.experiment.frequency - 1.0
 
     @property
     def uncertainty(self) -> Annotated[float | None, INNER, RATIO, Heading("+-", digits=2, unit="%")]:
-        """Half of the experiment's 95 % interval, relative."""
+        """Half of the test's 95 % interval, relative."""
         if self.experiment is None:
             return None
         low, high = self.experiment.frequency_interval
@@ -115,9 +115,9 @@ class ComparedMode:
 
 @dataclass(frozen=True)
 class RepeatedModes:
-    """Modes that theory has together (numbers from 1), and the largest angle [rad] between their subspace and the one measured.
+    """Repeated modes of the model (numbers from 1), and the largest angle [rad] between model and measured subspaces.
 
-    `angle` is absent where the experiment shows fewer of them than there are.
+    `angle` is absent if the test shows fewer modes.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -133,7 +133,7 @@ class RepeatedModes:
 
 @dataclass(frozen=True)
 class FurtherMode:
-    """A measured mode that is none of the platform's, with the local mode of theory [Hz] it is paired with, where there is one."""
+    """Measured mode that is not a platform mode, with its paired local mode of the model [Hz], if any."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Further measured modes",
@@ -149,11 +149,11 @@ class FurtherMode:
 
 @dataclass(frozen=True, eq=False)
 class Compared(InNotebook):
-    """Theory, FEA and experiment mode by mode.
+    """Comparison of model, finite elements and test, mode by mode.
 
-    `modes` are the platform's; `further` are measured modes without a partner among them; `sensors` the outputs shapes are compared at;
-    `warnings` say what the experiment cannot tell and which pairings not to rely on; those of `misnamed` which channels look
-    exchanged, inverted or scaled.
+    `modes` are the platform's. `further` are measured modes without a partner among them. `sensors` are the outputs of the shape
+    comparison. `warnings` list missing information and unreliable pairings; `misnamed` lists channels that appear exchanged, inverted or
+    scaled.
     """
 
     modes: tuple[ComparedMode, ...]
@@ -169,7 +169,7 @@ class Compared(InNotebook):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """The model of theory, and of FEA the order, for tables."""
+        """Notes: the analytical model, and the order of finite elements."""
         if self.fea is None:
             return (f"Theory: {self.model.value} model.",)
         error = "error estimated from the order below" if self.fea.errors else "error not estimated: no coarser result"
@@ -183,13 +183,13 @@ class Compared(InNotebook):
 
 @check_arguments
 def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, model: Model = Model.LUMPED) -> Compared:
-    """Compare the platform's modes by theory, by FEA where given, and as identified in a test.
+    """Compare the platform's modes by model, optional finite elements, and test.
 
-    Shapes are compared at the record's outputs that are outputs of the stage too, by modal assurance (Allemang & Brown 1982), measured
-    shapes by their real part. Each mode gets the measured mode most like it, all pairs chosen together; modes that theory has
-    within 1 % are one subspace, in which every basis is as good. A distance in frequency counts little, so that shapes that the
-    sensors cannot tell apart go to the nearer mode; modes that are more than 1.6 times apart are no pair, nor such with an assurance
-    below 0.5. Measured modes may also be theory's local ones. Raises `DesignError` where no output has a name of the stage's.
+    Compares shapes at the outputs common to record and stage, by modal assurance (Allemang & Brown 1982), measured shapes by their real
+    part. Each mode gets the most similar measured mode, all pairs optimised together. Modes of the model within 1 % are one subspace, with
+    any basis. Frequency distance has a small weight, which decides between shapes that the sensors cannot distinguish. Modes more than a
+    factor 1.6 apart are not paired, nor below an assurance of 0.5. Measured modes may also be local modes of the model. Raises
+    `DesignError` without a common output.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.experiment.example import one_mode_record
@@ -197,7 +197,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     >>> compare(double_triangle(), identify(one_mode_record()))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: y: the stage has no output of this name, ...
+    flexstage.base.finding.DesignError: y: unknown output, ...
     """
     linear = read(mechanism, model)
     require([] if linear is not None else [Finding("model", "rigid bodies have no modes", "Compare with lumped or mapped")])
@@ -239,12 +239,12 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
 
 
 def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...]:
-    """The record's outputs that are outputs of the model too; raises `DesignError` where there is none."""
+    """Find the outputs common to record and model; raises `DesignError` without any."""
     known = {channel.name for channel in model.outputs}
     found = tuple(channel.name for channel in experiment.outputs if channel.name in known)
     gauges = [name for name in known if "." not in name]
     require(
-        Finding(channel.name, "the stage has no output of this name, nor of any other of the record", suggest_nearest(channel.name, gauges))
+        Finding(channel.name, "unknown output, nor of any other of the record", suggest_nearest(channel.name, gauges))
         for channel in experiment.outputs
         if not found
     )
@@ -252,7 +252,7 @@ def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...
 
 
 def _candidates(theory: Modes, experiment: Identified) -> tuple[int, ...]:
-    """Theory's modes that a measured one may be: the platform's first, then all others as far up as was measured."""
+    """Candidate modes of the model: the platform's first, then all others within the measured range."""
     frequencies = first_design(theory.frequencies, 1)
     highest = float(np.exp(_FARTHEST)) * max(experiment.frequencies, default=0.0)
     others = (index for index in range(len(frequencies)) if index not in theory.platform and frequencies[index] < highest)
@@ -260,14 +260,14 @@ def _candidates(theory: Modes, experiment: Identified) -> tuple[int, ...]:
 
 
 def _groups(theory: Modes, candidates: tuple[int, ...]) -> list[list[int]]:
-    """Candidates that are one subspace, the platform's and others apart, by their place."""
+    """Candidates grouped by subspace, the platform's and others separately, by index."""
     frequencies, count = first_design(theory.frequencies, 1)[list(candidates)], len(theory.platform)
     others = clusters(frequencies[count:], _REPEATED)
     return [*clusters(frequencies[:count], _REPEATED), *([count + index for index in group] for group in others)]
 
 
 def _shapes_at_sensors(model: LinearModel, theory: Modes, candidates: tuple[int, ...], sensors: Sequence[str]) -> Array:
-    """Theory's modes at the sensors (p, n), of unit length; zero where the sensors do not feel a mode."""
+    """Model modes at the sensors (p, n), of unit length; zero for unobservable modes."""
     shapes = first_design(theory.shapes, 2)[:, list(candidates)]
     seen = first_design(model.output, 2)[list(model.output_index(tuple(sensors)))] @ shapes
     size = np.linalg.norm(seen, axis=0)
@@ -275,16 +275,16 @@ def _shapes_at_sensors(model: LinearModel, theory: Modes, candidates: tuple[int,
 
 
 def _normalise(shapes: Array, model: LinearModel, sensors: Sequence[str]) -> Array:
-    """Shapes of unit length; angles weighted so that the platform's radius of gyration makes lengths of them."""
+    """Unit-length shapes; angles are scaled to lengths by the platform's radius of gyration."""
     units = {channel.name: channel.unit for channel in model.outputs}
     weight = np.array([gyration(model) if units[name] == "rad" else 1.0 for name in sensors])
     return unit_length(weight[:, None] * shapes)
 
 
 def _pair(frequencies: Array, experiment: Identified, bases: list[tuple[list[int], Array]], seen: Array) -> tuple[dict[int, int], Array]:
-    """The measured mode of each of theory's, and how alike all are (n, k): the share of a measured shape within the mode's subspace.
+    """Measured mode of each model mode, and their similarities (n, k): the share of a measured shape within the mode's subspace.
 
-    `bases` are orthonormal ones (p, m) of theory's groups of modes.
+    `bases` are orthonormal bases (p, m) of the model's groups of modes.
     """
     likeness = np.zeros((len(frequencies), seen.shape[1]))
     for group, basis in bases:
@@ -299,27 +299,27 @@ def _pair(frequencies: Array, experiment: Identified, bases: list[tuple[list[int
 
 
 def _scales(frequencies: Array, experiment: Identified, groups: list[list[int]], own: Array, seen: Array) -> Array:
-    """How much larger every output is measured than theory has it, modes paired by frequency alone: scaled shapes tell no pairs."""
+    """Measured size of every output relative to the model, modes paired by frequency, because scaled shapes are unsuitable."""
     apart = np.abs(np.log(experiment.frequencies[None, :] / frequencies[:, None]))
     first, second = scipy.optimize.linear_sum_assignment(np.minimum(apart, _FARTHEST))
     found = {i: j for i, j in zip(first.tolist(), second.tolist(), strict=True) if apart[i, j] <= _FARTHEST}
     whole = [group for group in groups if all(index in found for index in group)]
     theory = _sizes(own, whole)
     scales = np.ones(len(own))
-    for _ in range(_ROUNDS):  # repeated modes count by their sizes, which scaled channels distort
+    for _ in range(_ROUNDS):  # repeated modes count by size, because scaled channels distort their shapes
         measured = _sizes(unit_length(seen / scales[:, None]), [[found[index] for index in group] for group in whole])
         scales = scales * output_scales(theory, measured)
     return scales
 
 
 def _sizes(shapes: Array, groups: list[list[int]]) -> Array:
-    """How large every group of modes is at every output (p, groups)."""
+    """Size of every group of modes at every output (p, groups)."""
     sizes = [np.linalg.norm(np.linalg.qr(shapes[:, group])[0], axis=1) for group in groups]
     return np.stack(sizes, axis=1) if sizes else np.zeros((len(shapes), 0))
 
 
 def _sort_within_groups(found: dict[int, int], groups: list[list[int]]) -> dict[int, int]:
-    """Within a subspace the lower measured frequency goes to the lower mode."""
+    """Within a subspace the lower measured frequency belongs to the lower mode."""
     ordered: dict[int, int] = {}
     for group in groups:
         members = sorted(found[index] for index in group if index in found)
@@ -328,7 +328,7 @@ def _sort_within_groups(found: dict[int, int], groups: list[list[int]]) -> dict[
 
 
 def _match_groups(groups: list[list[int]], candidates: tuple[int, ...], pairs: dict[int, int]) -> list[tuple[list[int], list[int]]]:
-    """Theory's modes of every group all of whose modes were found, and the measured ones."""
+    """Model modes of fully identified groups, and the measured ones."""
     whole = (group for group in groups if all(index in pairs for index in group))
     return [([candidates[index] for index in group], [pairs[index] for index in group]) for group in whole]
 
@@ -343,9 +343,9 @@ def _residues(
     matched: list[tuple[list[int], list[int]]],
     doubt: Doubt | None,
 ) -> Residues:
-    """Modal gains of theory and test between shared sensors and shared inputs: repeated modes together, whatever their basis.
+    """Modal gains of model and test between shared sensors and inputs: repeated modes together, independent of the basis.
 
-    Outputs are as they would be without the doubt about them.
+    Outputs are corrected for their suspected faults.
     """
     names = {channel.name for channel in model.inputs}
     columns = [index for index, channel in enumerate(experiment.inputs) if channel.name in names]
@@ -369,7 +369,7 @@ def _residues(
 
 
 def _basis(shapes: Array) -> Array:
-    """An orthonormal basis of what shapes span; shapes that the sensors see alike count once."""
+    """Orthonormal basis of the span of shapes; shapes equal at the sensors count once."""
     left, size, _ = np.linalg.svd(shapes, full_matrices=False)
     return left[:, size > max(1e-3 * float(size[0]), 1e-300)]
 
@@ -439,15 +439,12 @@ def _warnings(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...
     found: list[str] = []
     if len(sensors) < len(rows):
         found.append(
-            f"shapes are compared at {len(sensors)} sensors ({', '.join(sensors)}): fewer than modes, so that modes may look alike."
+            f"shapes are compared at {len(sensors)} sensors ({', '.join(sensors)}), fewer than modes: modes may be indistinguishable."
         )
     doubtful = [row for row in rows if row.assurance is not None and row.assurance < _TRUSTED]
+    found += [f"mode {row.number} ({row.name}): modal assurance {row.assurance:.2f}: unreliable pairing." for row in doubtful]
     found += [
-        f"mode {row.number} ({row.name}): modal assurance {row.assurance:.2f}: the pairing is not to be relied on." for row in doubtful
-    ]
-    found += [
-        f"mode {row.number} ({row.name}): FEA has no mode like it: the best shares {row.fea_assurance:.2f} of its motion, "
-        f"{RELIABLE} is needed."
+        f"mode {row.number} ({row.name}): no similar FEA mode: the best assurance is {row.fea_assurance:.2f}, expected {RELIABLE}."
         for row in rows
         if row.fea is None and row.fea_assurance is not None
     ]
@@ -459,7 +456,7 @@ def _warnings(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...
             )
         if group.angle is not None and group.angle > _TURNED:
             angle = f"{np.rad2deg(group.angle):.0f}"
-            found.append(f"modes {names} are repeated; what was measured of them lies up to {angle} degrees off their subspace.")
+            found.append(f"modes {names} are repeated; their measured shapes deviate by up to {angle} degrees from the model subspace.")
     lost = [row for row in rows if row.experiment is None]
     if lost:
         found.append(f"not found in the experiment: {', '.join(f'{row.number} ({row.name}, {row.theory:.4g} Hz)' for row in lost)}.")

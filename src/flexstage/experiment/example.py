@@ -1,4 +1,4 @@
-"""A stage of one mode, small enough to be identified in an example."""
+"""Example stage of one mode, for identification."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from flexstage.experiment.records.record import Channel, Record, Role, in_memory
 from flexstage.experiment.spectral.lines import edges, gather_cells, record_lines
 
 POLE = 10.0 * (-0.02 + 1j * np.sqrt(1.0 - 0.02**2))
-"""Its pole in Hz: a natural frequency of 10 Hz, damped by 2 %."""
+"""Its pole in Hz: a natural frequency of 10 Hz, damping ratio 2 %."""
 
 
 def one_mode_record(*, seconds: float = 64.0, noise: float = 0.05) -> Record:
-    """A record of white noise in and the stage's motion out, with noise as a share of its rms; always the same numbers.
+    """Generate a record of white noise input and the stage's motion, with measurement noise relative to its rms; always the same numbers.
 
     >>> one_mode_record().duration
     64.0
@@ -30,7 +30,7 @@ def one_mode_record(*, seconds: float = 64.0, noise: float = 0.05) -> Record:
 
 
 def one_mode_band(second: Array | None = None) -> tuple[Band, Modal]:
-    """The band around that mode, and where a fit may begin: poles in Hz near the true one, and at `second` if given.
+    """Return the band around that mode, and start poles of a fit in Hz near the true one, and at `second` if given.
 
     >>> one_mode_band()[0].cells.width
     2

@@ -41,6 +41,6 @@ def part(start: float, stop: float, text: str = "") -> Generator[None]:
         yield
 
 
-def report(share: float) -> None:
-    """Report the share of the present part that is done, 0 to 1."""
-    _FOLLOWER.get()("", share)
+def report(share: float, text: str = "") -> None:
+    """Report the share of the present part that is done, 0 to 1; `text` describes it where the part does not."""
+    _FOLLOWER.get()(text, share)

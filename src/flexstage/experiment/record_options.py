@@ -183,7 +183,7 @@ def _units(texts: Sequence[str] | None, findings: list[Finding]) -> tuple[tuple[
     pairs = [tuple(part.strip() for part in text.rpartition("=")[::2]) for text in texts or ()]
     for text, (name, unit) in zip(texts or (), pairs, strict=True):
         if not name or not unit:
-            findings.append(Finding(f"--units {text}", "this names no channel and unit", 'Write for example --units "S*=um"'))
+            findings.append(Finding(f"--units {text}", "this names no channel and unit", 'Use e.g. --units "S*=um"'))
     return tuple((name, unit) for texts_of, unit in pairs for name in names([texts_of]))
 
 
@@ -192,9 +192,7 @@ def _arrays(texts: Sequence[str] | None, findings: list[Finding]) -> options.Arr
     for text in texts or ():
         meaning, _, listed = text.partition("=")
         if meaning.strip() not in known or not names([listed]):
-            findings.append(
-                Finding(f"--array {text}", f"this says of no array what it is: {', '.join(known)}", "Write for example samples=u,y")
-            )
+            findings.append(Finding(f"--array {text}", f"this says of no array what it is: {', '.join(known)}", "Use e.g. samples=u,y"))
         else:
             stated[meaning.strip()] = stated.get(meaning.strip(), ()) + names([listed])
     return options.Arrays(**stated)

@@ -1,1 +1,1 @@
-"""The description of a stage, its expansion into bodies and links, its checks and its file."""
+"""Description of a stage: expansion into bodies and links, checks, and design file."""

@@ -30,17 +30,17 @@ class Section:
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Sections of entries that `like` may start from, and the sources that their tags name."""
+    """Catalogue: sections of entries for `like`, and the sources of their tags."""
 
     sections: tuple[Section, ...]
     sources: Mapping[str, str]
 
     def section(self, record: type) -> Section | None:
-        """The section of a class, if there is any."""
+        """Section of a class; `None` if there is none."""
         return next((section for section in self.sections if section.record is record), None)
 
     def extended(self, raw: Mapping[str, Any]) -> Catalogue:
-        """The catalogue with the entries of another one's tree, which take precedence.
+        """Return the catalogue extended by another one's tree, whose entries take precedence.
 
         >>> found = Catalogue((), {}).extended({"materials": {"ours": {"young": "200 GPa"}}})
         >>> list(found.section(Material).entries)
@@ -53,7 +53,7 @@ class Catalogue:
         )
 
     def sources_of(self, tags: Iterable[str]) -> dict[str, str]:
-        """The sources that tags (`stated key place`) name."""
+        """Sources named in tags (`stated key place`)."""
         keys = {word for tag in tags for word in tag.split()[1:2]}
         return {key: text for key, text in self.sources.items() if key in keys}
 
@@ -65,12 +65,12 @@ SECTIONS = (
     Section("coils", "Voice coils", "parts", VoiceCoil, "voice_coil", {}),
     Section("gauges", "Displacement sensors", "sensors", Gauge, None, {}),
 )
-"""The sections of a catalogue, without entries."""
+"""Sections of a catalogue, without entries."""
 
 
 @functools.cache
 def shipped_catalogue() -> Catalogue:
-    """Return the catalogue that comes with the package.
+    """Return the catalogue of the package.
 
     >>> "SUS420" in shipped_catalogue().section(Material).entries
     True

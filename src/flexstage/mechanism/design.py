@@ -1,4 +1,4 @@
-"""One design of a batch of descriptions: for models that read one at a time."""
+"""Single designs of a batch of descriptions, for models without batch axes."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.references import transformed
 
 _NEAR, _SMALL = 1e-4, 1e-6
-"""How far a design beside one is: of each number, and of numbers that are zero [SI]."""
+"""Step to a neighbouring design: relative, and absolute for zero numbers [SI]."""
 
 
 def designs(mechanism: Mechanism) -> int | None:
-    """How many designs a description holds along its one batch axis; `None` of a single one.
+    """Return the number of designs along the batch axis of a description; `None` for a single design.
 
     >>> designs(Mechanism("stage")) is None
     True
@@ -25,7 +25,7 @@ def designs(mechanism: Mechanism) -> int | None:
 
 
 def design(mechanism: Mechanism, place: int, share: float = 0.0) -> Mechanism:
-    """The design at a place of a batch, and of complex numbers the real one with a `share` of its imaginary parts added.
+    """Return the design at an index of a batch; of complex numbers, the real part plus a `share` of the imaginary part.
 
     >>> import flexstage as fs
     >>> design(fs.Mechanism("stage", gravity=(0.0, 0.0, np.array([-9.8, -1.6]))), 1).gravity[2]
@@ -43,7 +43,7 @@ def design(mechanism: Mechanism, place: int, share: float = 0.0) -> Mechanism:
 
 
 def step_size(mechanism: Mechanism) -> float:
-    """The share of imaginary parts that changes no number by more than a ten-thousandth; zero where all are real.
+    """Return the share of imaginary parts that changes each number by 1e-4 at most; zero if all are real.
 
     >>> step_size(Mechanism("stage"))
     0.0
@@ -58,7 +58,7 @@ def step_size(mechanism: Mechanism) -> float:
 
 
 def _is_batch(value: Array) -> bool:
-    """Whether the first axis of an array in a description is one of designs: numbers have no axis of their own, matrices two."""
+    """Whether the first axis of an array is the batch axis: numbers have no other axis, matrices two."""
     return value.ndim in (1, 3)
 
 

@@ -1,4 +1,4 @@
-"""Calibrated parts: which a stage has, and the stage as it was drawn."""
+"""Calibrated parts of a stage, and the nominal stage with its drawn parts."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from flexstage.parts.part import Restricted, material_of
 
 
 def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
-    """The stage with every compliance matrix that replaces a drawn part replaced by it.
+    """Return the stage with drawn parts instead of the compliance matrices that replace them.
 
-    Raises `DesignError` where the part it stands for is not there.
+    Raises `DesignError` if the replaced part is missing.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> with_drawn_parts(double_triangle()) == double_triangle()
@@ -22,7 +22,7 @@ def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
     """
     stand_ins = {name: part.replaces for name, part in mechanism.parts.items() if isinstance(part, ComplianceMatrix) and part.replaces}
     require(
-        Finding(f"parts.{name}.replaces", f'there is no part "{kept}"', "Keep the drawn part that was calibrated in the file")
+        Finding(f"parts.{name}.replaces", f'unknown part "{kept}"', "Keep the drawn part that was calibrated in the file")
         for name, kept in stand_ins.items()
         if kept not in mechanism.parts
     )
@@ -32,7 +32,7 @@ def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
 
 
 def as_drawn(mechanism: Mechanism, link: PlacedLink) -> PlacedLink:
-    """The link with the drawn part that its given one stands for, and that part's material: how long it is, how it grows and loses energy.
+    """Return the link with the drawn part that its compliance matrix replaces, with its length, expansion and damping.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -49,7 +49,7 @@ def as_drawn(mechanism: Mechanism, link: PlacedLink) -> PlacedLink:
 
 
 def calibrated_parts(mechanism: Mechanism) -> tuple[str, ...]:
-    """Names of the parts whose 6x6 is of FEA origin: theory that uses them is not independent of FEA.
+    """Return the names of parts with a 6x6 from FEA: theory with these parts is not independent of FEA.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> calibrated_parts(double_triangle())

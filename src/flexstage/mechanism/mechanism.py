@@ -1,4 +1,4 @@
-"""The description of a stage: frozen, without state and without results."""
+"""Description of a stage: frozen, without state and results."""
 
 from __future__ import annotations
 
@@ -34,28 +34,28 @@ from flexstage.parts.part import Part
 GROUND = "ground"
 PLATFORM = "platform"
 NOT_GROWING = "none"
-"""Said of the ground in place of a material: it does not grow with temperature."""
+"""Value instead of the ground's material: no thermal expansion."""
 EVERYWHERE = "all"
-"""Said in place of a body: the temperature of all that has none of its own."""
+"""Value instead of a body: the temperature of bodies without their own."""
 
 NAMED = ("materials", "parts", "bodies", "links", "units", "placements", "sensors", "gauges", "payloads", "forces", "stops")
 """Sections of entries by name."""
 BESIDE = {"beside": True}
-"""Metadata of a field that has no key of its own in a file: formulas stand where the values do."""
+"""Metadata of a field without a key in a file: formulas replace values there."""
 
 
 Joins: TypeAlias = tuple[str, str] | Mapping[str, str]
-"""Bodies that a link joins: first and second, or by the port of its part."""
+"""Bodies joined by a link: first and second, or by port of its part."""
 
 
 def _empty(metadata: Mapping[str, Any] | None = None) -> Any:
-    """A table without entries where none is given."""
+    """Default: an empty table."""
     return field(default_factory=lambda: Table({}), metadata=metadata)
 
 
 @dataclass(frozen=True, eq=False)
 class NamedNumber(Description):
-    """A number that formulas refer to by name: its value [SI] and the unit that files show it in (`1`: a ratio)."""
+    """Number that formulas refer to by name: its value [SI] and its unit in files (`1`: a ratio)."""
 
     value: Annotated[Number, ANY]
     unit: str
@@ -63,15 +63,15 @@ class NamedNumber(Description):
 
 @dataclass(frozen=True, eq=False)
 class Link(Description):
-    """A part between two bodies, or between as many as it has ports.
+    """Elastic connection (a part) between two bodies, or between as many bodies as the part has ports.
 
-    `joins` names them, first to second: the relative twist is that of the second against the first. `part` names an entry of the
-    mechanism's parts. The link frame has its origin at the part's centre `at`, x along `along`, from the first body to the second, z along
-    `bends` (the axis of the compliant rotation; needed for parts that are not round). `free` overrides the part's intended freedoms.
-    Instead of `at` and `along` the part's two ends may be given: `start` at the first body, `end` at the second.
+    `joins` names the bodies: the relative twist is of the second body against the first. `part` names an entry of the mechanism's parts.
+    The link frame has its origin at the part's centre `at` and x along `along` (first to second body). The axis z is along `bends`, the
+    axis of compliant rotation, required for parts that are not axisymmetric. `free` overrides the ideal degrees of freedom of the part. The
+    part's two ends may replace `at` and `along`: `start` at the first body, `end` at the second.
 
-    A part with ports (a superelement) joins a body at each, by name: several ports may be joined to one body. The link frame is then that
-    of the part's axes, and `free` the freedoms of the second port's body against the first's, about its origin, where it has two.
+    A part with ports (a superelement) joins a body at each port, by name; several ports may join one body. The link frame is then the frame
+    of the part's axes. With two ports, `free` are the degrees of freedom of the second port's body against the first's, about its origin.
 
     `circuit` names the input of a force actuator. Those of one circuit are in series on one amplifier and share the input; a `-` before
     the name reverses the polarity (push-pull).
@@ -89,29 +89,29 @@ class Link(Description):
 
     @property
     def centre(self) -> Vector:
-        """The part's centre: `at`, or the middle between both ends."""
+        """Centre of the part: `at`, or the midpoint of both ends."""
         return middle(self.start, self.end) if self.at is None and self.start and self.end else self.at or ORIGIN
 
     @property
     def direction(self) -> Vector:
-        """The direction of the part's x axis: `along`, or from end to end."""
+        """Direction of the part's x axis: `along`, or from end to end."""
         return between(self.start, self.end) if self.along is None and self.start and self.end else self.along or ORIGIN
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """The names of the bodies it joins."""
+        """Names of the joined bodies."""
         return tuple(self.joins.values()) if isinstance(self.joins, Mapping) else self.joins
 
 
 @dataclass(frozen=True, eq=False)
 class Unit(Description):
-    """A sub-assembly drawn once in its own frame and placed by pattern: its `bodies` and `links`.
+    """Sub-assembly drawn once in its own frame and placed by a pattern: its `bodies` and `links`.
 
-    Links may also join bodies of the stage (`ground`, `platform`, ...) and of other copies (`W/carriage`). `stiffness` states the unit's
-    own stiffness in actuator coordinates for the mapped model (absent: computed where the unit is a direct or a lever unit).
+    Links may also join bodies of the stage (`ground`, `platform`, ...) and of other instances (`W/carriage`). `stiffness` is the unit's
+    stiffness in actuator coordinates for the mapped model (default: computed for a direct or a lever unit).
 
-    `like` names another unit, whose bodies and links this one has too, but for those that it draws under the same names; overrides of
-    that unit (`inner/front.thickness`) are its own, its own (`outer/front.at.x`) go before. A stated stiffness is not taken over.
+    `like` names another unit: its bodies and links are inherited, unless drawn here under the same names. Its overrides
+    (`inner/front.thickness`) are inherited too; own overrides (`outer/front.at.x`) take precedence. Its `stiffness` is not inherited.
     """
 
     bodies: Mapping[str, Body] = _empty()
@@ -122,7 +122,7 @@ class Unit(Description):
 
 @dataclass(frozen=True, eq=False)
 class Placement(Description):
-    """Copies of a unit: its name and the pattern they stand in. The key `B1-B3` names three copies."""
+    """Instances of a unit: its name and their pattern. The key `B1-B3` names three instances."""
 
     unit: str
     pattern: Pattern
@@ -130,10 +130,11 @@ class Placement(Description):
 
 @dataclass(frozen=True, eq=False)
 class Probe(Description):
-    """Gauges that read the motion of `body` against `base` along, or about, the x axis of the pattern's frame, at its origin.
+    """Gauges (displacement sensors) of the motion of `body` against `base` along or about the x axis of the pattern's frame.
 
-    x points from a gauge of gaps to its target: the gap opens when the target moves along +x, and `positive` says whether its reading then
-    grows. The others state none: their reading grows along +x, or with a turn about +x by the right-hand rule.
+    The measuring point is the frame's origin. For a gap gauge, x points to its target: the gap opens for target motion along +x. `positive`
+    is the sign convention of the reading. Other gauges have no `positive`: their reading increases along +x, or with a right-handed
+    rotation about +x.
     """
 
     gauge: str
@@ -145,9 +146,9 @@ class Probe(Description):
 
 @dataclass(frozen=True, eq=False)
 class LinkProbe(Description):
-    """A gauge on a link of the expanded stage (`B1/pzt`): it reads the link's deformation along, or about, the link's x axis.
+    """Gauge on a link of the expanded stage (`B1/pzt`), for its deformation along or about the link's x axis.
 
-    The second body against the first: positive where the link becomes longer. `B1-B3/pzt` are the links of as many gauges.
+    Motion of the second body against the first: positive for elongation. `B1-B3/pzt` are the links of three gauges.
     """
 
     gauge: str
@@ -156,10 +157,9 @@ class LinkProbe(Description):
 
 @dataclass(frozen=True, eq=False)
 class GaugeSum(Description):
-    """A weighted sum of other gauges that read one quantity, by name: `{S1 = 0.5, S2 = -0.5}`.
+    """Weighted sum of other gauges of one quantity, by name: `{S1 = 0.5, S2 = -0.5}`.
 
-    Its members are read through it: the pose follows from the gauges that no sum takes up, sums among them. Its noise, steps and range
-    are those of its members.
+    The sum replaces its members: the pose follows from sums and from gauges outside sums. Noise, steps and range are those of its members.
     """
 
     sum: Mapping[str, Annotated[Number, RATIO]]
@@ -170,9 +170,9 @@ GaugePlace: TypeAlias = Probe | LinkProbe | GaugeSum
 
 @dataclass(frozen=True, eq=False)
 class Stop(Description):
-    """A gap at which a stroke ends: `body` may move by `gap` along x of the pattern's frame, at its origin, against `base`.
+    """Stop of a stroke: `body` may move by `gap` along x of the pattern's frame, at its origin, against `base`.
 
-    With `gap_negative` it ends the way back too; without, nothing stops that. A key such as `E1-E3` names as many stops.
+    `gap_negative` is the limit in the opposite direction (default: none). A key such as `E1-E3` names three stops.
     """
 
     body: str
@@ -184,7 +184,7 @@ class Stop(Description):
 
 @dataclass(frozen=True, eq=False)
 class Force(Description):
-    """A constant force on a body at a point (a bonding force), in the stage's frame."""
+    """Constant force on a body at a point (a bonding force), in the stage's frame."""
 
     body: str
     at: Annotated[Vector, LENGTH]
@@ -193,10 +193,10 @@ class Force(Description):
 
 @dataclass(frozen=True, eq=False)
 class StrokePath(Description):
-    """A path to judge the stage along: `drive` (a coordinate such as `platform.y`, a stack, a load) goes between the two values of `to`.
+    """Load path of a stage: `drive` (a coordinate such as `platform.y`, a stack, a load) varies between the two values of `to`.
 
-    Values are texts with units, counted from where the stage sags to; at `points` of them equilibrium is looked for. `hold` says what
-    stays: a dead load in newtons along a coordinate (`{"platform.x": "-20 N"}`), a coordinate that stays where it rests
+    Values are texts with units, relative to the static equilibrium; equilibria are computed at `points` of them. `hold` has the constant
+    conditions: a permanent load along a coordinate (`{"platform.x": "-20 N"}`), a coordinate fixed at its static equilibrium
     (`{"platform.rz": "0"}`), or `{"gravity": "off"}`.
     """
 
@@ -208,19 +208,19 @@ class StrokePath(Description):
 
 @dataclass(frozen=True, eq=False)
 class ModalDamping(Description):
-    """One damping ratio for all modes."""
+    """Modal damping: one damping ratio for all modes."""
 
     ratio: Annotated[Number, RATIO, NOT_NEGATIVE]
 
 
 @dataclass(frozen=True, eq=False)
 class StructuralDamping(Description):
-    """The loss factor of each part's material: K_p (1 + j eta_p); frequency domain only."""
+    """Structural damping by the loss factor of each part's material: K_p (1 + j eta_p); frequency domain only."""
 
 
 @dataclass(frozen=True, eq=False)
 class RayleighDamping(Description):
-    """C = mass_factor M + stiffness_factor K."""
+    """Rayleigh damping: C = mass_factor M + stiffness_factor K."""
 
     mass_factor: Annotated[Number, RATE, NOT_NEGATIVE]
     stiffness_factor: Annotated[Number, TIME, NOT_NEGATIVE]
@@ -231,23 +231,23 @@ Damping: TypeAlias = ModalDamping | StructuralDamping | RayleighDamping
 
 @dataclass(frozen=True, eq=False)
 class Aperture(Description):
-    """Clear aperture through the stage along z that nothing may enter: a rectangle (size x, size y) about the z axis."""
+    """Clear aperture (keep-out volume) through the stage along z: a rectangle (size x, size y) about the z axis."""
 
     size: tuple[Annotated[Number, LENGTH, POSITIVE], Annotated[Number, LENGTH, POSITIVE]]
 
 
 @dataclass(frozen=True, eq=False)
 class Mechanism(InNotebook, Description):
-    """A stage: one description for all models.
+    """Description of a stage, for all models.
 
     A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`placements`), with `gauges`. Body
-    `ground` is implied, body `platform` is the moving part. `overrides` are values of single links that differ from the shared part, by
-    address (`horizontal/front.thickness`, `B2/front.thickness`). `max_mode_frequency` is the frequency below which modes are listed.
-    `stops` end strokes, `paths` are what requirements over a stroke are judged along. `ground` names the material that the ground grows
-    with (`none`: it does not grow). `temperatures` are changes since it was made, by body (`ground` too), and of `all` that has none of its
-    own; a part has the mean of the bodies that it joins. `packages` are those that its kinds of parts, gauges and measures come from, each
-    perhaps with versions: `tapered-leaf >= 1`. `formulas` say, by address, what values are worked out of `numbers`; values are kept as they
-    come out.
+    `ground` is implied, body `platform` is the moving part. `overrides` are values of single links that replace those of the shared part,
+    by address (`horizontal/front.thickness`, `B2/front.thickness`). `max_mode_frequency` is the frequency limit of listed modes.
+
+    `stops` limit strokes, `paths` are load paths for requirements. `ground` names the ground's material, for its expansion (`none`: no
+    expansion). `temperatures` are changes since manufacture, by body (also `ground`), and of `all` others; a part has the mean of its
+    bodies. `packages` provide kinds of parts, gauges and measures, with optional versions: `tapered-leaf >= 1`. `formulas`, by address,
+    compute values from `numbers`; the description stores the computed values.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a description", "stage")
@@ -287,7 +287,7 @@ class Mechanism(InNotebook, Description):
 
 
 def every_link(mechanism: Mechanism) -> Iterator[tuple[str, Link]]:
-    """Every link that is drawn, of the stage and of its units, by its address.
+    """Yield every drawn link of the stage and of its units, by address.
 
     >>> [address for address, _ in every_link(Mechanism("", units={"leg": Unit(links={"foot": Link(("ground", "knee"), "wire")})}))]
     ['units.leg.links.foot']
@@ -297,7 +297,7 @@ def every_link(mechanism: Mechanism) -> Iterator[tuple[str, Link]]:
 
 
 def every_body(mechanism: Mechanism) -> Iterator[tuple[str, Body]]:
-    """Every body that is drawn, of the stage and of its units, by its address.
+    """Yield every drawn body of the stage and of its units, by address.
 
     >>> [address for address, _ in every_body(Mechanism("", bodies={"platform": Body()}))]
     ['bodies.platform']
@@ -307,7 +307,7 @@ def every_body(mechanism: Mechanism) -> Iterator[tuple[str, Body]]:
 
 
 def posed(gauges: Mapping[str, GaugePlace]) -> dict[str, Probe]:
-    """The gauges that stand at poses of their own, not on links and not as sums of others.
+    """Yield the gauges with their own poses, not on links and not sums of others.
 
     >>> list(posed({"D": GaugeSum({"S1": 1.0, "S2": -1.0}), "SG": LinkProbe("strain", "B1/pzt")}))
     []

@@ -18,7 +18,7 @@ SECTIONS = {
     "like": "units",
     "gauge": "sensors",
 }
-"""Section of the entries that a field of this name refers to."""
+"""Section of the entries referred to, by field name."""
 BODIES = ("body", "base", "of", "joins")
 """Fields that refer to bodies."""
 FILES = ("file", "stiffness_file", "mass_file", "damping_file")
@@ -26,7 +26,7 @@ FILES = ("file", "stiffness_file", "mass_file", "damping_file")
 
 
 def references(value: Any, where: str) -> Iterator[tuple[str, str, str]]:
-    """Yield the names of materials, parts, units and sensors in a value at `where`: address, section, name.
+    """Yield address, section and name of materials, parts, units and sensors referred to in a value at `where`.
 
     >>> from flexstage.parts.notch import Notch
     >>> from flexstage.parts.profile import Circular
@@ -49,7 +49,7 @@ def references(value: Any, where: str) -> Iterator[tuple[str, str, str]]:
 
 
 def renamed(value: Any, names: Collection[str], change: Callable[[str, str], str]) -> Any:
-    """Return a value with `change(field, text)` in the place of each text in a field of these names; without any, the value itself.
+    """Return a value with each text in fields of these names replaced by `change(field, text)`; unchanged without any.
 
     >>> from flexstage.mechanism.mechanism import Link
     >>> renamed(Link(("ground", "platform"), "leaf"), BODIES, lambda field, name: f"fine/{name}").joins
@@ -59,7 +59,7 @@ def renamed(value: Any, names: Collection[str], change: Callable[[str, str], str
 
 
 def transformed(value: Any, change: Callable[[str, Any], Any], field: str = "") -> Any:
-    """Return a value with `change(field, leaf)` in the place of all that it is made of in the end; what stays is kept as it is.
+    """Return a value with each of its leaves replaced by `change(field, leaf)`; unchanged objects are kept.
 
     >>> transformed((1.0, (2.0, 3.0)), lambda _, number: 2.0 * number)
     (2.0, (4.0, 6.0))

@@ -1,4 +1,4 @@
-"""Description transforms that connect the models: restrict parts to some freedoms, take one unit alone."""
+"""Transformations of a description: restriction of degrees of freedom of parts, isolation of one unit."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ Freedoms = tuple[Freedom, ...]
 
 
 def restrict(mechanism: Mechanism, kept: Mapping[str, tuple[Freedoms, Freedoms]]) -> Mechanism:
-    """Restrict parts to (elastic, free) freedoms, by part name or by the address of a drawn link (`vertical/lower`); the rest is locked.
+    """Restrict parts to (elastic, free) degrees of freedom, by part name or link address (`vertical/lower`); others are locked.
 
-    Restricted parts have no mass. Raises `DesignError` for a name that is neither.
+    Restricted parts are massless. Raises `DesignError` for a name that is neither.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> restrict(double_triangle(), {"neck": ((Freedom.X,), ())}).parts["neck"].elastic
@@ -46,11 +46,11 @@ def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic
     unit, _, link = address.rpartition("/")
     known = drawn_units(original)
     if unit not in known or link not in known[unit].links:
-        raise refuse(address, "neither a part nor a link", f"Parts are {', '.join(original.parts)}")
+        raise refuse(address, "unknown part or link", f"Use one of {', '.join(original.parts)}")
     drawn, there = result.units[unit], known[unit].links[link]
     own = f"{there.part} of {address}"
     part = original.parts[there.part]
-    if link not in drawn.links:  # from then on the unit draws it itself: overrides of the other one no longer count
+    if link not in drawn.links:  # drawn by the unit from here on: overrides of the other unit no longer apply
         there, part = apply_overrides(original, there, tuple(f"{each}/{link}" for each in link_lineage(original, unit, link)))
     part = _restrict(part, elastic, free)
     links = {**drawn.links, link: replace(there, part=own)}
@@ -58,10 +58,10 @@ def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic
 
 
 def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> Mechanism:
-    """One unit alone, in its own frame, its output a massless platform; with `guide` the output can only move along that direction.
+    """Isolate one unit in its own frame, with a massless platform at its output; `guide` constrains the output to a direction.
 
-    The output's reference point is the joint with the platform. Overrides of this copy are kept; other units, and outlines that belong to
-    other bodies of the stage (lugs of the platform), are left out.
+    The output's reference point is the joint with the platform. Overrides of this instance are kept; other units, and outlines of other
+    bodies of the stage (lugs of the platform), are omitted.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(isolate(double_triangle(), "B4").units)
@@ -69,11 +69,11 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
     """
     units = {name: unit for name, unit, _ in copies(mechanism)}
     if copy not in units:
-        raise refuse(copy, "no unit is placed under this name", f"Placed are {', '.join(units)}")
+        raise refuse(copy, "unknown instance of a unit", f"Use one of {', '.join(units)}")
     unit = drawn_units(mechanism)[units[copy]]
     joint = next((link for link in unit.links.values() if PLATFORM in (owner_of(unit.bodies, body) for body in link.bodies)), None)
     if joint is None:
-        raise refuse(copy, "its unit does not join the platform", "Only units with an output can be taken alone")
+        raise refuse(copy, "its unit does not join the platform", "Use a unit with an output")
     own = {name: body if body.of is None else replace(body, solids={}) for name, body in unit.bodies.items()}
     used = {name: mechanism.units[name] for name in ancestry(mechanism, units[copy])}
     others = {*mechanism.units, *units} - {copy, *used}

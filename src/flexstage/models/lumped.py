@@ -188,6 +188,7 @@ def _model(mechanism: Mechanism, stage: _Stage, masses: Masses) -> LinearModel:
         idle_output=None if idle is None else output @ idle.motions,
         idle_inertia=None if idle is None else _idle_inertia(stage, inertia, idle, carried),
         viscous=_viscous(stage.assembly),
+        floating=kept.floating,
         unknown=tuple(f"{name}.{FORCES[freedom.index]}" for name, freedoms in stage.freedoms.items() for freedom in freedoms),
     )
 
@@ -215,6 +216,7 @@ class _RetainedMotions:
     driven: Array | None
     coordinates: tuple[str, ...]
     idle: _Idle | None
+    floating: Array | None = None
 
 
 def _stage_without_zeros(mechanism: Mechanism) -> _Stage | None:
@@ -378,6 +380,8 @@ def _retain_motions(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Reta
         what = f"every freedom is locked, by {', '.join(stage.freedoms)}, so that nothing is elastic"
         raise refuse("stage", what, "Give a link stiffness in some freedom; the ideal model computes the motion by strokes")
     loose = np.zeros((len(names), 0)) if stage.order.sparse else _loose(stage, basis)
+    if _moves_platform(loose, independent) and (floating := _driven_motions(stage, inertia, basis, loose)) is not None:
+        return _RetainedMotions(basis, driven, tuple(names[index] for index in independent), None, floating)
     named = _loose_coordinates(stage, loose, independent)
     _require_same_loose(stage, basis, independent, named)
     if not named:
@@ -389,6 +393,24 @@ def _retain_motions(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Reta
         None if motion is None else motion + idle.momentless(_momentum(inertia, motion)) for motion in (full[..., left], driven)
     )
     return _RetainedMotions(kept, driven, tuple(names[independent[index]] for index in left), idle)
+
+
+def _driven_motions(stage: _Stage, inertia: Mapping[str, Contribution], basis: Array | None, loose: Array) -> Array | None:
+    """The `loose` motions (n, k), mass-normalised, if the force actuators of one design drive all of them."""
+    full = loose if basis is None else basis @ loose
+    wrenches = exerted_wrenches(stage.assembly)
+    mass = _transpose(full) @ _momentum(inertia, full)
+    laws = max(item.law.ndim for item in stage.strains.values())
+    thrusts = sum((_transpose(stage.strains[name].operator[..., :6, :]) @ wrench for name, wrench in wrenches.items()), np.zeros((1, 1)))
+    work = np.real(first_design(_transpose(full) @ thrusts, 2)) if wrenches else np.zeros((1, 1))
+    sizes = np.linalg.norm(work, axis=0)
+    moved = work[:, sizes > _APART * np.max(sizes)] / sizes[sizes > _APART * np.max(sizes)]
+    if np.linalg.matrix_rank(moved, tol=_APART) < loose.shape[1] or np.linalg.cond(np.real(first_design(mass, 2))) > 1.0 / _MASSLESS:
+        return None
+    if max(mass.ndim, full.ndim, thrusts.ndim, laws) > 2 or np.iscomplexobj(mass) or np.iscomplexobj(full):
+        what = "forces drive a motion without stiffness, which is analysed for single designs only"
+        raise refuse("stage", what, "Analyse the designs one by one, or add a spring")
+    return loose @ np.linalg.inv(np.linalg.cholesky(mass)).T
 
 
 def _stroke_motion(stage: _Stage, solution: Elimination, rows: Array) -> Array | None:

@@ -1,4 +1,4 @@
-"""What a stage is made of: data, intended freedoms and profiles; no stiffness, no CAD."""
+"""Parts and bodies of a stage: data, ideal degrees of freedom and profiles; no stiffness, no CAD."""
 
 from flexstage.base.register import Register
 from flexstage.parts.amplified import Amplified, SteppingDrive
@@ -35,7 +35,7 @@ PARTS: Register[type[Elastic]] = Register(
     "flexstage.parts",
     {part.kind: part for part in (*_HINGES, Membrane, ComplianceMatrix, Spring, Contact, Superelement, *_COMPOUNDS, *_ACTUATORS)},
 )
-"""Kinds of parts that have a stiffness of their own, or whose members have."""
+"""Kinds of parts with stiffness, also of their members."""
 
 GAUGES: Register[type[Instrument]] = Register("flexstage.gauges", {gauge.kind: gauge for gauge in _GAUGES})
-"""Kinds of gauges; one that states no kind is a `Gauge`."""
+"""Kinds of gauges (default: `Gauge`)."""

@@ -1,4 +1,4 @@
-"""Actuators: parts with an input, which is a stroke that they impose or a force that they exert between their two faces."""
+"""Actuators: parts with an input, a stroke or a force between their two faces."""
 
 from __future__ import annotations
 
@@ -15,45 +15,44 @@ from flexstage.parts.shape import Elastic, Order
 
 
 class Actuator(Elastic):
-    """A part with an input, of which `input` is the quantity.
+    """Part with an input of the quantity `input`.
 
-    A stroke actuator (`input` a displacement) deforms freely by `free_deformation` per unit of stroke and resists all else: its force is
-    k (dx - s u). A force actuator (`input` a force or a current) exerts `wrench` per unit of input on its second face and the opposite
-    on its first, whatever their motion, and leaves all freedoms free; what stiffness it has of its own adds to that. Positive pushes
-    the faces apart.
+    A stroke actuator (`input` a displacement) has a `free_deformation` s per unit of stroke u and the force k (dx - s u). A force actuator
+    (`input` a force or a current) exerts `wrench` per unit of input on its second face and the opposite on its first. All its degrees of
+    freedom are free; its own stiffness is additional. Positive pushes the faces apart.
     """
 
     input: ClassVar[Quantity] = DISPLACEMENT
 
     @property
     def takes_stroke(self) -> bool:
-        """Whether its input is a stroke; else it is a force, or what makes one."""
+        """Whether the input is a stroke; else a force, or a current."""
         return self.input is DISPLACEMENT
 
     @property
     def step(self) -> Number | None:
-        """The least step of its input; 0: it follows continuously, None: it is not stated."""
+        """Least step of the input; 0: continuous, None: unspecified."""
         return 0.0
 
     @property
     def free_deformation(self) -> Array:
-        """Deformation (..., 6) of the second face against the first per unit of stroke if nothing holds it, in the link's frame.
+        """Free deformation (..., 6) of the second face against the first per unit of stroke, in the link's frame.
 
-        Zero of a force actuator.
+        Zero for a force actuator.
         """
         return np.zeros(6)
 
     @property
     def wrench(self) -> Array:
-        """What the second face feels (..., 6) per unit of input, in the link's frame at its centre; zero of a stroke actuator."""
+        """Wrench (..., 6) on the second face per unit of input, in the link's frame at its centre; zero for a stroke actuator."""
         return np.zeros(6)
 
 
 @dataclass(frozen=True, eq=False)
 class ForceLimit:
-    """What bounds a force actuator's input, by `name`: the largest that it may be `held` for ever, and in `short` use (None: not known).
+    """Limit of a force actuator's input: `held` is continuous, `short` in short use (None: unknown).
 
-    `clips`: it cannot be passed for a moment, as heat can.
+    `clips`: an instantaneous limit, unlike a thermal one.
     """
 
     name: str
@@ -63,7 +62,7 @@ class ForceLimit:
 
 
 class ThrustActuator(Actuator):
-    """An actuator that exerts a force along x, positive pushing its faces apart, or a torque about x.
+    """Actuator with a force along x, positive pushing its faces apart, or a torque about x.
 
     `axis` is the place of its force or torque in its `wrench`.
     """
@@ -78,11 +77,11 @@ class ThrustActuator(Actuator):
 
     @property
     def cutoff(self) -> Number | None:
-        """Frequency [Hz] of the lag of its input behind what its amplifier imposes; None: there is none."""
+        """Cut-off frequency [Hz] between amplifier output and input; None: no lag."""
         return None
 
     def slew(self, limit: Number) -> Number | None:  # noqa: ARG002  (kinds that know one need it)
-        """How fast its input can rise from zero to a `limit`, in the mean [1/s]; None: no limit is known."""
+        """Mean slew rate of the input from zero to a `limit` [1/s]; None: no known limit."""
         return None
 
     def in_series(self, count: int) -> ThrustActuator:  # noqa: ARG002  (coils need it)
@@ -90,38 +89,38 @@ class ThrustActuator(Actuator):
         return self
 
     def loss(self, rms: Number) -> Number | None:  # noqa: ARG002  (kinds that know it need it)
-        """The power [W] that an input of this rms turns into heat; None: it is not known."""
+        """Dissipated power [W] for an rms input; None: unknown."""
         return None
 
     def warming(self, rms: Number) -> Number | None:  # noqa: ARG002
-        """By how much an input of this rms, held for ever, warms it [K]; None: it is not known."""
+        """Steady-state temperature rise for an rms input [K]; None: unknown."""
         return None
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """All six: it holds nothing."""
+        """All six."""
         return ALL
 
     @property
     def mirrored(self) -> ThrustActuator:
-        """Itself: a line has no sides."""
+        """Itself, by symmetry."""
         return self
 
     @property
     def wrench(self) -> Array:
-        """Its thrust along x, or torque about x."""
+        """Thrust along x, or torque about x."""
         return np.asarray(self.thrust)[..., None] * np.eye(6)[self.axis]
 
     @property
     def limits(self) -> Iterator[ForceLimit]:
-        """What bounds its input."""
+        """Limits of the input."""
         yield from ()
 
 
 class StrokeActuator(Actuator):
-    """An actuator that imposes a stroke; a kind states the full free `stroke` and what its force is as it is blocked.
+    """Actuator with an imposed stroke; a kind specifies the full free `stroke` and the blocked force.
 
-    What it bears is not known where a kind does not state it.
+    Load limits are unknown unless a kind specifies them.
     """
 
     stroke: Number
@@ -131,7 +130,7 @@ class StrokeActuator(Actuator):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """No passive freedom: what moves is its stroke."""
+        """No passive degree of freedom; the stroke moves."""
         return ()
 
     @property
@@ -141,22 +140,22 @@ class StrokeActuator(Actuator):
 
     @property
     def blocking_force(self) -> Number:
-        """Force of the fully driven actuator held at its length [N]."""
+        """Blocked force at full stroke [N]."""
         raise NotImplementedError
 
     @property
     def below_rest(self) -> Number:
-        """The share of its stroke that lies below where it rests: half."""
+        """Share of the stroke below the rest position: half."""
         return 0.5
 
     @property
     def below_zero(self) -> Number:
-        """The share of its stroke that lies below where it is without volts: none."""
+        """Share of the stroke below zero voltage: none."""
         return 0.0
 
 
 class ChargedActuator(StrokeActuator):
-    """A stroke actuator of piezo ceramic: volts between `voltage_low` and `voltage_high` give the stroke; it rests at its `bias`."""
+    """Piezo stroke actuator: a voltage from `voltage_low` to `voltage_high` controls the stroke; it rests at its `bias`."""
 
     voltage_low: Number | None
     voltage_high: Number | None
@@ -165,21 +164,21 @@ class ChargedActuator(StrokeActuator):
 
     @property
     def below_rest(self) -> Number:
-        """The share of its stroke below its bias; half where none is stated."""
+        """Share of the stroke below the bias (default: half)."""
         if self.bias is None or self.voltage_low is None or self.voltage_high is None:
             return 0.5
         return (self.bias - self.voltage_low) / (self.voltage_high - self.voltage_low)
 
     @property
     def below_zero(self) -> Number:
-        """The share of its stroke below no voltage (negative: the range begins above it); none where no range is stated."""
+        """Share of the stroke below zero voltage (negative: the range begins above it); zero without a range."""
         if self.voltage_low is None or self.voltage_high is None:
             return 0.0
         return -self.voltage_low / (self.voltage_high - self.voltage_low)
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Its bias is within its voltages."""
+        """Order: bias within the voltage range."""
         yield Order("voltage_low", self.voltage_low, self.voltage_high, "voltage_high", "Exchange them", VOLTAGE)
-        advice = "Give a bias within the range of the stack"
+        advice = "Use a bias within the range of the stack"
         yield Order("bias", self.bias, self.voltage_high, "voltage_high", advice, VOLTAGE, strict=False)

@@ -1,4 +1,4 @@
-"""Actuators known by what stands between their two faces: a 6x6 and a free deformation. Amplified piezos, drives that step."""
+"""Actuators known by a 6x6 and a free deformation between their faces: amplified piezos, stepping drives."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _Deformation: TypeAlias = tuple[_Shift, _Shift, _Shift, _Turn, _Turn, _Turn]
 
 
 class BetweenFaces(StrokeActuator):
-    """A stroke actuator whose force is f = k (dx - s u): a stated 6x6 k about its centre and a free deformation s per unit of stroke."""
+    """Stroke actuator with the force f = k (dx - s u): a 6x6 k about its centre and a free deformation s per unit of stroke."""
 
     diagonal: _Diagonal | None
     matrix: _Matrix | None
@@ -54,55 +54,55 @@ class BetweenFaces(StrokeActuator):
 
     @property
     def carried(self) -> Array:
-        """Half of its mass (..., 12, 12) at each face, both at its centre."""
+        """Half of the mass (..., 12, 12) at each face, both at the centre."""
         return point_masses(0.5 * self.mass, 0.5 * self.mass)
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Its 6x6, and half of its mass at each face."""
+        """Stiffness 6x6, and half of the mass at each face."""
         return Stated(self.between, self.carried)
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The freedoms that it is stated to leave free."""
+        """Free degrees of freedom."""
         return self.free
 
     @property
     def between(self) -> Array:
-        """The stiffness k (..., 6, 6) about its centre, second face against first, SI."""
+        """Stiffness k (..., 6, 6) about the centre, second face against first, SI."""
         if self.diagonal is not None:
             return stack(self.diagonal)[..., None] * np.eye(6)
         return np.linalg.inv(stack(self.compliance)) if self.matrix is None else stack(self.matrix)
 
     @property
     def mirrored(self) -> Self:
-        """What its own mirror across y shows: couplings, products of inertia and deformations that tell left from right reversed."""
+        """Mirror image across y: couplings, products of inertia and deformations odd in y reversed."""
         return replace(self, **dict(_reversed(self)))  # pyright: ignore[reportArgumentType] (its kinds are dataclasses)
 
     @property
     def blocking_force(self) -> Number:
-        """Force along x of the fully driven actuator, its faces held: (k s)_x times its stroke [N]."""
+        """Blocked force along x at full stroke: (k s)_x times the stroke [N]."""
         return (self.between @ self.free_deformation[..., None])[..., 0, 0] * self.stroke
 
     @property
     def is_axisymmetric(self) -> bool:
-        """Whether stiffness, free deformation and freedoms are alike across its axis."""
+        """Whether stiffness, free deformation and degrees of freedom are axisymmetric."""
         across = np.real(self.free_deformation)[..., [1, 2, 4, 5]]
         return is_even(self.free) and not np.any(across) and turns_into_itself(self.between)
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """It states one of the three, and that is symmetric and positive definite."""
+        """Errors of the stiffness: exactly one form, symmetric and positive definite."""
         stated = [name for name in ("diagonal", "matrix", "compliance") if getattr(self, name) is not None]
         if len(stated) != 1:
-            found = f"it states {' and '.join(stated)}" if stated else "it states no stiffness across its axis"
-            yield Finding("", found, "State one of diagonal (six stiffnesses), matrix (6x6 stiffness) or compliance (6x6)")
+            found = f"both {' and '.join(stated)} specified" if stated else "stiffness across its axis missing"
+            yield Finding("", found, "Specify one of diagonal (six stiffnesses), matrix (6x6 stiffness) or compliance (6x6)")
             return
         if stated[0] != "diagonal":
             yield from definite_findings(stated[0], stack(getattr(self, stated[0])))
 
 
 def _reversed(part: Any) -> Iterator[tuple[str, Any]]:
-    """The fields that a mirror across y changes, as it shows them."""
+    """Fields changed by a mirror across y."""
     for name, value in ((name, getattr(part, name, None)) for name in ("matrix", "compliance", "deformation", "inertia")):
         if value is None:
             continue
@@ -116,13 +116,13 @@ def _reversed(part: Any) -> Iterator[tuple[str, Any]]:
 
 @dataclass(frozen=True, eq=False)
 class Amplified(BetweenFaces, ChargedActuator):
-    """An amplified piezo actuator between its two faces: f = k (dx - s u).
+    """Amplified piezo actuator between its two faces: f = k (dx - s u).
 
-    `stroke` is the full free stroke of its output along x. `deformation` is the free deformation of the second face against the first at
-    the full stroke (x, y, z, rx, ry, rz), for one that contracts, or that also shifts and turns; absent, the stroke along x. One of
-    `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` is its 6x6 about its centre with the volts held. `mass` counts half at each
-    face, and so does `inertia`, about the centre. `free` are the freedoms that the ideal model takes as free. `resonance` (blocked at one
-    face, free at the other) is stated only: inner modes are not modelled.
+    `stroke` is the full free stroke of its output along x. `deformation` is the free deformation (x, y, z, rx, ry, rz) of the second face
+    against the first at full stroke (default: the stroke along x). It describes contracting actuators and parasitic motion. One of
+    `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` is its 6x6 about its centre at constant voltage. Half of `mass` and of
+    `inertia` is at each face, about the centre. `free` are the degrees of freedom of the ideal model. `resonance` (blocked at one face,
+    free at the other) is information only: internal modes are not modelled.
     """
 
     kind: ClassVar[str] = "amplified"
@@ -147,14 +147,14 @@ class Amplified(BetweenFaces, ChargedActuator):
 
     @property
     def free_deformation(self) -> Array:
-        """The deformation over the stroke; along x where none is stated."""
+        """Deformation over stroke (default: along x)."""
         if self.deformation is None:
             return np.eye(6)[0]
         return stack(self.deformation) / np.asarray(self.stroke)[..., None]
 
     @property
     def carried(self) -> Array:
-        """Half of its mass and of its inertia (..., 12, 12) at each face, both at its centre.
+        """Half of the mass and inertia (..., 12, 12) at each face, both at the centre.
 
         >>> Amplified(stroke=1e-4, mass=2.0).carried.diagonal()[:4].tolist()
         [1.0, 1.0, 1.0, 0.0]
@@ -171,11 +171,11 @@ class Amplified(BetweenFaces, ChargedActuator):
 
 @dataclass(frozen=True, eq=False)
 class SteppingDrive(BetweenFaces):
-    """A drive that moves in steps and holds at rest without power: inertia drive, inchworm, screw.
+    """Stepping drive, self-locking without power: inertia drive, inchworm, screw.
 
-    Its stroke is its whole `travel` along x, half of it to either side, in steps of `resolution`. One of `diagonal` (x, y, z, rx, ry, rz),
-    `matrix` and `compliance` is its 6x6 about its centre as it holds. `holding_force` is what slips it along x; both ways it bounds its
-    load. `mass` counts half at each face. Linear: neither backlash nor the pull of its steps.
+    Its stroke is its whole `travel` along x, half to either side, in steps of `resolution`. One of `diagonal` (x, y, z, rx, ry, rz),
+    `matrix` and `compliance` is its 6x6 about its centre while locked. `holding_force` is the slip force along x: its load limit in both
+    directions. Half of `mass` is at each face. Linear: no backlash, no step forces.
     """
 
     kind: ClassVar[str] = "stepper"
@@ -192,25 +192,25 @@ class SteppingDrive(BetweenFaces):
 
     @property
     def stroke(self) -> Number:  # type: ignore[override]
-        """Its travel [m]."""
+        """Travel [m]."""
         return self.travel
 
     @property
     def step(self) -> Number | None:
-        """Its resolution [m]."""
+        """Resolution [m]."""
         return self.resolution
 
     @property
     def maximum_load(self) -> Number | None:  # type: ignore[override]
-        """What slips it [N]."""
+        """Slip force [N]."""
         return self.holding_force
 
     @property
     def tensile_limit(self) -> Number | None:  # type: ignore[override]
-        """What slips it [N]."""
+        """Slip force [N]."""
         return self.holding_force
 
     @property
     def below_zero(self) -> Number:
-        """As it is drawn, it stands in the middle of its travel."""
+        """Half: the nominal position is mid-travel."""
         return 0.5

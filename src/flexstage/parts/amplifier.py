@@ -14,9 +14,9 @@ from flexstage.base.units.quantity import CURRENT, FREQUENCY, POSITIVE, RESISTAN
 
 @dataclass(frozen=True)
 class Amplifier(CheckedFields):
-    """A voltage amplifier on the stack's capacitance C: of first order, ideal where all of this is absent.
+    """Voltage amplifier on the stack's capacitance C: first order, ideal without any of these fields.
 
-    `bandwidth` [Hz] as stated, or that of the output `resistance` R [ohm], 1/(2 pi R C). `current` [A] is the largest it gives.
+    `bandwidth` [Hz] as specified, or 1/(2 pi R C) of the output `resistance` R [ohm]. `current` [A] is the output limit.
     """
 
     bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
@@ -24,7 +24,7 @@ class Amplifier(CheckedFields):
     current: Annotated[float, CURRENT, POSITIVE] | None = None
 
     def cutoff(self, capacitances: Array) -> Array:
-        """Its bandwidth [Hz] on stacks of those capacitances [F]; infinite where nothing limits it.
+        """Return the bandwidth [Hz] for capacitances [F]; infinite without a limit.
 
         >>> Amplifier(resistance=100.0).cutoff(np.array([0.4e-6])).round(1).tolist(), Amplifier().cutoff(np.ones(1)).tolist()
         ([3978.9], [inf])

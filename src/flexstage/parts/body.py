@@ -1,4 +1,4 @@
-"""Rigid bodies: mass properties stated, or taken from solid outlines and their density."""
+"""Rigid bodies: mass properties as specified, or from solid outlines and their density."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from flexstage.spatial.frame import Frame, axes
 
 
 class Solid(Description):
-    """An outline of a body, of one `material`. What stands in the frame of its centre asks it for its geometry there.
+    """Outline of a body, of one `material`, with its geometry in the frame of its centre.
 
-    A cylinder's axis is x there, a block's and an extrusion's height z.
+    In that frame, a cylinder's axis is x, the height of a block or an extrusion z.
     """
 
     material: str
@@ -28,46 +28,46 @@ class Solid(Description):
 
     @property
     def sides(self) -> Array:
-        """Sides (..., 3) of the box around it, along its own axes [m]."""
+        """Sides (..., 3) of the bounding box along its axes [m]."""
         raise NotImplementedError
 
     @property
     def frame(self) -> Frame:
-        """Its own frame in the one it is drawn in: origin at the centre of the box around it."""
+        """Frame relative to the drawing frame: origin at the centre of the bounding box."""
         raise NotImplementedError
 
     @property
     def thinnest(self) -> Number:
-        """Its smallest dimension [m]: it sets the mesh there."""
+        """Smallest dimension [m], for the mesh size."""
         return np.min(np.real(self.sides), axis=-1)
 
     @property
     def is_flat(self) -> bool:
-        """Whether all of its faces are plane."""
+        """Whether all faces are plane."""
         return True
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Which of its numbers must be below which others."""
+        """Order relations between its numbers."""
         yield from ()
 
     @property
     def mirrored(self) -> Solid:
-        """What a mirror across the y axis of its frame shows, in that frame: itself, where it is alike on both sides."""
+        """Mirror image across y in its frame; itself if symmetric."""
         return self
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Which points (n, 3) of its own frame lie in it, or within `slack` [m] of it; of the first design."""
+        """Mask of points (n, 3) of its frame inside, or within `slack` [m]; of the first design."""
         half = 0.5 * first_design(np.real(self.sides), 1)
         return np.all(np.abs(points) <= half + slack, axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class Block(Solid):
-    """A rectangular block centred at `at`, its x edge along the direction `along`, its z edge along `up` (perpendicular to `along`).
+    """Rectangular block centred at `at`, x edge along `along`, z edge along `up` (perpendicular to `along`).
 
-    Without directions its edges lie along the axes of the frame it stands in. `hole` is a centred rectangular through hole of sides (x, y)
-    along the block's own z edge. Sizes in metres. `subtract`: it is a hole, see `Body`.
+    Without directions its edges are parallel to the drawing frame. `hole` is a centred rectangular through hole of sides (x, y) along the
+    block's z edge. Sizes in metres. `subtract`: it is a hole, see `Body`.
     """
 
     material: str
@@ -80,7 +80,7 @@ class Block(Solid):
 
     @property
     def sides(self) -> Array:
-        """Its sizes."""
+        """Sizes."""
         return stack(self.size)
 
     @property
@@ -95,12 +95,12 @@ class Block(Solid):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Its hole is smaller than itself."""
+        """Order: hole smaller than the block."""
         for name, hole, size in zip("xy", self.hole or (), self.size, strict=False):
             yield Order(f"hole.{name}", hole, size, "the size of the block", "Make the hole smaller")
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Which points lie in its walls."""
+        """Mask of points in its walls."""
         within = super().contains(points, slack)
         if self.hole is not None:
             hole = 0.5 * first_design(np.real(stack(self.hole)), 1)
@@ -110,7 +110,7 @@ class Block(Solid):
 
 @dataclass(frozen=True, eq=False)
 class Cylinder(Solid):
-    """A round cylinder or tube centred at `at`, its axis along the direction `along`; `bore` is the diameter of a concentric hole.
+    """Round cylinder or tube centred at `at`, axis along `along`; `bore` is the diameter of a concentric hole.
 
     `subtract`: it is a hole, see `Body`.
     """
@@ -135,22 +135,22 @@ class Cylinder(Solid):
 
     @property
     def thinnest(self) -> Number:
-        """Its length, its diameter or its wall."""
+        """Length, diameter or wall thickness."""
         wall = self.diameter if self.bore is None else 0.5 * (self.diameter - self.bore)
         return np.minimum(np.real(wall), np.real(self.length))
 
     @property
     def is_flat(self) -> bool:
-        """It is round."""
+        """False: round."""
         return False
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Its bore is smaller than itself."""
+        """Order: bore smaller than the diameter."""
         yield Order("bore", self.bore, self.diameter, "the diameter", "Make the bore smaller")
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Which points lie in its wall."""
+        """Mask of points in its wall."""
         length, diameter, _ = first_design(np.real(self.sides), 1)
         radii = np.hypot(points[:, 1], points[:, 2])
         bore = 0.0 if self.bore is None else 0.5 * single(self.bore)
@@ -159,10 +159,10 @@ class Cylinder(Solid):
 
 @dataclass(frozen=True, eq=False)
 class Extrusion(Solid):
-    """A polygon drawn out over a `height`: its corners `outline` (x, y) in a plane through `at`, half of the height on either side of it.
+    """Extruded polygon of a `height`: corners `outline` (x, y) in a plane through `at`, half of the height on either side.
 
-    x of the outline runs along the direction `along`, the height along `up` (perpendicular to `along`). The corners go round the polygon
-    either way, its sides do not cross. `subtract`: it is a hole, see `Body`.
+    x of the outline is along `along`, the height along `up` (perpendicular to `along`). The corners are in order in either sense, the sides
+    do not cross. `subtract`: it is a hole, see `Body`.
 
     >>> corner = Extrusion("steel", outline=((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)), height=1.0)
     >>> corner.sides.tolist(), corner.frame.position.tolist()
@@ -184,28 +184,28 @@ class Extrusion(Solid):
 
     @property
     def _ends(self) -> tuple[Array, Array]:
-        """The least and the largest x and y (..., 2)."""
+        """Least and largest x and y (..., 2)."""
         drawn = self._drawn
         least, largest = (find(np.real(drawn), axis=-2, keepdims=True) for find in (np.argmin, np.argmax))
         return np.take_along_axis(drawn, least, axis=-2)[..., 0, :], np.take_along_axis(drawn, largest, axis=-2)[..., 0, :]
 
     @property
     def corners(self) -> Array:
-        """Its corners (..., n, 2) from the centre of the box around it, counter-clockwise seen from above (in the first design) [m]."""
+        """Corners (..., n, 2) from the centre of the bounding box, counter-clockwise from above (in the first design) [m]."""
         least, largest = self._ends
         centred = self._drawn - 0.5 * (least + largest)[..., None, :]
         return centred if winding(first_design(np.real(centred), 2)) > 0.0 else centred[..., ::-1, :]
 
     @property
     def sides(self) -> Array:
-        """The box around it."""
+        """Bounding box."""
         least, largest = self._ends
         size = largest - least
         return stack((size[..., 0], size[..., 1], self.height))
 
     @property
     def frame(self) -> Frame:
-        """Axes along those of its outline, z along its height."""
+        """Axes of its outline, z along its height."""
         least, largest = self._ends
         middle = 0.5 * (least + largest)
         own = Frame(axes(self.along, self.up), stack(self.at))
@@ -213,12 +213,12 @@ class Extrusion(Solid):
 
     @property
     def mirrored(self) -> Extrusion:
-        """The outline with its y reversed."""
+        """The outline with y reversed."""
         return replace(self, outline=tuple((x, -y) for x, y in self.outline))
 
     @property
     def thinnest(self) -> Number:
-        """Its height, or the least distance of a corner from a side that does not end there, in the first design."""
+        """Height, or least distance of a corner from a side without it, in the first design."""
         corners = first_design(np.real(self.corners), 2)
         begin, run = corners, np.roll(corners, -1, axis=0) - corners
         share = np.clip(np.einsum("ijx,jx->ij", corners[:, None] - begin, run) / np.sum(run * run, axis=1), 0.0, 1.0)
@@ -228,7 +228,7 @@ class Extrusion(Solid):
         return min(float(np.min(gaps[apart])), single(self.height))
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Which points lie in its outline, or near one of its sides, and within its height."""
+        """Mask of points in its outline, or near one of its sides, and within its height."""
         corners = first_design(np.real(self.corners), 2)
         level = np.abs(points[:, 2]) <= 0.5 * single(self.height) + slack
         return level & within_polygon(points[:, :2], corners, slack)
@@ -236,7 +236,7 @@ class Extrusion(Solid):
 
 @dataclass(frozen=True, eq=False)
 class Sphere(Solid):
-    """A ball centred at `at`. `subtract`: it is a hollow, see `Body`."""
+    """Ball centred at `at`. `subtract`: it is a hollow, see `Body`."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "sphere")
     material: str
@@ -251,22 +251,22 @@ class Sphere(Solid):
 
     @property
     def frame(self) -> Frame:
-        """The axes of the frame it is drawn in."""
+        """Axes of the drawing frame."""
         return Frame(np.eye(3), stack(self.at))
 
     @property
     def is_flat(self) -> bool:
-        """It is round."""
+        """False: round."""
         return False
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Which points lie no farther from its centre than its radius."""
+        """Mask of points within its radius."""
         return np.linalg.norm(points, axis=1) <= 0.5 * single(self.diameter) + slack
 
 
 @dataclass(frozen=True, eq=False)
 class Inertia(Description):
-    """Moments and products of inertia about the centre of mass, along the axes of the frame the body stands in [kg m^2].
+    """Moments and products of inertia about the centre of mass, along the axes of the body's drawing frame [kg m^2].
 
     The products are the integrals of x y, x z, y z (the tensor's off-diagonal entries are their negatives).
     """
@@ -280,12 +280,12 @@ class Inertia(Description):
 
     @property
     def mirrored(self) -> Inertia:
-        """That of the image in the plane across y."""
+        """Inertia of the mirror image across y."""
         return replace(self, xy=-self.xy, yz=-self.yz)
 
 
 def across(vector: Vector) -> Vector:
-    """The image of a place or a direction in the plane across y.
+    """Return the mirror image of a point or a direction across y.
 
     >>> across((1.0, 2.0, 3.0))
     (1.0, -2.0, 3.0)
@@ -295,14 +295,13 @@ def across(vector: Vector) -> Vector:
 
 @dataclass(frozen=True, eq=False)
 class Imported(Solid):
-    """A solid drawn elsewhere: the STEP `file`, its origin at `at`, its x axis along `along`, its z axis along `up`.
+    """Imported solid: the STEP `file`, its origin at `at`, x axis along `along`, z axis along `up`.
 
-    What models with rigid bodies need is stated, in the file's own axes: the sides (`size`) and the `middle` of the box around the solid,
-    its `mass`, `centre` of mass and `inertia` about that. The solid model holds them to the file (0.1 %). `sha256`, the digest of the
-    file's bytes, says which version of it is meant and stands for it in caches. `wall` is the thinnest wall, for the mesh (absent: the
-    shortest side). A relative path is looked for from the design file. Of a file that holds several solids, `solid` names the one meant, by
-    its name there or by its place among them: `#2`. `reflected`: it is the mirror image of the file's solid across its x-z plane, as are
-    the middle, the centre and the inertia that are stated.
+    Rigid-body models use specified values in the file's axes: `size` (sides) and `middle` of the bounding box, `mass`, `centre` of mass,
+    and `inertia` about the centre. The solid model compares them with the file (0.1 %). `sha256`, the digest of the file's bytes,
+    identifies the version and represents the file in caches. `wall` is the thinnest wall, for the mesh (default: the shortest side). A
+    relative path is from the design file. In a file with several solids, `solid` is the name or the number (`#2`). `reflected`: the mirror
+    image of the file's solid across its x-z plane, with the specified middle, centre and inertia.
     """
 
     material: str
@@ -322,86 +321,86 @@ class Imported(Solid):
 
     @property
     def mirrored(self) -> Imported:
-        """Its image in the plane across y."""
+        """Mirror image across y."""
         middle, centre, inertia = across(self.middle), across(self.centre), self.inertia.mirrored
         return replace(self, middle=middle, centre=centre, inertia=inertia, reflected=not self.reflected)
 
     @property
     def sides(self) -> Array:
-        """Those of the box around it."""
+        """Sides of the bounding box."""
         return stack(self.size)
 
     @property
     def frame(self) -> Frame:
-        """The file's axes, at the middle of the box around it."""
+        """The file's axes, at the centre of the bounding box."""
         frame = Frame(axes(self.along, self.up), stack(self.at))
         return Frame(frame.rotation, frame.point(stack(self.middle)))
 
     @property
     def thinnest(self) -> Number:
-        """Its thinnest wall where that is stated."""
+        """Thinnest wall, if specified."""
         return super().thinnest if self.wall is None else self.wall
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Its thinnest wall is not thicker than itself."""
+        """Order: wall not thicker than the solid."""
         for side in self.size:
-            yield Order("wall", self.wall, side, "the sides of the box around it", "Give the thinnest wall", strict=False)
+            yield Order("wall", self.wall, side, "the sides of its bounding box", "Use the thinnest wall", strict=False)
 
 
 @dataclass(frozen=True, eq=False)
 class Pierced(Solid):
-    """A `solid` with the `holes` that others of its body leave in it, these drawn in the frame of its centre."""
+    """A `solid` with `holes` by other solids of its body, in the frame of its centre."""
 
     solid: Solid
     holes: tuple[Solid, ...]
 
     @property
     def material(self) -> str:  # type: ignore[override]
-        """That of the solid."""
+        """Equal to that of the solid."""
         return self.solid.material
 
     @property
     def sides(self) -> Array:
-        """Those of the solid."""
+        """Sides of the solid."""
         return self.solid.sides
 
     @property
     def frame(self) -> Frame:
-        """That of the solid."""
+        """Equal to that of the solid."""
         return self.solid.frame
 
     @property
     def thinnest(self) -> Number:
-        """The solid's, or the least size of a hole."""
+        """Least of the solid and its holes."""
         return min(single(self.solid.thinnest), *(single(hole.thinnest) for hole in self.holes))
 
     @property
     def is_flat(self) -> bool:
-        """Whether all of its faces are plane."""
+        """Whether all faces are plane."""
         return self.solid.is_flat and all(hole.is_flat for hole in self.holes)
 
     @property
     def drawn(self) -> Iterator[tuple[Solid, Frame]]:
-        """The solid and its holes, with the frames that they are drawn in."""
+        """The solid and its holes, with their drawing frames."""
         yield self.solid, Frame(np.eye(3), np.zeros(3))
         yield from ((hole, self.solid.frame) for hole in self.holes)
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Which points lie in the solid and in none of its holes."""
+        """Mask of points in the solid, outside its holes."""
         inside = self.solid.contains(points, slack)
         return inside & ~np.any([_holds(hole, points, -slack) for hole in self.holes], axis=0)
 
 
 def _holds(hole: Solid, points: Array, slack: float) -> Array:
-    """Which points of the frame that a hole is drawn in lie in it."""
+    """Mask of points in a hole, in the hole's drawing frame."""
     place, turn = first_design(np.real(hole.frame.position), 1), first_design(np.real(hole.frame.rotation), 2)
     return hole.contains((points - place) @ turn, slack)
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedSolid:
-    """A solid and its own frame in the frame of the body, or of the stage, that it belongs to.
+    """A solid and its frame relative to its body or the stage.
 
     The frame's origin is the solid's centre, its axes a block's edges (z along its hole), or x a cylinder's axis.
     """
@@ -411,7 +410,7 @@ class PlacedSolid:
 
 
 def pierce(solids: Mapping[str, PlacedSolid]) -> dict[str, PlacedSolid]:
-    """Solids of one body by name: those that remove material as holes in the others.
+    """Return solids of one body by name, with subtracted ones as holes in the others.
 
     >>> plate, bolt = Block("steel", (0.1, 0.1, 0.01)), Cylinder("steel", 0.005, 0.02, subtract=True)
     >>> placed = {"plate": PlacedSolid(plate, plate.frame), "bolt": PlacedSolid(bolt, bolt.frame)}
@@ -429,14 +428,14 @@ def _pierced(item: PlacedSolid, holes: list[PlacedSolid]) -> PlacedSolid:
 
 
 def _meet(one: PlacedSolid, other: PlacedSolid) -> bool:
-    """Whether the balls around the boxes of two solids meet in a design."""
+    """Whether the bounding spheres of two solids intersect in a design."""
     apart = np.linalg.norm(np.real(one.frame.position - other.frame.position), axis=-1)
     reach = sum(0.5 * np.linalg.norm(np.real(each.solid.sides), axis=-1) for each in (one, other))
     return bool(np.any(apart < reach))
 
 
 def _seen_from(placed: PlacedSolid, frame: Frame) -> Solid:
-    """A hole drawn anew in another frame."""
+    """A hole in another drawing frame."""
     hole, place = placed.solid, placed.frame
     turn, own = np.swapaxes(frame.rotation, -1, -2), hole.frame
     moved = place.rotation @ np.swapaxes(own.rotation, -1, -2)
@@ -449,7 +448,7 @@ def _seen_from(placed: PlacedSolid, frame: Frame) -> Solid:
 
 
 def winding(corners: Array) -> float:
-    """Twice the signed area of a polygon's corners (n, 2), positive where they go round counter-clockwise.
+    """Return twice the signed area of a polygon's corners (n, 2), positive if counter-clockwise.
 
     >>> winding(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
     1.0
@@ -459,7 +458,7 @@ def winding(corners: Array) -> float:
 
 
 def triangles(corners: Array) -> list[tuple[int, int, int]]:
-    """The corners of triangles that fill a simple polygon (n, 2), counter-clockwise: ears cut off one by one (Meisters 1975).
+    """Triangulate a simple polygon (n, 2) by ear clipping (Meisters 1975); corners counter-clockwise.
 
     >>> triangles(np.array([[0.0, 0.0], [2.0, 0.0], [0.5, 0.5], [0.0, 2.0]]))
     [(0, 2, 3), (0, 1, 2)]
@@ -474,7 +473,7 @@ def triangles(corners: Array) -> list[tuple[int, int, int]]:
 
 
 def _ear(corners: Array, left: list[int], place: int) -> float:
-    """How good an ear a corner of what is left is: the least sine of its triangle's angles; below 0: none."""
+    """Quality of a corner of the remaining polygon as an ear: least sine of its triangle's angles; below 0: no ear."""
     trio = corners[[left[place - 1], left[place], left[(place + 1) % len(left)]]]
     runs = np.roll(trio, -1, axis=0) - trio
     lengths = np.linalg.norm(runs, axis=1)
@@ -487,7 +486,7 @@ def _ear(corners: Array, left: list[int], place: int) -> float:
 
 
 def within_polygon(points: Array, corners: Array, slack: float) -> Array:
-    """Which points (n, 2) lie within a polygon of corners (k, 2), by the crossings of a ray, or within `slack` of one of its sides.
+    """Return a mask of points (n, 2) in a polygon of corners (k, 2) by ray crossing, or within `slack` of one of its sides.
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> within_polygon(np.array([[0.5, 0.5], [1.5, 0.5], [1.05, 0.5]]), square, 0.1).tolist()
@@ -505,21 +504,20 @@ def within_polygon(points: Array, corners: Array, slack: float) -> Array:
 
 
 SOLIDS: tuple[type[Solid], ...] = (Block, Cylinder, Extrusion, Sphere, Imported)
-"""What a body may be drawn of."""
+"""Classes of solids of a body."""
 
 
 @dataclass(frozen=True, eq=False)
 class Body(Description):
-    """A rigid body: `solids` (outlines with materials), or a stated `mass`, `centre` of mass and `inertia`; named `points`.
+    """Rigid body: `solids` (outlines with materials), or a specified `mass`, `centre` of mass and `inertia`; named `points`.
 
-    Solids that `subtract` are holes: they take away what lies in them of the body's other solids of their material.
-    Stated mass properties and solids exclude one another; a body with neither has no mass of its own. `point`: the stated mass is meant as
-    a point, without inertia. `reference` is the point its twist is given at (absent: its centre of mass, or without mass the mean of its
-    joints).
+    Solids that `subtract` are holes: they remove their volume from the body's other solids of their material. Specified mass properties and
+    solids exclude one another; a body with neither is massless. `point`: the specified mass is a point mass without inertia. `reference` is
+    the reference point of its twist (default: the centre of mass, or of a massless body the mean of its joints).
 
-    `of` names another body of the stage, or the ground, that these solids belong to: a lug of the platform drawn once in a unit's frame and
-    so placed with every copy. Such a body does not move by itself: its solids, mass and points are its owner's, and links that join it join
-    the owner. It states no mass and no reference.
+    `of` names another body of the stage, or the ground, that owns these solids. Example: a lug of the platform drawn in a unit's frame,
+    placed with every instance. Such a body does not move independently: solids, mass and points belong to its owner, as do joints with
+    links. It has no specified mass and no reference.
     """
 
     solids: Mapping[str, Solid] = field(default_factory=lambda: Table({}))
@@ -533,7 +531,7 @@ class Body(Description):
 
 
 def owner_of(bodies: Mapping[str, Body], name: str) -> str:
-    """The body that moves where the named one is joined: its owner where it is `of` another one, else itself.
+    """Return the moving body of a named one: its owner if it is `of` another one, else itself.
 
     >>> owner_of({"pad": Body(of="platform")}, "pad"), owner_of({}, "ground")
     ('platform', 'ground')
@@ -544,9 +542,9 @@ def owner_of(bodies: Mapping[str, Body], name: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Payload(Description):
-    """A mass carried by a body: `mass`, its centre `at` (in the stage's frame) and its own `inertia` about that centre.
+    """Payload of a body: `mass`, its centre `at` (in the stage's frame) and its `inertia` about that centre.
 
-    `point`: it is meant as a point, without inertia of its own.
+    `point`: a point mass without inertia.
     """
 
     body: str

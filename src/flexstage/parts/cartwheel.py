@@ -1,4 +1,4 @@
-"""Cartwheel hinges: two pairs of leaves in series, which meet in a hub."""
+"""Cartwheel hinges: two pairs of leaves in series, connected by a hub."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from flexstage.parts.shape import INNER_MODES, Order
 
 @dataclass(frozen=True, eq=False)
 class Cartwheel(Compound):
-    """Four leaves of `length` like spokes, two from the first body to a hub and two from there to the second; it turns about z.
+    """Cartwheel hinge about z: four leaves of `length` as spokes, two from the first body to a hub and two from it to the second.
 
-    The link's origin is the hub's middle, x points from the first body to the second and halves both pairs, `angle` is that between the
-    leaves of a pair. The leaves end on the hub's `hub_diameter`. The hub is rigid; its `hub_mass` is that of a disc of this diameter and as
-    wide as the leaves: I_z = m d^2 / 8, I_x = I_y = m (d^2 / 16 + b^2 / 12).
+    The link's origin is the hub's centre; x points from the first body to the second and bisects both pairs. `angle` is between the leaves
+    of a pair. The leaves end on the hub's `hub_diameter`. The hub is rigid. Its `hub_mass` is of a disc of this diameter and the leaves'
+    width b: I_z = m d^2 / 8, I_x = I_y = m (d^2 / 16 + b^2 / 12).
     """
 
     kind: ClassVar[str] = "cartwheel"
@@ -39,7 +39,7 @@ class Cartwheel(Compound):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The rotation about z."""
+        """Rotation about z."""
         return (Freedom.RZ,)
 
     @property
@@ -68,6 +68,6 @@ class Cartwheel(Compound):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Its leaves are thinner than wide, and each pair points one way."""
-        yield Order("angle", self.angle, np.pi, "a straight angle", "Give the angle between the leaves of a pair", ANGLE)
+        """Order: leaves thinner than wide, angle of a pair below pi."""
+        yield Order("angle", self.angle, np.pi, "a straight angle", "Use the angle between the leaves of a pair", ANGLE)
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")

@@ -1,4 +1,4 @@
-"""Parts known by a 6x6 matrix (stated, measured or computed by FEA), and ideal joints."""
+"""Parts known by a 6x6 matrix (specified, measured or computed by FEA), and ideal joints."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ class Origin(Enum):
 class ComplianceMatrix(Elastic):
     """Part known by its 6x6 compliance matrix about its centre, in its link frame, SI: rows (x, y, z, rx, ry, rz).
 
-    Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` states its intended freedoms.
-    `replaces` names the drawn part that the matrix was computed from, so that the solid model knows the shape,
-    and drift and structural damping the material. `mass` is a point at the part's centre, half of it at each end, or, with `inertia` about
-    its `centre` of mass (along the axes of the link's frame), a solid.
+    Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` are its ideal degrees of
+    freedom. `replaces` names the drawn part of the matrix, with the shape for the solid model and the material for drift and structural
+    damping. `mass` is a point mass at the part's centre, half of it at each end. With `inertia` about its `centre` of mass (along the link
+    frame's axes), it is a rigid solid.
     """
 
     kind: ClassVar[str] = "compliance_matrix"
@@ -52,31 +52,31 @@ class ComplianceMatrix(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The freedoms the part is meant to have."""
+        """Ideal degrees of freedom of the part."""
         return self.free
 
     @property
     def mirrored(self) -> ComplianceMatrix:
-        """Its compliance with the entries reversed that tell a motion along y, or a rotation about x or z, with another one."""
+        """Mirror image across y: entries that couple y, rx or rz with other motions are reversed."""
         inertia = None if self.inertia is None else self.inertia.mirrored
         centre = None if self.centre is None else across(self.centre)
         return replace(self, compliance=mirror_rows(self.compliance), centre=centre, inertia=inertia)
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Inertia and centre of mass are those of a mass."""
+        """Errors: inertia or centre without a mass."""
         for name in ("centre", "inertia"):
             if getattr(self, name) is not None and np.any(np.real(self.mass) == 0.0):
-                yield Finding(name, "it is stated without a mass", "State the mass too")
+                yield Finding(name, "specified without a mass", "Specify the mass too")
         yield from definite_findings("compliance", stack(self.compliance))
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """The inverse of its compliance; half of its mass at each end, both at its centre, or half of the rigid solid that is stated."""
+        """Inverse of the compliance, and half of the mass, or of the specified rigid solid, at each end, both at the centre."""
         return Stated(np.linalg.inv(stack(self.compliance)), self.carried)
 
     @property
     def carried(self) -> Array:
-        """Its mass (..., 12, 12) over the twists of both ends at its centre: a given part has no length."""
+        """Mass (..., 12, 12) over the twists of both ends at its centre, as the part has no length."""
         if self.inertia is None and self.centre is None:
             return point_masses(0.5 * self.mass, 0.5 * self.mass)
         inertia = np.zeros((3, 3)) if self.inertia is None else tensor(self.inertia)
@@ -84,23 +84,23 @@ class ComplianceMatrix(Elastic):
 
     @property
     def is_axisymmetric(self) -> bool:
-        """Whether freedoms and compliance are the same along and about y and z."""
+        """Whether degrees of freedom and compliance are equal along and about y and z."""
         return is_even(self.free) and turns_into_itself(stack(self.compliance))
 
 
 @dataclass(frozen=True, eq=False)
 class Joint(Description):
-    """An ideal joint without elasticity or mass: the `free` freedoms are free, all others locked exactly. No freedom: a weld."""
+    """Ideal joint without elasticity or mass: degrees of freedom `free`, all others locked exactly. None free: a weld."""
 
     kind: ClassVar[str] = "joint"
     free: tuple[Freedom, ...] = ()
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The freedoms the joint leaves free."""
+        """Free degrees of freedom."""
         return self.free
 
     @property
     def mirrored(self) -> Joint:
-        """Itself: freedoms have no sign."""
+        """Itself, by symmetry."""
         return self

@@ -1,6 +1,6 @@
-"""Compound hinges: parts that are an assembly of others, which expansion puts in their place. They have no law and no shape of their own.
+"""Compound hinges: assemblies of other parts, which replace them at expansion, without their own law and shape.
 
-A new kind derives from `Compound` and says what it consists of; models, analyses, pictures and finite elements see its members only.
+A new kind derives from `Compound` and returns its `composition`; models, analyses, pictures and finite elements use its members only.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.shape import Elastic
 
 FIRST, SECOND = "first", "second"
-"""The bodies that the link joins, as members name them."""
+"""Bodies joined by the link, as named in members."""
 _Z = (0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Member:
-    """A part of a compound: what it `joins` (`first`, `second` or an inner body), its frame in the compound's, as a link states it."""
+    """Member of a compound: its part, joined bodies (`first`, `second` or an inner body) and frame in the compound's, as for a link."""
 
     part: Elastic
     joins: tuple[str, str]
@@ -31,37 +31,37 @@ class Member:
 
 @dataclass(frozen=True, eq=False)
 class Composition:
-    """What a compound consists of: its `members`, and inner `bodies`, drawn in its own frame; one that states no mass has none."""
+    """Composition of a compound: `members`, and inner `bodies` in its frame, massless unless specified."""
 
     members: Mapping[str, Member]
     bodies: Mapping[str, Body] = field(default_factory=dict)
 
 
 class Compound(Elastic):
-    """A part whose links expansion replaces by its members: those of a link `B1/pivot` are called `B1/pivot.left`.
+    """Compound part, replaced by its members at expansion: those of a link `B1/pivot` are named `B1/pivot.left`.
 
-    Its numbers are addressed as those of any part; they may be arrays and complex. Members that are alike should be one object: their law
-    is worked out once.
+    Its numbers have addresses as in any part; they may be arrays and complex. Equal members should be one object, to compute their law
+    once.
     """
 
     @property
     def is_axisymmetric(self) -> bool:
-        """No: its members stand on different sides of its axis."""
+        """False: its members are on different sides of its axis."""
         return False
 
     @property
     def mirrored(self) -> Compound:
-        """Itself: each of its members is mirrored where it stands."""
+        """Itself: each member is mirrored individually."""
         return self
 
     @property
     def composition(self) -> Composition:
-        """Its members and inner bodies."""
+        """Members and inner bodies."""
         raise NotImplementedError
 
 
 def radial_leaf(leaf: Leaf, joins: tuple[str, str], direction: tuple[Number, Number], *, centre: Number, height: Number = 0.0) -> Member:
-    """A leaf along a `direction` (x, y) from the compound's z axis, its middle at the distance `centre` from it and at z = `height`.
+    """Return a leaf along a `direction` (x, y) from the compound's z axis, with its middle at distance `centre` and z = `height`.
 
     It bends about z. The direction is of unit length.
 

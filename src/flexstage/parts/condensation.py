@@ -1,4 +1,4 @@
-"""Superelements checked and reduced: their matrices over ports and modes with the ports held."""
+"""Checks and Craig-Bampton reduction of superelements to ports and fixed-interface modes."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ from flexstage.parts.superelement import FileUnits, Port, Superelement
 from flexstage.spatial.frame import Frame, axes, mirror, twist_transform
 
 SYMMETRIC = 1e-6
-"""Largest difference of an entry from its mirror image, over the largest entry."""
+"""Largest asymmetry of an entry relative to the largest entry."""
 RIGID = 1e-3
-"""Largest stiffness against a rigid motion, over the softest elastic one: what of the file's rounding is let pass."""
+"""Largest stiffness of a rigid motion relative to the softest elastic one, tolerated as rounding of the file."""
 STATED = 1e-3
-"""Share within which stated mass, centre (of the distance of the ports) and inertia agree with the matrices."""
+"""Relative tolerance of specified mass, centre (of the distance of the ports) and inertia against the matrices."""
 _NEGATIVE = 1e-8
 _NOTHING = 1e-10
 _MASSLESS = 1e-13
 MOST_MODES = 1000
-"""Inner coordinates that a model may be given by one superelement."""
+"""Largest number of internal coordinates of one superelement."""
 
 
 @dataclass(frozen=True, eq=False)
 class Condensed:
-    """A superelement over its ports and modes with the ports held, SI, each port's twist at its origin in its axes, ports in file order.
+    """Superelement over ports and fixed-interface modes, SI, each port's twist at its origin in its axes, ports in file order.
 
-    `stiffness` (6 (p - 1), 6 (p - 1)) of the ports but the first, that one held; `squares` (m,) of the modes' angular frequencies, the
-    modes mass-normalised; `inertia` (6 p + m, 6 p + m) of all; `damping` (6 (p - 1) + m, 6 (p - 1) + m) of what strains (`None`: none).
-    `mass`, `centre` (3,) and `moments` (3, 3) about it, in the part's axes, are what the matrices say of a rigid motion. `error` is the
-    stiffness against rigid motions over the softest elastic one, before it was taken off.
+    `stiffness` (6 (p - 1), 6 (p - 1)) is of all ports but the first, which is fixed. `squares` (m,) are of the angular frequencies of the
+    mass-normalised modes. `inertia` (6 p + m, 6 p + m) is of all coordinates. `damping` (6 (p - 1) + m, 6 (p - 1) + m) is of the strained
+    ones (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3) about it, in the part's axes, are from rigid motions. `error` is the
+    removed stiffness of rigid motions over the softest elastic one.
     """
 
     stiffness: Array
@@ -53,7 +53,7 @@ class Condensed:
 
 
 def condense(part: Superelement, where: str = "superelement") -> Condensed:
-    """The part's matrices, checked and reduced; read once. Raises `DesignError` with all that is wrong, at its keys below `where`."""
+    """Read, check and reduce the part's matrices; cached. Raises `DesignError` with all errors, at keys below `where`."""
     found = _condensed(part)
     if isinstance(found, DesignError):
         raise DesignError(_at(where, finding) for finding in found.findings)
@@ -61,14 +61,14 @@ def condense(part: Superelement, where: str = "superelement") -> Condensed:
 
 
 def superelement_findings(part: Superelement, where: str) -> Iterator[Finding]:
-    """What is wrong with a superelement, at its keys below `where` (`parts.frame.ports.left.row`)."""
+    """Return the errors of a superelement, at keys below `where` (`parts.frame.ports.left.row`)."""
     found = _condensed(part)
     if isinstance(found, DesignError):
         yield from (_at(where, finding) for finding in found.findings)
 
 
 def _at(where: str, finding: Finding) -> Finding:
-    """A finding at a key of the part, or, of one of its files, at the part."""
+    """An error at a key of the part, or for one of its files at the part."""
     if finding.where.split(".")[0] in Superelement.__dataclass_fields__:
         return replace(finding, where=f"{where}.{finding.where}")
     return replace(finding, where=where, what=f"{finding.where}: {finding.what}")
@@ -84,7 +84,7 @@ def _condensed(part: Superelement) -> Condensed | DesignError:
 
 @dataclass(frozen=True, eq=False)
 class _Split:
-    """Matrices with the ports' coordinates first, in the file's units: `basis` (n, 6 p) is how all follow the ports, at rest within."""
+    """Matrices with the ports' coordinates first, in the file's units; `basis` (n, 6 p) are the static constraint modes."""
 
     stiffness: MatrixLike
     inertia: MatrixLike
@@ -95,12 +95,12 @@ class _Split:
 
     @property
     def at_ports(self) -> Array:
-        """The stiffness (6 p, 6 p) seen at the ports."""
+        """Statically condensed stiffness (6 p, 6 p) at the ports."""
         return _symmetrise(_dense(self.basis.T @ (self.stiffness @ self.basis)))
 
     @property
     def carried(self) -> Array:
-        """The mass (6 p, 6 p) seen at the ports, all else following at rest."""
+        """Statically condensed mass (6 p, 6 p) at the ports."""
         return _symmetrise(_dense(self.basis.T @ (self.inertia @ self.basis)))
 
 
@@ -128,42 +128,40 @@ def _reduce(part: Superelement, *matrices: MatrixLike) -> Condensed:
 
 
 def _loss_findings(damping: Array, motion: Array) -> Iterator[Finding]:
-    """Damping that resists rigid motions, as what is in proportion to mass does, or that drives."""
+    """Errors of damping: resistance to rigid motions (mass-proportional damping), or negative damping."""
     largest = float(np.max(np.abs(damping), initial=0.0))
     left = float(np.max(np.abs(damping[:, : len(motion)] @ motion)))
     if left > RIGID * largest * float(np.max(np.abs(motion))):
-        what = f"it resists rigid motions ({left:.3g}, its largest entry is {largest:.3g}), as damping in proportion to mass does"
-        yield Finding(
-            "damping matrix", what, "Export what the material and joints lose; damping of the whole stage is stated by its damping"
-        )
+        what = f"it resists rigid motions, like mass-proportional damping (got {left:.3g}, largest entry {largest:.3g})"
+        yield Finding("damping matrix", what, "Export the damping of material and joints only; use damping for the whole stage")
     elif float(np.linalg.eigvalsh(damping)[0]) < -_NEGATIVE * len(damping) * largest:
-        yield Finding("damping matrix", "it drives some motion: an eigenvalue is negative", "Export the damping of the unloaded part")
+        yield Finding("damping matrix", "it has a negative eigenvalue", "Export the damping of the unloaded part")
 
 
 def _shape_findings(part: Superelement, matrices: Mapping[str, MatrixLike]) -> Iterator[Finding]:
     if len(part.ports) < 2:
-        yield Finding("ports", f"it has {len(part.ports)}, and a superelement joins two or more", "State all its interface frames")
+        yield Finding("ports", f"too few ports (got {len(part.ports)}, expected 2 or more)", "Specify all interface frames")
     moved = [name for name, port in part.ports.items() if any(np.ndim(each) for each in (*port.at, *port.along, *port.up))]
     if moved and any(np.ptp(np.real(each)) for name in moved for port in (part.ports[name],) for each in (*port.at, *port.along, *port.up)):
-        yield Finding(f"ports.{moved[0]}", "it varies from design to design, and the file is of one place", "Keep the ports where they are")
+        yield Finding(f"ports.{moved[0]}", "it varies between designs, but the file is for one position", "Keep the ports fixed")
     sizes = {name: matrix.shape for name, matrix in matrices.items()}
     for name, shape in sizes.items():
         if len(shape) != 2 or shape[0] != shape[-1]:
-            yield Finding(name, f"it is {_by(shape)}, not square", "Export the whole matrix over ports and inner coordinates")
+            yield Finding(name, f"not square (got {_by(shape)})", "Export the whole matrix over ports and internal coordinates")
     if len(set(sizes.values())) > 1:
-        what = f"it and the others are {', '.join(_by(shape) for shape in sizes.values())}"
-        yield Finding("stiffness matrix", what, "Export all over the same coordinates")
+        what = f"matrices of different sizes ({', '.join(_by(shape) for shape in sizes.values())})"
+        yield Finding("stiffness matrix", what, "Export all matrices over the same coordinates")
     rows = np.zeros(min(map(min, sizes.values())), dtype=int)
     for name in part.order:
         port = part.ports[name]
         if port.row + 5 > len(rows):
-            what = (
-                f"its six rows end at {port.row + 5}, and the matrices have {len(rows)}: 6 x {len(part.ports)} ports and inner coordinates"
-            )
-            yield Finding(f"ports.{name}.row", what, "State the first of its rows, counted from 1")
+            what = f"its six rows end at {port.row + 5}, beyond the {len(rows)} rows: 6 x {len(part.ports)} ports and internal coordinates"
+            yield Finding(f"ports.{name}.row", what, "Use the number of its first row, from 1")
             continue
         if np.any(rows[port.row - 1 : port.row + 5]):
-            yield Finding(f"ports.{name}.row", f"its rows {port.row} to {port.row + 5} are also another port's", "Give each port six rows")
+            yield Finding(
+                f"ports.{name}.row", f"rows {port.row} to {port.row + 5} overlap with another port", "Use six separate rows per port"
+            )
         rows[port.row - 1 : port.row + 5] = 1
 
 
@@ -172,21 +170,21 @@ def _by(shape: tuple[int, ...]) -> str:
 
 
 def _entry_findings(name: str, matrix: MatrixLike) -> Iterator[Finding]:
-    """Entries that are no finite numbers, or differ from their mirror images."""
+    """Errors of entries: not finite, or not symmetric."""
     sparse = scipy.sparse.issparse(matrix)
     entries = matrix.data if sparse else matrix
     if not np.all(np.isfinite(entries)):
-        yield Finding(name, f"{int(np.sum(~np.isfinite(entries)))} of its entries are no finite numbers", "Export it anew")
+        yield Finding(name, f"{int(np.sum(~np.isfinite(entries)))} of its entries are not finite", "Export it again")
         return
     largest = np.max(np.abs(entries), initial=0.0)
     off = abs(matrix - matrix.T)
     row, column = np.unravel_index(int(off.argmax()), matrix.shape)
     if off[row, column] > SYMMETRIC * largest:
         what = (
-            f"it is not symmetric: entry ({row + 1}, {column + 1}) is {matrix[row, column]:.6g} and its mirror image "
+            f"not symmetric: entry ({row + 1}, {column + 1}) is {matrix[row, column]:.6g} and its transpose "
             f"{matrix[column, row]:.6g}, {off[row, column] / largest:.2g} of the largest entry, at most {SYMMETRIC:g} expected"
         )
-        yield Finding(name, what, "Export the whole matrix (a triangle alone is to be mirrored), of a model without rotors or contact")
+        yield Finding(name, what, "Export the whole matrix, not a triangle, of a model without rotors or contact")
 
 
 def _split(part: Superelement, *matrices: MatrixLike) -> _Split:
@@ -200,30 +198,30 @@ def _split(part: Superelement, *matrices: MatrixLike) -> _Split:
 
 
 def _solve_within(inner: MatrixLike, force: Array) -> Array:
-    """K_ii^-1 times forces on the inner coordinates; refused where they can move while the ports are held."""
+    """K_ii^-1 times forces on the internal coordinates; refuses a singular K_ii."""
     if not inner.shape[0]:
         return force
-    advice = "Every inner freedom needs stiffness against the ports: leave out free nodes and rigid-body modes"
+    advice = "Remove free nodes and rigid-body modes: every internal degree of freedom requires stiffness against the ports"
     if scipy.sparse.issparse(inner):
         try:
             factors = scipy.sparse.linalg.splu(inner.tocsc(), diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         except RuntimeError:
-            raise refuse("stiffness matrix", "the inner coordinates can move freely while the ports are held", advice) from None
+            raise refuse("stiffness matrix", "the internal coordinates have a free motion with fixed ports", advice) from None
         if np.min(factors.U.diagonal()) <= 0.0:
-            raise refuse("stiffness matrix", "with the ports held some motion within has no or negative stiffness", advice)
+            raise refuse("stiffness matrix", "zero or negative stiffness of an internal motion with fixed ports", advice)
         return factors.solve(force)
     diagonal = np.diag(inner)
     root = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
     scaled = inner * root * root[:, None]
     least = min(float(np.linalg.eigvalsh(scaled)[0]), float(np.min(diagonal)))
     if least <= _MASSLESS:
-        what = f"with the ports held some motion within has no or negative stiffness (least scaled eigenvalue {least:.2g})"
+        what = f"zero or negative stiffness of an internal motion with fixed ports (least scaled eigenvalue {least:.2g})"
         raise refuse("stiffness matrix", what, advice)
     return root[:, None] * np.linalg.solve(scaled, root[:, None] * force)
 
 
 def _in_si(part: Superelement, units: FileUnits | None = None) -> tuple[Array, float]:
-    """What the file's port coordinates (6 p,) are of the part's in SI, and its unit of energy [J]: K = energy S K_file S."""
+    """Scale S (6 p,) of the file's port coordinates relative to SI, and its unit of energy [J]: K = energy S K_file S."""
     length, energy = (1.0, 1.0) if (units or part.units) is FileUnits.SI else (1e3, 1e-3)
     sides = mirror(1).diagonal() if part.reflected else np.ones(6)
     return np.tile(np.repeat([length, 1.0], 3) * sides, len(part.ports)), energy
@@ -238,18 +236,18 @@ def _frame(port: Port) -> Frame:
 
 
 def _rigid(frames: list[Frame]) -> Array:
-    """Twists (6 p, 6) of the ports when the part moves rigidly, its twist at its own origin."""
+    """Twists (6 p, 6) of the ports in rigid motion, by the part's twist at its origin."""
     return np.vstack([twist_transform(frame, np.zeros(3)) for frame in frames])
 
 
 def _span(frames: list[Frame]) -> float:
-    """The largest distance between ports [m]; 0.1 m where they coincide."""
+    """Largest distance between ports [m]; 0.1 m if they coincide."""
     places = np.array([frame.position for frame in frames])
     return float(np.max(np.linalg.norm(places[:, None] - places, axis=-1))) or 0.1
 
 
 def _rigid_error(at_ports: Array, frames: list[Frame]) -> tuple[float, float, float]:
-    """Largest stiffness against rigid motions, softest and stiffest elastic one [N/m], rotations times the distance of the ports."""
+    """Largest stiffness of rigid motions, softest and stiffest elastic one [N/m], rotations scaled by the distance of the ports."""
     span = _span(frames)
     weights = np.tile(np.repeat([1.0, 1.0 / span], 3), len(frames))
     middle = np.mean([frame.position for frame in frames], axis=0)
@@ -261,41 +259,38 @@ def _rigid_error(at_ports: Array, frames: list[Frame]) -> tuple[float, float, fl
 
 
 def _rigid_findings(part: Superelement, at_ports: Array, in_file: Array, frames: list[Frame]) -> tuple[float, list[Finding]]:
-    """The error in rigid motions over the softest stiffness, and what is wrong with the stiffness at the ports."""
+    """Relative error in rigid motions, and errors of the stiffness at the ports."""
     left, softest, stiffest = _rigid_error(at_ports, frames)
     if stiffest <= 0.0:
-        return 0.0, [
-            Finding("stiffness matrix", "it holds the ports nowhere: no relative motion of theirs has stiffness", "Check the file")
-        ]
+        return 0.0, [Finding("stiffness matrix", "no relative motion of the ports has stiffness", "Check the file")]
     if left > RIGID * softest:
         what = (
-            f"it resists rigid motions of all ports with {left:.3g} N/m (rotations over {_span(frames) * 1e3:.4g} mm), "
-            f"{left / stiffest:.2g} of its stiffest motion and {left / softest:.2g} of its softest; at most {RIGID:g} of the softest "
-            "is expected"
+            f"stiffness of rigid motions of all ports:  {left:.3g} N/m (rotations over {_span(frames) * 1e3:.4g} mm), "
+            f"{left / stiffest:.2g} of its stiffest motion and {left / softest:.2g} of its softest; at most {RIGID:g} expected"
         )
         return left / softest, [Finding("ports", what, _hint(part, at_ports, in_file, frames))]
     least = float(np.linalg.eigvalsh(at_ports[6:, 6:])[0])
     if least < -_NEGATIVE * stiffest:
-        what = f"with port {part.order[0]} held some motion of the others has negative stiffness ({least:.3g})"
+        what = f"negative stiffness of a motion with port {part.order[0]} fixed ({least:.3g})"
         return left / softest, [Finding("stiffness matrix", what, "Export the elastic stiffness of the unloaded part")]
     return left / softest, []
 
 
 def _hint(part: Superelement, at_ports: Array, in_file: Array, frames: list[Frame]) -> str:
-    """What would make rigid motions free, if anything that is commonly mistaken does."""
+    """Hint for free rigid motions: the common mistake that explains the error, if any."""
     for units in FileUnits:
         scale, energy = _in_si(part, units)
         if units is not part.units and _is_free(energy * scale * in_file * scale[:, None], frames):
-            far = "as far apart" if part.units is FileUnits.SI else "as near"
-            return f'They are free if units = "{units.value}" is meant, or if the ports stand a thousand times {far}'
+            far = "farther apart" if part.units is FileUnits.SI else "closer"
+            return f'They are free with units = "{units.value}", or with the ports a thousand times {far}'
     if _is_free(at_ports, [Frame(np.eye(3), frame.position) for frame in frames]):
-        return "They are free if all ports have the axes of the part: leave out along and up"
+        return "They are free if all ports have the axes of the part: remove along and up"
     for first, second in itertools.combinations(range(len(frames)), 2):
         swapped = list(frames)
         swapped[first], swapped[second] = frames[second], frames[first]
         if _is_free(at_ports, swapped):
             return f"They are free if the rows of {part.order[first]} and {part.order[second]} are exchanged"
-    return "Check the places and axes of the ports and the order of the rows (x, y, z, rx, ry, rz), and that nothing holds the model"
+    return "Check positions and axes of the ports, the order of the rows (x, y, z, rx, ry, rz), and that the model is free"
 
 
 def _is_free(at_ports: Array, frames: list[Frame]) -> bool:
@@ -304,7 +299,7 @@ def _is_free(at_ports: Array, frames: list[Frame]) -> bool:
 
 
 def _mass_findings(part: Superelement, seen: Array, span: float) -> tuple[float, Array, Array, list[Finding]]:
-    """Mass, centre and moments that the matrices say of rigid motions (6, 6) about the part's origin, and what contradicts them."""
+    """Mass, centre and moments from rigid motions (6, 6) about the part's origin, and their errors."""
     along = np.diag(seen)[:3]
     mass = float(np.mean(along))
     if mass <= 0.0:
@@ -316,25 +311,25 @@ def _mass_findings(part: Superelement, seen: Array, span: float) -> tuple[float,
     moments = seen[3:, 3:] - mass * cross.T @ cross
     findings: list[Finding] = []
     if np.max(np.abs(seen[:3, :3] - mass * np.eye(3))) > STATED * mass:
-        what = f"rigid motions along x, y and z have the masses {along[0]:.6g}, {along[1]:.6g} and {along[2]:.6g} kg, which should be one"
+        what = f"rigid motions along x, y and z have the masses {along[0]:.6g}, {along[1]:.6g} and {along[2]:.6g} kg, which should be equal"
         findings.append(Finding("mass matrix", what, "Export the whole mass matrix: mass on the ports or on some directions is missing"))
     elif np.max(np.abs(lever + lever.T)) > STATED * span:
-        what = "its coupling of translations and rotations is that of no body"
-        findings.append(Finding("mass matrix", what, "Check the places and axes of the ports, and export the consistent mass matrix"))
+        what = "its coupling of translations and rotations is not that of a rigid body"
+        findings.append(Finding("mass matrix", what, "Check positions and axes of the ports, and export the consistent mass matrix"))
     return mass, centre, moments, [*findings, *_stated_findings(part, mass, centre, moments, span)]
 
 
 def _stated_findings(part: Superelement, mass: float, centre: Array, moments: Array, span: float) -> Iterator[Finding]:
-    advice = "Check which of the two is meant, and the units of the file"
+    advice = "Check both values, and the units of the file"
     if part.mass is not None:
         stated = float(np.real(np.ravel(part.mass)[0]))
         if abs(stated - mass) > STATED * max(abs(stated), abs(mass)):
-            yield Finding("mass", f"{stated:.6g} kg is stated, and rigid motions of the matrices have {mass:.6g} kg", advice)
+            yield Finding("mass", f"wrong mass (got {stated:.6g} kg, expected {mass:.6g} kg by rigid motions of the matrices)", advice)
     if part.centre is not None:
         stated = np.real(first_design(stack(part.centre), 1))
         off = float(np.linalg.norm(stated - centre))
         if off > STATED * span:
-            what = f"the stated centre is {off * 1e3:.4g} mm from that of the matrices, ({_millimetres(centre)}) mm"
+            what = f"wrong centre ({off * 1e3:.4g} mm from that of the matrices, ({_millimetres(centre)}) mm)"
             yield Finding("centre", what, advice)
     if part.inertia is not None:
         stated = np.real(first_design(tensor(part.inertia), 2))
@@ -349,7 +344,7 @@ def _millimetres(place: Array) -> str:
 
 
 def _negative_findings(inertia: MatrixLike) -> Iterator[Finding]:
-    """Negative mass: on the diagonal, or in some motion."""
+    """Errors for negative mass: on the diagonal, or of a motion."""
     diagonal = inertia.diagonal()
     largest = np.max(np.abs(diagonal), initial=0.0)
     below = np.flatnonzero(diagonal < -_NEGATIVE * largest)
@@ -362,12 +357,12 @@ def _negative_findings(inertia: MatrixLike) -> Iterator[Finding]:
     root = 1.0 / np.sqrt(np.where(diagonal > _MASSLESS * largest, diagonal, largest or 1.0))
     least = float(np.linalg.eigvalsh(inertia * root * root[:, None])[0])
     if least < -_NEGATIVE * len(root):
-        what = f"some motion has negative mass (least eigenvalue {least:.3g}, the diagonal scaled to 1)"
+        what = f"negative mass of a motion (least eigenvalue {least:.3g}, the diagonal scaled to 1)"
         yield Finding("mass matrix", what, "Export the consistent or the lumped mass matrix, with all its digits")
 
 
 def _modes(part: Superelement, split: _Split) -> tuple[Array, Array]:
-    """Squares (m,) of the angular frequencies of the modes kept, and their shapes (n, m), mass-normalised, the ports held."""
+    """Squares (m,) of the angular frequencies of the retained fixed-interface modes, and their mass-normalised shapes (n, m)."""
     size = split.inner.shape[0]
     mass = split.inertia[split.ports :, split.ports :]
     if not size or part.modes == 0 or not np.any(mass.diagonal()):
@@ -382,16 +377,16 @@ def _modes(part: Superelement, split: _Split) -> tuple[Array, Array]:
     few = (squares < most)[: part.modes]
     squares, shapes = squares[: part.modes][few], shapes[:, : part.modes][:, few]
     if len(squares) > MOST_MODES:
-        what = f"{len(squares)} inner coordinates would be kept, at most {MOST_MODES} are"
-        raise refuse("modes", what, 'State how many modes to keep (modes = 20), or up to which frequency (below = "2 kHz")')
+        what = f"too many internal coordinates (got {len(squares)}, expected {MOST_MODES} at most)"
+        raise refuse("modes", what, 'Limit the number of modes (modes = 20), or their frequency (below = "2 kHz")')
     return squares, np.vstack([np.zeros((split.ports, len(squares))), shapes])
 
 
 def _lowest(part: Superelement, inner: MatrixLike, mass: MatrixLike) -> tuple[Array, Array]:
-    """The lowest modes of sparse matrices, by shift and invert at zero."""
+    """Lowest modes of sparse matrices, by shift and invert at zero."""
     if part.modes is None:
-        what = f"the matrices have {inner.shape[0]} inner coordinates, beyond {LARGEST_DENSE}"
-        raise refuse("modes", what, "State how many modes to keep: modes = 20")
+        what = f"too many internal coordinates for all modes (got {inner.shape[0]}, expected {LARGEST_DENSE} at most)"
+        raise refuse("modes", what, "Limit the number of modes, e.g. modes = 20")
     count = min(part.modes, inner.shape[0] - 2)
     start = np.random.default_rng(0).standard_normal(inner.shape[0])
     squares, shapes = scipy.sparse.linalg.eigsh(inner.tocsc(), k=count, M=mass.tocsc(), sigma=0.0, v0=start)
@@ -409,9 +404,9 @@ def _dense(matrix: MatrixLike) -> Array:
 
 @check_arguments
 def superelement(part: Superelement) -> Superelement:
-    """The part with whole paths and the digest of its files as they are now. Raises `DesignError` as `condense` does.
+    """Return the part with absolute paths and the current digest of its files. Raises `DesignError` as `condense` does.
 
-    For parts made in Python from files just written; what a design file states is held to the files that are there.
+    For parts created in Python from new files; a design file specifies the digest instead.
     """
     whole = replace(
         part, **{key: str(Path(path).resolve()) for key in ("file", "stiffness_file", "mass_file") if (path := getattr(part, key))}

@@ -1,4 +1,4 @@
-"""Contacts: a ball in its seat, pressed by a preload; its stiffness about that by Hertz and Mindlin.
+"""Contacts: a ball in its seat under a preload, with linearised stiffness by Hertz and Mindlin.
 
 After K. L. Johnson, Contact Mechanics (Cambridge, 1985), chapters 4 and 7.
 """
@@ -24,7 +24,7 @@ _HALF_ANGLE = Bound(0.0, 0.5 * np.pi, open_low=True, open_high=True)
 
 
 class Seat(Enum):
-    """What a ball rests on: a `FLAT`, or both walls of a V `GROOVE`."""
+    """Seat of a ball: a `FLAT`, or both walls of a V `GROOVE`."""
 
     FLAT = "flat"
     GROOVE = "groove"
@@ -32,14 +32,13 @@ class Seat(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Contact(Elastic):
-    """A ball of a `radius` pressed on its `seat`: a flat across x, or a V groove along z that x halves.
+    """Ball of a `radius` pressed on its `seat`: a flat normal to x, or a V groove along z with x as bisector.
 
-    The first body has the seat, the second the ball; the link's origin is the ball's centre, x points out of the seat. `material` is that
-    of the ball, `counter` that of the seat. `preload` is the force along x that presses them together as drawn: without it there is no
-    stiffness. `half_angle` is that of the groove, between a wall and x. `friction` is the coefficient against which slip is judged.
-    The ball weighs nothing: its mass is its body's.
+    The first body has the seat, the second the ball; the link's origin is the ball's centre, x points out of the seat. `material` is of the
+    ball, `counter` of the seat. `preload` is the initial compression force along x, required for stiffness. `half_angle` of the groove is
+    between a wall and x. `friction` is the coefficient for the slip check. The ball is massless: its mass belongs to its body.
 
-    Intended freedoms, without friction: along y and z on a flat, along z in a groove, and all rotations.
+    Ideal degrees of freedom, without friction: along y and z on a flat, along z in a groove, and all rotations.
     """
 
     kind: ClassVar[str] = "contact"
@@ -53,46 +52,46 @@ class Contact(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The freedoms that a seat without friction leaves free."""
+        """Free degrees of freedom without friction."""
         return others((Freedom.X,) if self.seat is Seat.FLAT else (Freedom.X, Freedom.Y))
 
     @property
     def is_axisymmetric(self) -> bool:
-        """On a flat."""
+        """True on a flat."""
         return self.seat is Seat.FLAT
 
     @property
     def mirrored(self) -> Contact:
-        """Itself: x halves the groove."""
+        """Itself, by symmetry."""
         return self
 
     def stated(self, material: Material | None) -> Stated | None:
-        """Its stiffness about the preload, of the material of the ball paired with that of the seat; it weighs nothing."""
+        """Stiffness linearised about the preload, for the materials of ball and seat; massless."""
         return None if material is None else Stated(contact_stiffness(self, material), np.zeros((12, 12)))
 
     @property
     def push(self) -> Number | None:
-        """Its preload: the seat pushes the ball away."""
+        """Preload: the seat pushes the ball away."""
         return self.preload
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """It is pressed, and states the angle of a groove, not of a flat."""
+        """Errors: preload missing, or groove angle inconsistent with the seat."""
         if self.preload is None:
-            what = "it states none, and a contact without preload has no stiffness"
-            yield Finding("preload", what, 'State the force along x that presses ball and seat together: preload = "10 N"')
+            what = "preload missing: a contact without preload has no stiffness"
+            yield Finding("preload", what, 'Specify the compression force along x: preload = "10 N"')
         if self.seat is Seat.GROOVE and self.half_angle is None:
-            yield Finding("half_angle", "its groove states none", 'State the angle between a wall and x: half_angle = "45 deg"')
+            yield Finding("half_angle", "half angle of the groove missing", 'Specify the angle between a wall and x: half_angle = "45 deg"')
         if self.seat is Seat.FLAT and self.half_angle is not None:
-            yield Finding("half_angle", "it is that of a groove, and the ball rests on a flat", 'Leave it out, or state seat = "groove"')
+            yield Finding("half_angle", "only a groove has a half angle (got a flat seat)", 'Remove it, or use seat = "groove"')
 
 
 @dataclass(frozen=True, eq=False)
 class Hertz:
-    """Each contact of a ball under its share of the preload: `force` [N], `spot` radius a [m], stiffness `normal` and `tangential` [N/m].
+    """Hertzian contacts of a ball under the preload: `force` [N], `spot` radius a [m], `normal` and `tangential` stiffness [N/m].
 
-    `normals` (..., c, 3) of the c contacts point from the seat to the ball, `motion` (..., c, 3, 6) is what the ball moves there per
-    twist of its centre.
+    `normals` (..., c, 3) of the c contacts point from the seat to the ball. `motion` (..., c, 3, 6) is the contact motion per twist of the
+    ball's centre.
     """
 
     force: Array
@@ -104,18 +103,19 @@ class Hertz:
 
     @property
     def matrix(self) -> Array:
-        """Stiffness (..., c, 3, 3) of each contact."""
+        """Stiffness matrix (..., c, 3, 3) of each contact."""
         across = np.swapaxes(self.normals[..., None, :], -1, -2) @ self.normals[..., None, :]
         normal, tangential = (each[..., None, None, None] for each in (self.normal, self.tangential))
         return normal * across + tangential * (np.eye(3) - across)
 
 
 def hertz(part: Contact, material: Material) -> Hertz:
-    """The contacts of a ball of radius R; a flat bears the preload F, each wall of a groove F / (2 sin h), h its half angle.
+    """Compute Hertzian contacts of a ball: a flat carries the preload F, each wall of a groove of half angle h carries F / (2 sin h).
 
-    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, a = (3 F R / (4 E*))^(1/3), k_n = 2 E* a = (6 E*^2 R F)^(1/3); tangential, where all of the
-    spot sticks, k_t = 8 a G*, 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2. Isotropic materials, smooth faces, a spot much smaller than the ball.
-    Raises `DesignError` for a crystal, and where the seat's material is not given.
+    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, a = (3 F R / (4 E*))^(1/3), k_n = 2 E* a = (6 E*^2 R F)^(1/3) for the radius R. Without slip,
+    the tangential stiffness is k_t = 8 a G*, 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2. Isotropic materials, smooth faces, contact radius much
+    smaller than the ball.
+    Raises `DesignError` for a crystal, and without the seat's material.
     """
     ball, counter = _both(part, material)
     normals = _normals(part)
@@ -127,9 +127,9 @@ def hertz(part: Contact, material: Material) -> Hertz:
 
 
 def contact_stiffness(part: Contact, material: Material) -> Array:
-    """Stiffness (..., 6, 6) about the ball's centre: the sum of its contacts, which pass forces and no moments.
+    """Compute the stiffness (..., 6, 6) about the ball's centre: the sum of its contacts, without contact moments.
 
-    About the contact of a flat the ball rolls and spins freely; about its centre that shows as k_t R and k_t R^2.
+    Rolling and spinning about the contact of a flat are free; about the centre the stiffness has terms k_t R and k_t R^2.
 
     >>> steel = Material(young=210e9, poisson=0.3, density=7850.0)
     >>> ball = Contact("steel", "steel", radius=0.005, preload=10.0)
@@ -142,12 +142,12 @@ def contact_stiffness(part: Contact, material: Material) -> Array:
 
 def _both(part: Contact, material: Material) -> tuple[Material, Material]:
     if not isinstance(material, Paired):
-        what = f"its stiffness was asked for without the material of its seat, {part.counter}"
+        what = f"material of its seat missing ({part.counter})"
         raise refuse(f"contact of {part.material}", what, "Pass Paired.of(ball, seat)")
     for name, each in ((part.material, material), (part.counter, material.counter)):
         if each.is_cubic:
-            what = f"{name} is a crystal, and contacts are known of isotropic materials alone"
-            raise refuse(f"contact of {part.material} on {part.counter}", what, 'State its measured stiffness (kind = "spring")')
+            what = f"contacts require isotropic materials ({name} is a crystal)"
+            raise refuse(f"contact of {part.material} on {part.counter}", what, 'Use its measured stiffness (kind = "spring")')
     return material, material.counter
 
 

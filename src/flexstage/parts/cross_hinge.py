@@ -1,4 +1,4 @@
-"""Cross hinges: leaves that cross at an angle, in planes side by side."""
+"""Cross-axis flexural pivots: leaves that cross at an angle, in parallel planes."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from flexstage.parts.shape import INNER_MODES, Order
 
 @dataclass(frozen=True, eq=False)
 class CrossHinge(Compound):
-    """A cross-axis pivot: two leaves that cross at an `angle`, each of `length` from body to body; it turns about z where they cross.
+    """Cross-axis flexural pivot about z: two leaves that cross at an `angle`, each of `length` from body to body.
 
-    The link's origin is the crossing, x the bisector of both leaves. `crossing` is the way from the first body to the crossing over the
-    length (Wittrick's lambda); `spacing` the distance along z between the middle planes of neighbouring leaves. With a `middle_width` it
-    has three leaves: two of `width` on either side of a middle one of that width, so that it is alike above and below.
+    The link's origin is the crossing, x the bisector of both leaves. `crossing` is the distance from the first body to the crossing over
+    the length (Wittrick's lambda). `spacing` is the distance along z between the middle planes of adjacent leaves. With a `middle_width` it
+    has three leaves, symmetric about the middle: two of `width` on either side of one of that width.
     """
 
     kind: ClassVar[str] = "cross_hinge"
@@ -39,12 +39,12 @@ class CrossHinge(Compound):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The rotation about z."""
+        """Rotation about z."""
         return (Freedom.RZ,)
 
     @property
     def composition(self) -> Composition:
-        """`left` and `right`, which run to the left and to the right of x; of three, `left_low`, `left_high` and `right` between them."""
+        """`left` and `right` of x; for three leaves `left_low`, `left_high` and `right` between them."""
         along, across = np.cos(0.5 * self.angle), np.sin(0.5 * self.angle)
         centre = (0.5 - self.crossing) * self.length
         leaf = Leaf(self.material, self.length, self.thickness, self.width, self.section, self.inner_modes)
@@ -60,11 +60,9 @@ class CrossHinge(Compound):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Its leaves are thinner than wide, cross, and are clear of one another."""
-        yield Order("angle", self.angle, np.pi, "a straight angle", "Give the angle between the leaves", ANGLE)
+        """Order: leaves thinner than wide, crossing, without interference."""
+        yield Order("angle", self.angle, np.pi, "a straight angle", "Use the angle between the leaves", ANGLE)
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
         middle = self.width if self.middle_width is None else self.middle_width
         yield Order("thickness", self.thickness, middle, "the middle width", "Make the middle leaf wider")
-        yield Order(
-            "width", 0.5 * (self.width + middle), self.spacing, "the spacing", "Leaves side by side need room: space them", strict=False
-        )
+        yield Order("width", 0.5 * (self.width + middle), self.spacing, "the spacing", "Increase the spacing of the leaves", strict=False)

@@ -1,4 +1,4 @@
-"""Cruciform torsion hinges: two crossed leaves in one piece, a plus sign drawn along x."""
+"""Cruciform torsion hinges: two monolithic crossed leaves, a plus-shaped section along x."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.parts.shape import Order, Shaped
 
 @dataclass(frozen=True, eq=False)
 class Cross(Section):
-    """A plus sign of two equal leaves: `thickness` t, height and width b, sharp inner corners.
+    """Plus-shaped section of two equal leaves: `thickness` t, height and width b, sharp inner corners.
 
     >>> section = cross(1e-3, 10e-3)
     >>> [round(float(value), 4) for value in (section.area * 1e6, section.inertia_y * 1e12, section.torsion * 1e12, section.shear)]
@@ -29,7 +29,7 @@ class Cross(Section):
 
     @cached_property
     def area(self) -> Number:
-        """That of both leaves, t (2 b - t) [m^2]."""
+        """Area t (2 b - t) [m^2]."""
         return self.thickness * (2.0 * self.width - self.thickness)
 
     @cached_property
@@ -40,56 +40,56 @@ class Cross(Section):
 
     @cached_property
     def inertia_z(self) -> Number:
-        """That about y [m^4]."""
+        """Equal to that about y [m^4]."""
         return self.inertia_y
 
     @cached_property
     def torsion(self) -> Number:
-        """Saint-Venant's J = t^4 (2 b / 3 t - 0.08476 - 4.6 exp(-pi b / 2 t)) [m^4], within 2e-4 from b = 3 t up.
+        """Saint-Venant's J = t^4 (2 b / 3 t - 0.08476 - 4.6 exp(-pi b / 2 t)) [m^4], within 2e-4 for b >= 3 t.
 
-        Two strips b t^3 / 3 less what the junction and the ends change (the form of Trayer & March, NACA Report 334, 1930). The numbers are
-        those of Prandtl's stress function (Timoshenko & Goodier, Theory of Elasticity, section 106), solved by finite elements.
+        Two strips b t^3 / 3 with corrections for the junction and the ends (form of Trayer & March, NACA Report 334, 1930). The
+        coefficients fit finite-element solutions of Prandtl's stress function (Timoshenko & Goodier, Theory of Elasticity, section 106).
         """
         slender = self.width / self.thickness
         return self.thickness**4 * (2.0 / 3.0 * slender - 0.08476 - 4.6 * np.exp(-0.5 * np.pi * slender))
 
     @cached_property
     def warping(self) -> Number:
-        """C_w = b^3 t^3 / 72 [m^6]: leaves warp across their thickness alone (Timoshenko & Gere, Theory of Elastic Stability, 5.3)."""
+        """C_w = b^3 t^3 / 72 [m^6]: leaves warp only across their thickness (Timoshenko & Gere, Theory of Elastic Stability, 5.3)."""
         return (self.width * self.thickness) ** 3 / 72.0
 
     @cached_property
     def sectorial(self) -> Number:
-        """b t / 4 [m^2], at the corners of the leaves' ends."""
+        """Sectorial coordinate b t / 4 [m^2], at the corners of the leaves' ends."""
         return 0.25 * self.width * self.thickness
 
     @property
     def thinnest(self) -> Number:
-        """The leaves' thickness [m]."""
+        """Thickness of the leaves [m]."""
         return self.thickness
 
     def outline(self, angles: Array) -> Array:  # noqa: ARG002
-        """Its twelve corners."""
+        """Twelve corners."""
         far, near = 0.5 * self.first.width, 0.5 * self.first.thickness
         quarter = np.array([(near, -far), (near, -near), (far, -near)])
         turn = np.array([[0.0, 1.0], [-1.0, 0.0]])
         return np.concatenate([quarter @ np.linalg.matrix_power(turn, count) for count in range(4)])
 
     def pieces(self, angles: Array) -> tuple[Array, ...]:
-        """The leaf along y, and both halves of the other one."""
+        """The leaf along y, and both halves of the other leaf."""
         corners = self.outline(angles)
         return corners[[2, 3, 8, 9]], corners[[11, 0, 1, 10]], corners[[4, 5, 6, 7]]
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """T t / J on the faces of the leaves, and the shear of strips that bend; the inner corner's own stress is not counted."""
+        """T t / J on the faces of the leaves, and shear of bending strips; without stress concentration at the inner corner."""
         strips = 4.5 * magnitude(1.0 - uniform) / (self.width * self.width * self.thickness)
         return torque * (magnitude(uniform) * self.thickness / self.torsion + strips)
 
 
 def cross(thickness: Number, width: Number) -> Cross:
-    """The plus sign of leaves of `thickness` and `width`.
+    """Return the plus-shaped section of leaves of `thickness` and `width`.
 
-    Its shear factor is that of the energy of Jourawski's shear stress V Q(y) / (I b(y)), k = A / I^2 times the integral of Q^2 / b(y).
+    Its shear factor k is from the energy of Jourawski's shear stress V Q(y) / (I b(y)): A / I^2 times the integral of Q^2 / b(y).
     """
     half, near = 0.5 * width, 0.5 * thickness
     plain = Cross(width, width, thickness=thickness)
@@ -101,9 +101,9 @@ def cross(thickness: Number, width: Number) -> Cross:
 
 @dataclass(frozen=True, eq=False)
 class Cruciform(Shaped):
-    """A torsion hinge of two crossed leaves in one piece: `length` along x, both `thickness` thick and `width` wide, along y and along z.
+    """Cruciform torsion hinge of two crossed leaves: `length` along x, `thickness` and `width` of both leaves, along y and z.
 
-    Intended freedom: the rotation about x.
+    Ideal degree of freedom: rotation about x.
     """
 
     kind: ClassVar[str] = "cruciform"
@@ -120,15 +120,15 @@ class Cruciform(Shaped):
 
     @property
     def span(self) -> Number:
-        """Its length [m]."""
+        """Length [m]."""
         return self.length
 
     @property
     def throat(self) -> Cross:
-        """Its one section."""
+        """Constant section."""
         return cross(self.thickness, self.width)
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Its leaves are thinner than wide."""
+        """Order: leaves thinner than wide."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them")

@@ -13,10 +13,10 @@ from flexstage.parts.gauge import Instrument
 
 @dataclass(frozen=True, eq=False)
 class Encoder(Instrument):
-    """An encoder reads how far the scale on a body moves along the gauge's x axis: positive along +x.
+    """Linear encoder: displacement of a scale on a body along the gauge's x axis, positive along +x.
 
-    Over `range` (total travel of its scale) it counts a `period` divided into `steps` (one: the period is the step itself); white
-    `noise_density`, `bandwidth`. A scale that turns with the body reads the same to first order.
+    `range` is the total travel of its scale, divided into periods `period` of `steps` each (one: the period is the step); white
+    `noise_density`, `bandwidth`. Rotation of the scale has no first-order effect.
     """
 
     kind: ClassVar[str] = "encoder"
@@ -29,7 +29,7 @@ class Encoder(Instrument):
 
     @property
     def resolution(self) -> Number:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """One of its steps [m].
+        """Step [m].
 
         >>> Encoder(range=20e-3, period=8e-6, steps=2048.0).resolution
         3.90625e-09

@@ -17,11 +17,11 @@ from flexstage.parts.shape import INNER_MODES, Order
 
 @dataclass(frozen=True, eq=False)
 class FoldedLeaf(Compound):
-    """A leaf folded at a right angle: it holds along its fold, z, alone.
+    """Folded leaf at a right angle: it constrains only the translation along its fold, z.
 
-    The link's origin is the fold. The first leaf of `length` comes along x from the first body, the second of `second_length` (absent: as
-    long) leaves along y to the second. Lengths are those of the leaves; `corner` is the side of the solid square that they end on (absent:
-    they meet at the fold, which is stiff and has no mass).
+    The link's origin is the fold. The first leaf of `length` is along x from the first body, the second of `second_length` (default: equal)
+    along y to the second body. Lengths are of the leaves; `corner` is the side of the solid square at their ends (default: a rigid,
+    massless fold).
     """
 
     kind: ClassVar[str] = "folded_leaf"
@@ -36,7 +36,7 @@ class FoldedLeaf(Compound):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """All but the translation along the fold."""
+        """All except the translation along the fold."""
         return others((Freedom.Z,))
 
     @property
@@ -56,6 +56,6 @@ class FoldedLeaf(Compound):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Its leaves are thinner than wide, and no thicker than the corner."""
+        """Order: leaves thinner than wide, not thicker than the corner."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
         yield Order("thickness", self.thickness, self.corner, "the corner", "Make the corner larger", strict=False)

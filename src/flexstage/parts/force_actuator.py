@@ -1,4 +1,4 @@
-"""Bare force actuators: a force between two bodies, of which nothing is known but how large it may be."""
+"""Generic force actuators: a force between two bodies with a limit."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from flexstage.parts.stated import Stated, point_masses
 
 @dataclass(frozen=True, eq=False)
 class ForceActuator(ThrustActuator):
-    """A force along x between two bodies, positive pushing them apart; it has no stiffness.
+    """Force actuator along x between two bodies, positive pushing them apart; without stiffness.
 
-    `maximum` is the largest force in either direction (absent: not known), `mass` its own, half on each body.
+    `maximum` is the largest force in either direction (default: unknown), `mass` its mass, half on each body.
     """
 
     kind: ClassVar[str] = "force"
@@ -31,14 +31,14 @@ class ForceActuator(ThrustActuator):
 
     @property
     def thrust(self) -> Number:
-        """The input is the force."""
+        """One: the input is the force."""
         return 1.0
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """No stiffness, half of its mass on each body."""
+        """No stiffness, half of the mass on each body."""
         return Stated(np.zeros((6, 6)), point_masses(0.5 * self.mass, 0.5 * self.mass))
 
     @property
     def limits(self) -> Iterator[ForceLimit]:
-        """Its largest force."""
+        """Largest force."""
         yield ForceLimit("maximum force", self.maximum, self.maximum)

@@ -1,4 +1,4 @@
-"""The six relative freedoms of a link in its own frame (x along the part)."""
+"""Six relative degrees of freedom of a link in its frame (x along the part)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Freedom(Enum):
-    """A component of the relative twist at a link, in the link's frame: three translations, then three rotations.
+    """Degree of freedom: a component of the relative twist at a link, in its frame; translations, then rotations.
 
     >>> [freedom.value for freedom in Freedom]
     ['x', 'y', 'z', 'rx', 'ry', 'rz']
@@ -30,7 +30,7 @@ ROTATIONS = (Freedom.RX, Freedom.RY, Freedom.RZ)
 
 
 def others(freedoms: tuple[Freedom, ...]) -> tuple[Freedom, ...]:
-    """Return the freedoms that are not among those given, in order.
+    """Return the other degrees of freedom, in order.
 
     >>> [freedom.value for freedom in others(ROTATIONS)]
     ['x', 'y', 'z']

@@ -1,4 +1,4 @@
-"""Gauges: what all kinds have, and displacement gauges (capacitive gap sensors)."""
+"""Gauges: common properties, and displacement gauges (capacitive gap sensors)."""
 
 from __future__ import annotations
 
@@ -16,19 +16,18 @@ from flexstage.parts.freedom import ROTATIONS, Freedom
 
 
 class SensorSense(Enum):
-    """Sense of a displacement sensor: its reading grows as the gap opens, or as it closes."""
+    """Sense of a displacement sensor: its reading increases with an opening or a closing gap."""
 
     OPENS = "opens"
     CLOSES = "closes"
 
 
 class Instrument(Description):
-    """What every `kind` of gauge has, as fields or worked out of them; `parts.GAUGES` lists the kinds.
+    """Common properties of every `kind` of gauge; `parts.GAUGES` lists the kinds.
 
-    It reads one `freedom` of a body's motion against its base's, in its own frame: a displacement [m] or a rotation [rad]. `gap`: it looks
-    along x at a target, and whether its reading grows as the gap opens or closes is stated. `inside`: it stands on a link. Measuring
-    `range` (total span) and `resolution` (quantisation step) [m, rad], white `noise_density` [m/Hz^0.5, rad/Hz^0.5] and `bandwidth` [Hz];
-    the last two are `None` where they are unknown.
+    It measures one `freedom` of a body's motion against its base, in its frame: a displacement [m] or a rotation [rad]. `gap`: it faces a
+    target along x, and its sense (opening or closing gap) is specified. `inside`: it is on a link. Measuring `range` (total span) and
+    `resolution` (quantisation step) [m, rad], white `noise_density` [m/Hz^0.5, rad/Hz^0.5] and `bandwidth` [Hz], both `None` if unknown.
     """
 
     kind: ClassVar[str]
@@ -42,7 +41,7 @@ class Instrument(Description):
 
     @property
     def quantity(self) -> Quantity:
-        """What it reads.
+        """Measured quantity.
 
         >>> Gauge(range=500e-6).quantity.si
         'm'
@@ -51,14 +50,14 @@ class Instrument(Description):
 
 
 class DisplacementGauge(Instrument):
-    """What every kind has that looks at a target along its x axis and reads the gap between them."""
+    """Common properties of gauges of the gap to a target along their x axis."""
 
     gap: ClassVar[bool] = True
 
 
 @dataclass(frozen=True, eq=False)
 class Gauge(DisplacementGauge):
-    """A displacement gauge: measuring `range` (total span), `resolution` (quantisation step), white `noise_density`, `bandwidth`."""
+    """Displacement gauge: measuring `range` (total span), `resolution` (quantisation step), white `noise_density`, `bandwidth`."""
 
     kind: ClassVar[str] = "gauge"
     range: Annotated[Number, DISPLACEMENT, POSITIVE]
@@ -70,7 +69,7 @@ class Gauge(DisplacementGauge):
 
 @dataclass(frozen=True, eq=False)
 class Combination(Instrument):
-    """What a weighted sum of gauges is worth, as one of the `read` quantity."""
+    """Equivalent gauge of a weighted sum, for the quantity `read`."""
 
     kind: ClassVar[str] = "sum"
     read: Quantity
@@ -81,15 +80,15 @@ class Combination(Instrument):
 
     @property
     def quantity(self) -> Quantity:
-        """What it reads."""
+        """Measured quantity."""
         return self.read
 
 
 def combine_gauges(members: Sequence[tuple[Number, Instrument]]) -> Combination:
-    """The sum of gauges, each with its weight, whose errors are independent.
+    """Combine weighted gauges with independent errors into one.
 
-    Range sum |w_i| r_i and resolution sum |w_i| q_i (the worst signs), noise density (sum w_i^2 n_i^2)^(1/2), unknown where one of them is;
-    the members' bandwidth where they have the same.
+    Range sum |w_i| r_i and resolution sum |w_i| q_i (worst signs). Noise density (sum w_i^2 n_i^2)^(1/2), unknown if one is. The members'
+    bandwidth if equal.
 
     >>> pair = combine_gauges([(0.5, Gauge(range=1e-4, noise_density=3e-11)), (-0.5, Gauge(range=1e-4, noise_density=4e-11))])
     >>> round(1e6 * float(pair.range), 6), round(1e12 * float(pair.noise_density), 6)

@@ -15,14 +15,14 @@ from flexstage.parts.shape import INNER_MODES, Order, Shaped, reversed_or_none
 
 
 class LeafSection(Enum):
-    """What bends in a leaf: a `PLATE`, which its width stiffens, or the `BEAM` that many sources take it for."""
+    """Bending theory of a leaf: a `PLATE`, stiffened by its width, or a `BEAM`."""
 
     PLATE = "plate"
     BEAM = "beam"
 
 
 class LeafEnds(Enum):
-    """Whether the bodies at a leaf's ends keep its section from warping as it twists: `CLAMPED`, or `FREE` to warp."""
+    """Warping at a leaf's ends in torsion: `CLAMPED` (prevented), or `FREE`."""
 
     CLAMPED = "clamped"
     FREE = "free to warp"
@@ -30,15 +30,14 @@ class LeafEnds(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Leaf(Shaped):
-    """A leaf spring: `length` along x, `thickness` along y, `width` along z.
+    """Leaf spring: `length` along x, `thickness` along y, `width` along z.
 
-    Intended freedoms: translation along y, bending about z, twist about x. With `section` beam its law leaves plate action out, and its
-    ends are free to warp; a plate's are with `ends` free. `inner_modes` is how many of its own bending modes, and of its twist, the lumped
-    model counts.
+    Ideal degrees of freedom: translation along y, bending about z, twist about x. With `section` beam, its law omits plate action and
+    prevention of warping; for a plate, `ends` free omits the latter. `inner_modes` is the number of its bending and torsion modes in the
+    lumped model.
 
-    Where it is not straight when free: `curvature` is that of its blank about z (positive: towards y), `face_temperature_difference`
-    is that of its face at +y less that of its face at -y. It is mounted straight, as drawn: large displacements count what that takes,
-    other models take it as straight.
+    If not straight when free: `curvature` is of its blank about z (positive: towards y), `face_temperature_difference` of its face at +y
+    relative to -y. It is mounted straight: large displacements include the mounting stress, other models assume a straight leaf.
     """
 
     kind: ClassVar[str] = "leaf"
@@ -55,41 +54,41 @@ class Leaf(Shaped):
 
     @property
     def mirrored(self) -> Leaf:
-        """The leaf with its blank bent, and warm, on the other side."""
+        """The leaf with curvature and temperature difference reversed."""
         warmer = reversed_or_none(self.face_temperature_difference)
         return replace(self, curvature=reversed_or_none(self.curvature), face_temperature_difference=warmer) if self.is_bent else self
 
     @property
     def is_bent(self) -> bool:
-        """Whether it is not straight when it is free."""
+        """Whether it is curved when free."""
         return self.curvature is not None or self.face_temperature_difference is not None
 
     @property
     def straight(self) -> Leaf:
-        """The leaf as if it were straight when it is free."""
+        """The leaf, straight when free."""
         return replace(self, curvature=None, face_temperature_difference=None)
 
     @property
     def warps(self) -> bool:
-        """Whether its ends may warp as it twists."""
+        """Whether its ends may warp in torsion."""
         return self.section is LeafSection.BEAM or self.ends is LeafEnds.FREE
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The freedoms the leaf is meant to have."""
+        """Ideal degrees of freedom."""
         return (Freedom.Y, Freedom.RX, Freedom.RZ)
 
     @property
     def span(self) -> Number:
-        """Its length [m]."""
+        """Length [m]."""
         return self.length
 
     @property
     def throat(self) -> Rectangle:
-        """Its one section."""
+        """Constant section."""
         return Rectangle(self.thickness, self.width)
 
     @property
     def orders(self) -> Iterator[Order]:
-        """It is thinner than wide."""
+        """Order: thinner than wide."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")

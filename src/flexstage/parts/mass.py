@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia of rigid bodies from their outlines and density, or as stated."""
+"""Mass, centre of mass and inertia of rigid bodies, from outlines and density, or as specified."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.spatial.frame import Frame, identity
 
 @dataclass(frozen=True, eq=False)
 class MassProperties:
-    """Mass [kg], centre of mass (..., 3) [m] and inertia tensor about it (..., 3, 3) [kg m^2], in the frame the body stands in."""
+    """Mass [kg], centre of mass (..., 3) [m] and inertia tensor about it (..., 3, 3) [kg m^2], in the body's drawing frame."""
 
     mass: Array
     centre: Array
@@ -26,10 +26,10 @@ class MassProperties:
 
 
 def mass_properties(body: Body, materials: Mapping[str, Material], name: str = "") -> MassProperties | None:
-    """Mass properties of a body, `None` if it states none and has no solids.
+    """Compute mass properties of a body; `None` without a specified mass and solids.
 
-    Solids add up by the parallel-axis theorem, J = sum J_i + m_i (|r|^2 I - r r^T); what they have in common weighs once. Where that cannot
-    be weighed, raises `DesignError`, which calls the body by its `name`.
+    Solids add up by the parallel-axis theorem, J = sum J_i + m_i (|r|^2 I - r r^T); common volumes count once. Raises `DesignError`, with
+    the body's `name`, if a common volume cannot be computed.
 
     >>> block = Block("steel", size=(0.1, 0.1, 0.01))
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
@@ -47,12 +47,12 @@ def mass_properties(body: Body, materials: Mapping[str, Material], name: str = "
 
 @SESSION.keep(32)
 def _drawn_mass(body: Body, materials: tuple[tuple[str, Material], ...], name: str) -> MassProperties:
-    """The mass of what is drawn, kept: many descriptions that differ in their links have the same bodies."""
+    """Mass of solids, cached: descriptions with different links share bodies."""
     return union_properties(drawn_solids(body, dict(materials), name, identity()))
 
 
 def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame: Frame) -> list[Drawn]:
-    """The solids of a body by their addresses, with their densities, drawn in a frame.
+    """Return the solids of a body by address, with densities, drawn in a frame.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> drawn_solids(Body(solids={"plate": Block("steel", size=(0.1, 0.1, 0.01))}), {"steel": steel}, "platform", identity())[0].name
@@ -63,9 +63,9 @@ def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame
 
 
 def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = None) -> MassProperties:
-    """Mass properties of the union of solids, in the frame that theirs stand in.
+    """Compute mass properties of the union of solids, in the frame of the solids' frames.
 
-    What they have in common is that of the solids as they are `meant` to stand, where that is told.
+    Common volumes are those of the solids in `meant` positions, if specified.
 
     >>> half = Block("steel", size=(1.0, 1.0, 1.0))
     >>> float(union_properties([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)
@@ -76,7 +76,7 @@ def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = No
 
 
 def of_moments(density: Number, moments: Moments) -> MassProperties:
-    """Mass properties of a region of a density [kg/m^3] from its volume and moments: J = rho (tr S I - S) about its centre.
+    """Compute mass properties of a region of density [kg/m^3] from its moments: J = rho (tr S I - S) about its centre.
 
     >>> of_moments(3.0, Moments(np.array(2.0), np.zeros(3), np.eye(3))).inertia.diagonal().tolist()
     [6.0, 6.0, 6.0]
@@ -89,7 +89,7 @@ def of_moments(density: Number, moments: Moments) -> MassProperties:
 
 
 def combine(items: list[MassProperties]) -> MassProperties:
-    """Mass properties of several bodies moving as one.
+    """Combine mass properties of rigidly connected bodies.
 
     >>> point = MassProperties(np.array(1.0), np.array([1.0, 0, 0]), np.zeros((3, 3)))
     >>> other = MassProperties(np.array(1.0), np.array([-1.0, 0, 0]), np.zeros((3, 3)))
@@ -102,7 +102,7 @@ def combine(items: list[MassProperties]) -> MassProperties:
     moment = sum((item.mass[..., None] * item.centre for item in items), np.zeros(3))
     safe = np.where(np.real(mass) > 0.0, mass, 1.0)
     centre = moment / safe[..., None]
-    middle = np.real(centre)  # inertia is least about the centre: to first order a step of that does not change it
+    middle = np.real(centre)  # inertia is least about the centre: no first-order change by a complex step
     arms = [item.centre - middle for item in items]
     own = sum((item.inertia for item in items), np.zeros((3, 3)))
     spread = sum((_outer(item.mass[..., None] * arm, arm) for item, arm in zip(items, arms, strict=True)), np.zeros((3, 3)))
@@ -114,14 +114,14 @@ def _outer(one: Array, other: Array) -> Array:
 
 
 def _about(second: Array) -> Array:
-    """The inertia of a second moment (..., 3, 3): tr S I - S."""
+    """Inertia of a second moment (..., 3, 3): tr S I - S."""
     result, (xx, yy, zz) = -second, np.moveaxis(np.diagonal(second, axis1=-2, axis2=-1), -1, 0)
     result[..., range(3), range(3)] = np.stack([yy + zz, xx + zz, xx + yy], axis=-1)
     return result
 
 
 def tensor(inertia: Inertia) -> Array:
-    """The 3x3 inertia tensor of stated moments and products.
+    """Return the 3x3 inertia tensor of moments and products.
 
     >>> tensor(Inertia(xx=1.0, yy=2.0, zz=3.0, xy=0.5)).tolist()
     [[1.0, -0.5, -0.0], [-0.5, 2.0, -0.0], [-0.0, -0.0, 3.0]]
@@ -131,7 +131,7 @@ def tensor(inertia: Inertia) -> Array:
 
 
 def solid_properties(solid: Solid, density: Number) -> MassProperties:
-    """Mass properties of one outline of uniform `density` [kg/m^3]; an imported one states its own.
+    """Compute mass properties of one outline of uniform `density` [kg/m^3]; those specified for an imported one.
 
     >>> float(solid_properties(Cylinder("steel", diameter=2.0, length=1.0), 1.0).mass.round(12))
     3.14159265359
@@ -149,7 +149,7 @@ def solid_properties(solid: Solid, density: Number) -> MassProperties:
 
 
 def within(properties: MassProperties, frame: Frame) -> MassProperties:
-    """The same mass properties seen from the frame that `frame` stands in: J' = R J R^T.
+    """Transform mass properties to the parent frame of `frame`: J' = R J R^T.
 
     >>> point = MassProperties(np.array(1.0), np.array([1.0, 0.0, 0.0]), np.diag([0.0, 1.0, 2.0]))
     >>> quarter = Frame(np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), np.zeros(3))
@@ -164,7 +164,7 @@ def within(properties: MassProperties, frame: Frame) -> MassProperties:
 
 
 def _block(solid: Block, density: Number) -> tuple[Array, Array]:
-    """Mass and principal moments along the block's edges."""
+    """Mass and principal moments along the edges of a block."""
     length, width, height = solid.size
     full = _cuboid(density, length, width, height)
     mass, diagonal = full

@@ -26,18 +26,18 @@ from flexstage.base.units.quantity import (
 from flexstage.spatial.frame import axes
 
 _AGREES = 0.01
-"""How far Poisson's ratios as stated and as of both moduli may lie apart, 1 + nu relative: moduli are told with two or three digits."""
+"""Tolerance between Poisson's ratio as specified and from both moduli, relative to 1 + nu: moduli have two or three digits."""
 _CUBIC = ("c11", "c12", "c44")
 
 
 @dataclass(frozen=True, eq=False)
 class Material(Description):
-    """A linear-elastic material.
+    """Linear-elastic material.
 
     Isotropic: `young` [Pa], and `poisson` [-] or `shear_modulus` [Pa] (or both, which must agree). A crystal of cubic symmetry: `c11`,
-    `c12`, `c44` [Pa] instead, and `crystal`, the crystal's directions along the stage's x and z axes (absent: 100 and 001). `density`
-    [kg/m^3]; optional: `expansion` [1/K], `loss_factor` [-], and limits of stress [Pa]: `yield_stress`, `fatigue_limit`,
-    `allowable_stress`, of which the least governs.
+    `c12`, `c44` [Pa] instead. `crystal` has its directions along the stage's x and z axes (default: 100 and 001). `density` [kg/m^3];
+    optional: `expansion` [1/K], `loss_factor` [-], and limits of stress [Pa]: `yield_stress`, `fatigue_limit`, `allowable_stress`; the
+    least governs.
 
     >>> Material(young=200e9, poisson=0.25, density=7750.0).shear
     80000000000.0
@@ -60,45 +60,45 @@ class Material(Description):
 
     @property
     def modulus(self) -> Number:
-        """Young's modulus [Pa]; NaN of a crystal, whose own follows from the direction (`oriented`)."""
+        """Young's modulus [Pa]; NaN for a crystal, whose modulus depends on direction (`oriented`)."""
         return np.nan if self.young is None else self.young
 
     @property
     def shear(self) -> Number:
-        """Shear modulus [Pa]: as stated, or G = E / (2 (1 + nu))."""
+        """Shear modulus [Pa]: as specified, or G = E / (2 (1 + nu))."""
         return self.modulus / (2.0 * (1.0 + self.contraction)) if self.shear_modulus is None else self.shear_modulus
 
     @property
     def contraction(self) -> Number:
-        """Poisson's ratio: as stated, or nu = E / (2 G) - 1."""
+        """Poisson's ratio: as specified, or nu = E / (2 G) - 1."""
         if self.poisson is not None:
             return self.poisson
         return np.nan if self.shear_modulus is None else self.modulus / (2.0 * self.shear_modulus) - 1.0
 
     @property
     def twist_ratio(self) -> Number:
-        """E / (2 G), which is 1 + nu where the material is isotropic: how torsion and its warping compare."""
+        """E / (2 G), equal to 1 + nu for an isotropic material: ratio in warping torsion."""
         return 1.0 + self.contraction
 
     @property
     def shear_across(self) -> Number | None:
-        """Shear modulus [Pa] in the plane of x and y, where it is not that of x and z; `None` of an isotropic material."""
+        """Shear modulus [Pa] in the plane of x and y, if unlike that of x and z; `None` for an isotropic material."""
         return None
 
     @property
     def is_cubic(self) -> bool:
-        """Whether it is stated as a crystal."""
+        """Whether it is a cubic crystal."""
         return any(getattr(self, name) is not None for name in _CUBIC)
 
     @property
     def limits(self) -> dict[str, Number]:
-        """The limits of stress that it states [Pa], by name."""
+        """Specified stress limits [Pa], by name."""
         stated = {"yield stress": self.yield_stress, "fatigue limit": self.fatigue_limit, "allowable stress": self.allowable_stress}
         return {name: limit for name, limit in stated.items() if limit is not None}
 
     @property
     def limit(self) -> Number | None:
-        """The least limit of stress [Pa]; `None` where none is stated.
+        """Least stress limit [Pa]; `None` without any.
 
         >>> Material(young=200e9, poisson=0.3, density=7750.0, yield_stress=1e9, fatigue_limit=4e8).limit.item()
         400000000.0
@@ -108,36 +108,40 @@ class Material(Description):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """What is wrong with its elastic constants taken together, by field."""
+        """Errors in the combination of elastic constants, by field."""
         yield from self._cubic_faults() if self.is_cubic else self._isotropic_faults()
 
     def _isotropic_faults(self) -> Iterator[Finding]:
         if self.young is None or (self.poisson is None and self.shear_modulus is None):
             missing, example = ("poisson", "poisson = 0.3") if self.young is not None else ("young", 'young = "200 GPa"')
-            what = "its elastic constants are not known: it needs young and one of poisson and shear_modulus, or c11, c12 and c44"
-            yield Finding(missing, what, f"Write for example {example}")
+            what = "elastic constants incomplete (expected young and one of poisson and shear_modulus, or c11, c12 and c44)"
+            yield Finding(missing, what, f"Use e.g. {example}")
         elif self.shear_modulus is not None:
             found = np.real(self.young) / (2.0 * np.real(self.shear_modulus)) - 1.0
             apart = 0.0 if self.poisson is None else np.abs(found - np.real(self.poisson)) / (1.0 + np.real(self.poisson))
             first = float(np.ravel(found)[0])
             if np.any(found <= -1.0) or np.any(found >= 0.5):
-                yield Finding("shear_modulus", f"young and shear_modulus make Poisson's ratio {first:.4g}", "It lies between -1 and 0.5")
+                yield Finding(
+                    "shear_modulus",
+                    f"invalid Poisson's ratio of young and shear_modulus (got {first:.4g}, expected -1 to 0.5)",
+                    "Correct one of them",
+                )
             elif np.any(apart > _AGREES):
                 stated = float(np.ravel(np.real(self.contraction))[0])
-                what = f"young and shear_modulus make Poisson's ratio {first:.4g}, and poisson is {stated:.4g}"
-                yield Finding("shear_modulus", what, "State two of the three, or three that agree")
+                what = f"Poisson's ratio {first:.4g} of young and shear_modulus contradicts poisson, {stated:.4g}"
+                yield Finding("shear_modulus", what, "Specify two of the three, or three consistent ones")
 
     def _cubic_faults(self) -> Iterator[Finding]:
         missing = [name for name in _CUBIC if getattr(self, name) is None]
         if missing:
-            yield Finding(missing[0], f"a crystal of cubic symmetry needs {', '.join(_CUBIC)}", "State all three")
+            yield Finding(missing[0], f"a crystal of cubic symmetry requires {', '.join(_CUBIC)}", "Specify all three")
             return
         double = [name for name in ("young", "poisson", "shear_modulus") if getattr(self, name) is not None]
         if double:
-            yield Finding(double[0], "it states c11, c12 and c44 too, from which this follows by direction", "Leave one of them out")
+            yield Finding(double[0], "redundant with c11, c12 and c44, which determine it by direction", "Remove one of them")
         c11, c12, _ = (np.real(each) for each in self._constants)
         if np.any(c11 <= np.abs(c12)) or np.any(c11 + 2.0 * c12 <= 0.0):
-            yield Finding("c11", "no crystal with these constants is stable: c11 > |c12| and c11 + 2 c12 > 0", "Check c11, c12 and c44")
+            yield Finding("c11", "unstable crystal (expected c11 > |c12| and c11 + 2 c12 > 0)", "Check c11, c12 and c44")
 
     @property
     def _constants(self) -> tuple[Array, Array, Array]:
@@ -145,13 +149,13 @@ class Material(Description):
         return c11, c12, c44
 
     def oriented(self, rotation: Array) -> Material:
-        """The material as a part sees it whose axes (x along it, z along its width) are the columns of `rotation` (..., 3, 3) in the stage.
+        """Return the material in a part's axes (x along it, z along its width), columns of `rotation` (..., 3, 3) in the stage.
 
-        A cubic crystal with S = C^-1, J = S11 - S12 - S44/2, and n, m two axes in the crystal: 1/E = S11 - 2 J (n1^2 n2^2 + n2^2 n3^2 +
-        n3^2 n1^2), strain ratio -E (S12 + J sum n^2 m^2), 1/G = S44 + 4 J sum n^2 m^2 (Nye 1957; Hopcroft, Nix & Kenny, J. MEMS 19 (2010)
-        229-238). Beams along x take E of x and G of the planes xy and xz, wide leaves -S13 / (S11 S33)^(1/2), with which E / (1 - nu^2) is
-        the modulus of the plate; coupling of tension or bending with shear and twist, which other directions than 100, 110 and 111 have, is
-        left out. Isotropic materials are returned as they are.
+        A cubic crystal with S = C^-1, J = S11 - S12 - S44/2, and n, m two axes in the crystal, has 1/E = S11 - 2 J (n1^2 n2^2 + n2^2 n3^2 +
+        n3^2 n1^2). Its strain ratio is -E (S12 + J sum n^2 m^2), and 1/G = S44 + 4 J sum n^2 m^2 (Nye 1957; Hopcroft, Nix & Kenny, J. MEMS
+        19 (2010) 229-238). Beams along x use E of x and G of the planes xy and xz. Wide leaves use -S13 / (S11 S33)^(1/2) for the plate
+        modulus E / (1 - nu^2). Coupling of tension or bending with shear and twist, in directions other than 100, 110 and 111, is omitted.
+        Isotropic materials are returned unchanged.
         """
         if not self.is_cubic:
             return self
@@ -174,10 +178,10 @@ class Material(Description):
         )
 
     def stiffness_tensor(self, rotation: Array) -> Array:
-        """Stiffness (..., 6, 6) [Pa] of a crystal in axes that are columns of `rotation` (..., 3, 3) in the stage: xx, yy, zz, yz, xz, xy.
+        """Compute the stiffness (..., 6, 6) [Pa] of a crystal in axes `rotation` (..., 3, 3), columns in the stage.
 
-        It takes engineering shear strains. C_ijkl = C12 d_ij d_kl + C44 (d_ik d_jl + d_il d_jk) + (C11 - C12 - 2 C44) sum_a q_ai q_aj
-        q_ak q_al with q_a the crystal's axes (Nye 1957).
+        Order xx, yy, zz, yz, xz, xy, engineering shear strains. C_ijkl = C12 d_ij d_kl + C44 (d_ik d_jl + d_il d_jk) + (C11 - C12 - 2 C44)
+        sum_a q_ai q_aj q_ak q_al with q_a the crystal's axes (Nye 1957).
 
         >>> silicon = Material(None, None, 2329.0, c11=165.64e9, c12=63.94e9, c44=79.51e9)
         >>> (silicon.stiffness_tensor(axes((1.0, 1.0, 0.0))).diagonal()[[0, 2, 5]] / 1e9).round(2).tolist()
@@ -190,7 +194,7 @@ class Material(Description):
         return isotropic + (c11 - c12 - 2.0 * c44) * (np.swapaxes(pairs, -1, -2) @ pairs)
 
     def turned(self, rotation: Array) -> Material:
-        """The material of a stage whose axes are columns of `rotation` (..., 3, 3) in another one: a crystal's directions along that one's.
+        """Return the material in another stage, with this stage's axes as columns of `rotation` (..., 3, 3): rotated crystal directions.
 
         >>> silicon = Material(None, None, 2329.0, c11=166e9, c12=64e9, c44=80e9)
         >>> silicon.turned(np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])).crystal
@@ -203,7 +207,7 @@ class Material(Description):
         return replace(self, crystal=(along, up))
 
     def _lattice(self, rotation: Array) -> Array:
-        """Axes (..., 3, 3), columns in the stage, as columns in the crystal."""
+        """Axes (..., 3, 3), from columns in the stage to columns in the crystal."""
         along, up = ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) if self.crystal is None else self.crystal
         return axes(along, up) @ rotation
 
@@ -213,7 +217,7 @@ _VOLUME: Array = np.pad(np.ones((3, 3)), (0, 3))
 
 
 def _right_handed(rotation: Array) -> Array:
-    """The axes with y where z and x put it: links in mirrored copies are drawn in such."""
+    """Right-handed axes, y from z and x, for links in mirrored instances."""
     x, y, z = np.moveaxis(rotation, -1, 0)
     hand = np.sign(np.real(np.linalg.det(rotation)))[..., None]
     return np.stack([x, hand * y, z], axis=-1)
@@ -224,9 +228,9 @@ _KEPT = ("density", "yield_stress", "expansion", "loss_factor", "source", "fatig
 
 @dataclass(frozen=True, eq=False)
 class Oriented(Material):
-    """A cubic crystal in a part's own axes: `young` along x, `poisson` of a plate, `shear_modulus` of the plane xz, `other_shear` of xy.
+    """Cubic crystal in a part's axes: `young` along x, `poisson` of a plate, `shear_modulus` of the plane xz, `other_shear` of xy.
 
-    `tensor` (..., 6, 6) is all of it, as `stiffness_tensor` tells it.
+    `tensor` (..., 6, 6) is the full `stiffness_tensor`.
     """
 
     other_shear: Annotated[Number, MODULUS, POSITIVE] = np.nan
@@ -234,7 +238,7 @@ class Oriented(Material):
 
     @property
     def twist_ratio(self) -> Number:
-        """E / (2 G) of the plane xz, that of a leaf."""
+        """E / (2 G) of the plane xz, for a leaf."""
         return self.modulus / (2.0 * self.shear)
 
     @property
@@ -245,13 +249,13 @@ class Oriented(Material):
 
 @dataclass(frozen=True, eq=False)
 class Paired(Material):
-    """A part's material with that of what it is pressed on, its `counter`."""
+    """A part's material with the material of its contact partner, `counter`."""
 
     counter: Material = field(default_factory=lambda: _NOTHING)
 
     @classmethod
     def of(cls, material: Material, counter: Material) -> Paired:
-        """Both, each as it is stated."""
+        """Pair of both materials."""
         return cls(**{each.name: getattr(material, each.name) for each in fields(Material)}, counter=counter)
 
 

@@ -1,4 +1,4 @@
-"""Files of stiffness and mass matrices that finite element codes write: MAT, NPZ and Matrix Market, read with guards."""
+"""Files of stiffness and mass matrices from finite-element codes: MAT, NPZ and Matrix Market, with size limits."""
 
 from __future__ import annotations
 
@@ -19,22 +19,21 @@ from flexstage.base.storage.files import hdf, mat, require_regular
 from flexstage.parts.superelement import Superelement
 
 MatrixLike: TypeAlias = Any
-"""A dense array, or a sparse one of scipy."""
+"""Dense array, or sparse array of scipy."""
 LARGEST_DENSE = 4000
-"""Rows of matrices that are worked on as dense ones."""
+"""Largest number of rows of dense matrices."""
 _COPIES = 8
 _LEAST_ENTRY = 2
-"""Bytes that an entry of a text file takes at least: a digit and a space."""
+"""Least bytes per entry of a text file: a digit and a space."""
 _HDF = b"\x89HDF\r\n\x1a\n"
 _HEAD = 512
 _CHUNK = 2**20
 
 
 def read_matrices(part: Superelement) -> tuple[MatrixLike, ...]:
-    """Stiffness, mass and, where one is stated, damping as they stand in a superelement's files: real, in the files' units, of any shape.
+    """Read stiffness, mass and optional damping of a superelement's files: real, in the files' units, of any shape.
 
-    Raises `DesignError` where a file is not stated, is not there, is of another version than stated, is damaged, holds no such array or
-    numbers of another kind, or is too large.
+    Raises `DesignError` for an unspecified, missing, damaged or too large file, another version, an unknown array, or other numbers.
     """
     require(_statement_findings(part))
     for path in map(Path, part.files):
@@ -52,7 +51,7 @@ def read_matrices(part: Superelement) -> tuple[MatrixLike, ...]:
 
 
 def digest_of(paths: tuple[str, ...]) -> str:
-    """SHA-256 of the bytes of files, one after the other.
+    """Return the SHA-256 of the concatenated bytes of files.
 
     >>> digest_of(())[:8]
     'e3b0c442'
@@ -69,13 +68,13 @@ def digest_of(paths: tuple[str, ...]) -> str:
 def _statement_findings(part: Superelement) -> Iterator[Finding]:
     stated = [key for key in ("file", "stiffness_file", "mass_file", "damping_file") if getattr(part, key)]
     if stated not in (["file"], ["stiffness_file", "mass_file"], ["stiffness_file", "mass_file", "damping_file"]):
-        what = f"it states {' and '.join(stated) or 'none'} of file, stiffness_file, mass_file and damping_file"
-        yield Finding("file", what, "State file (MAT or NPZ), or stiffness_file and mass_file (Matrix Market)")
+        what = f"wrong combination of file, stiffness_file, mass_file and damping_file (got {' and '.join(stated) or 'none'})"
+        yield Finding("file", what, "Specify file (MAT or NPZ), or stiffness_file and mass_file (Matrix Market)")
     for key in stated:
         path = getattr(part, key)
         known = tuple(_READERS) if key == "file" else (".mtx",)
         if Path(path).suffix.lower() not in known:
-            advice = "MAT and NPZ files stand under file, Matrix Market files under stiffness_file and mass_file"
+            advice = "Use file for MAT and NPZ, stiffness_file and mass_file for Matrix Market"
             yield Finding(key, f"{path} does not end in {' or '.join(known)}", advice)
 
 
@@ -83,29 +82,27 @@ def _version_findings(part: Superelement) -> Iterator[Finding]:
     found = digest_of(part.files)
     named = " and ".join(Path(path).name for path in part.files)
     if not part.sha256:
-        yield Finding("sha256", f"which version of {named} is meant is not stated", f'If it is this one, write sha256 = "{found}"')
+        yield Finding("sha256", f"digest of {named} missing", f'For the current version, add sha256 = "{found}"')
     elif found != part.sha256.lower():
-        what = f"{named} has another content than stated (sha256 {found[:12]}..., stated {part.sha256[:12]}...)"
-        yield Finding("sha256", what, f'Restore that version, or if this one is meant write sha256 = "{found}"')
+        what = f"wrong digest of {named} (got sha256 {found[:12]}..., expected {part.sha256[:12]}...)"
+        yield Finding("sha256", what, f'Restore that version, or use sha256 = "{found}"')
 
 
 def _missing_findings(path: Path, names: tuple[str, ...], found: Mapping[str, MatrixLike]) -> Iterator[Finding]:
     for key, name in zip(("stiffness", "mass", "damping"), names, strict=False):
         if name not in found:
             there = ", ".join(list(found)[:8]) or "no array of numbers"
-            yield Finding(
-                f"arrays.{key}", f'{path.name} has no array "{name}"; it has {there}', f'Write for example arrays = {{ {key} = "..." }}'
-            )
+            yield Finding(f"arrays.{key}", f'{path.name} has no array "{name}"; it has {there}', f'Use e.g. arrays = {{ {key} = "..." }}')
 
 
 def _plain(path: Path, name: str, matrix: MatrixLike) -> MatrixLike:
-    """The matrix in floats; refused where its numbers are of another kind."""
+    """The matrix in floats; refuses numbers of another kind."""
     kind = matrix.dtype.kind
     if kind == "c" and not np.any(np.imag(matrix.data if scipy.sparse.issparse(matrix) else matrix)):
         return _plain(path, name, matrix.real)
     if kind not in "fiu":
-        what = f"{name} holds {'complex numbers' if kind == 'c' else f'values of kind {matrix.dtype}'} where real numbers are expected"
-        raise refuse(str(path), what, "Export the real stiffness and mass; damping of the material is stated as loss_factor")
+        what = f"wrong kind of {name} (got {'complex numbers' if kind == 'c' else f'values of kind {matrix.dtype}'}, expected real numbers)"
+        raise refuse(str(path), what, "Export the real stiffness and mass; use loss_factor for material damping")
     return matrix.astype(float)
 
 
@@ -133,7 +130,7 @@ def _mat(path: Path, names: tuple[str, ...]) -> dict[str, MatrixLike]:
     sparse = [name for name in names if "MATLAB_sparse" in held.groups.get(name, {})]
     if sparse:
         raise refuse(
-            str(path), f"{' and '.join(sparse)} is sparse, which is not read from files of version 7.3", "Save full(K), or as version 7"
+            str(path), f"{' and '.join(sparse)} is sparse, which is not supported in files of version 7.3", "Save full(K), or as version 7"
         )
     return {name: held.read(name).T if name in names else np.zeros(0) for name, each in held.arrays.items() if each.kind in "fiuc"}
 
@@ -156,28 +153,28 @@ def _read_as_market(path: Path) -> Generator[None]:
 
 
 def _market_head(path: Path) -> tuple[int, int, int]:
-    """Rows, columns and entries that a Matrix Market file announces, as many as its bytes and the memory have room for."""
+    """Rows, columns and entries in the header of a Matrix Market file, checked against its size and the memory."""
     with _read_as_market(path):
         rows, columns, entries, form, kind, symmetry = scipy.io.mminfo(str(path))
     if kind not in ("real", "integer", "double"):
-        raise refuse(str(path), f"it holds {kind} entries where real ones are expected", _MARKET)
+        raise refuse(str(path), f"wrong kind of entries (got {kind}, expected real)", _MARKET)
     size = path.stat().st_size
     if entries * _LEAST_ENTRY > 2 * size:
-        raise refuse(str(path), f"it breaks off: {entries} entries are announced, and it has {size} bytes", "Copy or export it again")
+        raise refuse(str(path), f"truncated file ({entries} entries in its header, {size} bytes)", "Copy or export it again")
     _require_room(path, "its matrix", 8 * rows * columns if form == "array" else 24 * entries)
     return rows, columns, entries if symmetry == "general" else 2 * entries
 
 
 def _size_findings(stiffness: tuple[Path, int, int, int], *others: tuple[Path, int, int, int]) -> Iterator[Finding]:
-    """Sizes that cannot be those of one part: no memory is taken for more rows than the stiffness has entries."""
+    """Errors of inconsistent sizes, before memory allocation."""
     path, rows, columns, entries = stiffness
     if rows != columns or entries < rows:
-        what = f"its stiffness is {rows} x {columns} with {entries} entries at most, where a square matrix has one a row at least"
-        yield Finding(str(path), what, "Export the whole matrix over ports and inner coordinates")
+        what = f"invalid stiffness (got {rows} x {columns} with {entries} entries at most, expected a square matrix with an entry per row)"
+        yield Finding(str(path), what, "Export the whole matrix over ports and internal coordinates")
     for other, *size, _ in others:
         if size != [rows, columns]:
-            what = f"its matrix is {' x '.join(map(str, size))}, and the stiffness in {path.name} {rows} x {columns}"
-            yield Finding(str(other), what, "Export all over the same coordinates")
+            what = f"wrong size (got {' x '.join(map(str, size))}, expected {rows} x {columns} as the stiffness in {path.name})"
+            yield Finding(str(other), what, "Export all matrices over the same coordinates")
 
 
 def _matrix_market(path: Path) -> MatrixLike:
@@ -189,6 +186,6 @@ def _matrix_market(path: Path) -> MatrixLike:
 
 def _require_room(path: Path, what: str, size: float) -> None:
     def fits(there: float) -> str:
-        return f"Reduce it in the code it comes from (Craig-Bampton, Guyan): matrices of {gigabytes(there / _COPIES)} would fit"
+        return f"Reduce it in its finite-element code (Craig-Bampton, Guyan) to matrices of {gigabytes(there / _COPIES)}"
 
     require_memory(str(path), what, _COPIES * size, fits)

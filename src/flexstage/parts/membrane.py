@@ -14,10 +14,10 @@ from flexstage.parts.shape import Elastic, Order
 
 @dataclass(frozen=True, eq=False)
 class Membrane(Elastic):
-    """A flat ring of sheet, normal to x, clamped to a hub of `inner` diameter (second body) and in a rim of `outer` diameter (first body).
+    """Flat annular membrane normal to x, clamped to a hub of `inner` diameter (second body) and a rim of `outer` diameter (first body).
 
-    Both are rigid, and both ends of the part lie in its centre. Intended freedoms: along x, and tilt about y and z. `mass` counts half at
-    the hub and half at the rim. It has no shape for finite elements: a spiral, or a membrane with holes, is a `compliance_matrix` instead.
+    Hub and rim are rigid; both ends of the part are at its centre. Ideal degrees of freedom: along x, tilt about y and z. Half of `mass` is
+    at the hub, half at the rim. It has no shape for finite elements; use a `compliance_matrix` for a spiral or perforated membrane.
     """
 
     kind: ClassVar[str] = "membrane"
@@ -29,7 +29,7 @@ class Membrane(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Along its normal, and both tilts."""
+        """Translation along its normal, and both tilts."""
         return (Freedom.X, Freedom.RY, Freedom.RZ)
 
     @property
@@ -39,5 +39,5 @@ class Membrane(Elastic):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """The hub is smaller than the rim."""
+        """Order: hub smaller than the rim."""
         yield Order("inner", self.inner, self.outer, "the outer diameter", "Exchange them")

@@ -15,10 +15,10 @@ from flexstage.parts.shape import Profiled
 
 @dataclass(frozen=True, eq=False)
 class Neck(Profiled):
-    """A two-axis hinge: round (`width` absent: `thickness` is the diameter; with a circular profile a toroid), or rectangular.
+    """Two-axis neck hinge: round (without `width`: `thickness` is the diameter; a toroid for a circular profile), or rectangular.
 
-    A rectangular neck is `thickness` thick along y and `width` wide along z, both grown by the profile. Intended freedoms: the three
-    rotations (its torsion counts as free although its stiffness is used: with it locked every strut passes a couple about its axis).
+    A rectangular neck has `thickness` along y and `width` along z, both increased by the profile. Ideal degrees of freedom: the three
+    rotations (torsion is free although its stiffness is used; locked, it would transmit a couple).
     """
 
     kind: ClassVar[str] = "neck"
@@ -29,10 +29,10 @@ class Neck(Profiled):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The freedoms the hinge is meant to have."""
+        """Ideal degrees of freedom."""
         return ROTATIONS
 
     def grown(self, up: Number) -> Section:
-        """The section where the cuts have risen by `up` [m], on all sides."""
+        """Section at a profile height `up` [m], on all sides."""
         height = self.thickness + 2.0 * up
         return circle(height) if self.width is None else Rectangle(height, self.width + 2.0 * up)

@@ -16,9 +16,9 @@ from flexstage.parts.shape import Order, Profiled
 
 @dataclass(frozen=True, eq=False)
 class Notch(Profiled):
-    """A one-axis hinge: link frame x along the hinge, y across the thin neck (`thickness`), z along the `width`; it bends about z.
+    """One-axis notch hinge: link frame x along the hinge, y across the thin neck (`thickness`), z along the `width`; it bends about z.
 
-    Intended freedom: the rotation about z.
+    Ideal degree of freedom: rotation about z.
     """
 
     kind: ClassVar[str] = "notch"
@@ -29,15 +29,15 @@ class Notch(Profiled):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The freedoms the hinge is meant to have."""
+        """Ideal degrees of freedom."""
         return (Freedom.RZ,)
 
     def grown(self, up: Number) -> Rectangle:
-        """The section where the cuts have risen by `up` [m]: a notch is as wide everywhere."""
+        """Section at a profile height `up` [m], of constant width."""
         return Rectangle(self.thickness + 2.0 * up, self.width)
 
     @property
     def orders(self) -> Iterator[Order]:
-        """It is thinner than wide."""
+        """Order: thinner than wide."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
         yield from super().orders

@@ -1,4 +1,4 @@
-"""The parts a link may be made of, and their restriction to some freedoms."""
+"""Parts of links, and their restriction to some degrees of freedom."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from flexstage.parts.superelement import Port
 
 @dataclass(frozen=True, eq=False)
 class Restricted(Description):
-    """A part of which only the `elastic` freedoms keep their compliance; the `free` ones lose all stiffness, the rest is locked.
+    """Restricted part: `elastic` degrees of freedom keep their compliance, `free` ones have no stiffness, all others are locked.
 
-    Its mass is left out. Used to connect models: what the paper's equations know of a hinge.
+    It is massless. For comparison of models: the hinge assumptions of the paper's equations.
     """
 
     kind: ClassVar[str] = "restricted"
@@ -30,13 +30,13 @@ class Restricted(Description):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The intended freedoms of the part, as far as they are not locked."""
+        """Ideal degrees of freedom of the part, except for locked ones."""
         left = self.elastic + self.free
         return tuple(freedom for freedom in self.part.intended if freedom in left)
 
     @property
     def mirrored(self) -> Restricted | None:
-        """The part in a mirror, restricted alike."""
+        """Mirror image with the same restriction."""
         inside = self.part.mirrored
         return None if inside is None else self if inside is self.part else replace(self, part=inside)
 
@@ -45,12 +45,12 @@ Part: TypeAlias = Elastic | Joint | Restricted
 
 
 def inner(part: Part) -> Elastic | Joint:
-    """The part itself, or what a restricted one restricts."""
+    """Return the part, or the part within a restriction."""
     return part.part if isinstance(part, Restricted) else part
 
 
 def is_actuator(part: Part) -> bool:
-    """Whether the part has an input.
+    """Return whether the part has an input.
 
     >>> is_actuator(Joint())
     False
@@ -59,7 +59,7 @@ def is_actuator(part: Part) -> bool:
 
 
 def imposes_stroke(part: Part) -> bool:
-    """Whether the part is an actuator whose input is a stroke.
+    """Return whether the part is a stroke actuator.
 
     >>> from flexstage.parts.force_actuator import ForceActuator
     >>> imposes_stroke(ForceActuator())
@@ -69,7 +69,7 @@ def imposes_stroke(part: Part) -> bool:
 
 
 def actuator_of(part: Part) -> Actuator:
-    """The actuator that a part is, or that a restricted one restricts; refused for what has no input.
+    """Return the actuator of a part or a restricted part; refuses parts without an input.
 
     >>> from flexstage.parts.force_actuator import ForceActuator
     >>> actuator_of(Restricted(ForceActuator(), ())).input.si
@@ -77,12 +77,12 @@ def actuator_of(part: Part) -> Actuator:
     """
     own = inner(part)
     if not isinstance(own, Actuator):
-        raise refuse(f"a part of kind {own.kind}", "it has no input", "Ask an actuator")
+        raise refuse(f"a part of kind {own.kind}", "it has no input", "Use an actuator")
     return own
 
 
 def material_of(part: Part) -> str | None:
-    """Name of the part's material, if it has one.
+    """Return the name of the part's material, if any.
 
     >>> material_of(Joint()) is None
     True
@@ -91,7 +91,7 @@ def material_of(part: Part) -> str | None:
 
 
 def counter_of(part: Part) -> str | None:
-    """Name of the material that the part is pressed on, if it is.
+    """Return the name of the contact partner's material, if any.
 
     >>> counter_of(Joint()) is None
     True
@@ -100,7 +100,7 @@ def counter_of(part: Part) -> str | None:
 
 
 def ports_of(part: Part) -> Mapping[str, Port]:
-    """The interface frames that a part is joined by, by name; empty for a part between two bodies.
+    """Return the ports (interface frames) of a part by name; empty for a part between two bodies.
 
     >>> ports_of(Joint())
     {}
@@ -109,7 +109,7 @@ def ports_of(part: Part) -> Mapping[str, Port]:
 
 
 def push_of(part: Part) -> Number | None:
-    """The constant force with which a part pushes its ends apart as drawn [N]; `None` where it has none.
+    """Return the preload with which a part pushes its ends apart [N]; `None` without a preload.
 
     >>> push_of(Joint()) is None
     True
@@ -119,7 +119,7 @@ def push_of(part: Part) -> Number | None:
 
 
 def strut_of(part: Part) -> Number | None:
-    """Length [m] over which a part without a shape turns about both of its ends; `None` where it acts in one point.
+    """Return the length [m] between the pivots of a part without a shape; `None` if it acts in one point.
 
     >>> strut_of(Joint()) is None
     True
@@ -129,7 +129,7 @@ def strut_of(part: Part) -> Number | None:
 
 
 def span(part: Part) -> Number:
-    """Length of a part along its x axis [m], zero for given matrices and joints.
+    """Return the length of a part along its x axis [m]; zero for compliance matrices and joints.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> span(Leaf("steel", length=0.05, thickness=0.001, width=0.01))

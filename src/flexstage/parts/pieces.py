@@ -1,6 +1,6 @@
-"""Solids as convex pieces: polytopes, each inside the material.
+"""Convex decomposition of solids: polytopes inside the material.
 
-Flat faces are exact. Arcs are followed within `SAGITTA`, from inside, so that pieces meet only where the forms do.
+Flat faces are exact. Arcs are approximated within `SAGITTA` from inside, so that pieces touch only if the forms do.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from flexstage.parts.profile import single
 from flexstage.spatial.convex import Convex, cuboid, frustum
 
 SAGITTA = 2e-5
-"""How far a piece stays inside a round face at most [m]."""
+"""Largest distance of a piece inside a round face [m]."""
 MOST = 96
-"""Sides of a round outline at most."""
+"""Largest number of sides of a round outline."""
 
 
 def solid_pieces(form: Solid) -> tuple[Convex, ...]:
-    """The convex pieces of a solid in its own frame, of the first design. An imported shape has none; holes that others leave are filled.
+    """Return the convex pieces of a solid in its frame, of the first design; none for an imported shape, without holes by other solids.
 
     >>> len(solid_pieces(Block("steel", (0.1, 0.1, 0.1)))), len(solid_pieces(Block("steel", (0.1, 0.1, 0.1), hole=(0.05, 0.05))))
     (1, 4)
@@ -32,7 +32,7 @@ def solid_pieces(form: Solid) -> tuple[Convex, ...]:
 
 
 def _frame(form: Block) -> Iterator[Convex]:
-    """A block, or the four walls around its hole."""
+    """A block, or four walls around its hole."""
     x, y, z = (0.5 * single(value) for value in form.size)
     if form.hole is None:
         yield cuboid((-x, -y, -z), (x, y, z))
@@ -63,7 +63,7 @@ def _ball(form: Sphere) -> Iterator[Convex]:
 
 
 def corner_count(radius: float) -> int:
-    """Sides of the polygon that stays within `SAGITTA` of a circle.
+    """Return the number of sides of a polygon within `SAGITTA` of a circle.
 
     >>> corner_count(0.01)
     52

@@ -30,12 +30,11 @@ from flexstage.parts.shape import Order, Shaped
 
 @dataclass(frozen=True, eq=False)
 class Piezo(ChargedActuator, Shaped):
-    """A piezo stack along x: an axial spring with an imposed free stroke u (u > 0 expands), elsewhere the stiffness of its section.
+    """Piezo stack along x: an axial spring with an imposed free stroke u (u > 0 expands); other stiffness by its section.
 
-    `stroke` is the full free stroke over the voltage range; `stiffness` the axial stiffness; `diameter` that of the ceramic. The
-    ceramic's effective modulus follows, E = k L / A. `bending_rigidity` is the EI of the encapsulated stack where its casing stiffens
-    it (absent: that of the ceramic). Blocking force = stroke x stiffness. `maximum_load` is compressive, `tensile_limit` without
-    preload.
+    `stroke` is the full free stroke over the voltage range; `stiffness` the axial stiffness; `diameter` is of the ceramic. The effective
+    modulus of the ceramic is E = k L / A. `bending_rigidity` is the EI of a stack stiffened by its casing (default: of the ceramic).
+    Blocked force = stroke x stiffness. `maximum_load` is compressive, `tensile_limit` without preload.
     """
 
     kind: ClassVar[str] = "piezo"
@@ -60,7 +59,7 @@ class Piezo(ChargedActuator, Shaped):
 
     @property
     def blocking_force(self) -> Number:
-        """Force of the fully driven stack held at its length: stroke x stiffness [N].
+        """Blocked force at full stroke: stroke x stiffness [N].
 
         >>> round(Piezo(stroke=150e-6, stiffness=17e6, length=0.162, diameter=0.01).blocking_force, 6)
         2550.0
@@ -69,16 +68,16 @@ class Piezo(ChargedActuator, Shaped):
 
     @property
     def span(self) -> Number:
-        """Its length [m]."""
+        """Length [m]."""
         return self.length
 
     @property
     def throat(self) -> Circle:
-        """That of its ceramic."""
+        """Section of the ceramic."""
         return circle(self.diameter)
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Its preload is within its load, its bias within its voltages."""
-        yield Order("preload", self.preload, self.maximum_load, "the maximum load", "Give a smaller preload", FORCE, strict=False)
+        """Order: preload within the maximum load, bias within the voltage range."""
+        yield Order("preload", self.preload, self.maximum_load, "the maximum load", "Use a smaller preload", FORCE, strict=False)
         yield from super().orders

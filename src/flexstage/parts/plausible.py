@@ -1,6 +1,6 @@
-"""Plausibility: the range in which the numbers of real materials, stacks, gauges and hinges lie (`plausible.toml`).
+"""Plausibility: usual ranges of numbers of materials, stacks, gauges and hinges (`plausible.toml`).
 
-One table. A value outside is a warning, never refused: most often its unit has slipped.
+A value outside its range is a warning, not an error: usually the unit is wrong.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ def _rules() -> list[dict[str, Any]]:
 
 
 def _dense_expansion(material: Material) -> Any:
-    """The expansion of what is heavier than glass ceramic, whose own may be as small as it likes."""
+    """Expansion of materials denser than glass ceramics, which have no lower limit."""
     return None if material.expansion is None else np.where(np.real(material.density) > _GLASS, np.real(material.expansion), 0.0)
 
 
 def _noise_steps(gauge: Gauge) -> Any:
-    """Deviation of the noise within the bandwidth, in steps of the resolution; nothing where it has none."""
+    """Standard deviation of the noise within the bandwidth, in steps of the resolution; `None` without one."""
     if gauge.noise_density is None or gauge.bandwidth is None:
         return None
     noise, step = np.broadcast_arrays(np.real(gauge.noise_density * gauge.bandwidth**0.5), np.real(gauge.resolution))
@@ -46,13 +46,13 @@ def _noise_steps(gauge: Gauge) -> Any:
 
 
 def _slenderness(solid: Solid) -> Any:
-    """The shortest over the longest side."""
+    """Ratio of the shortest to the longest side."""
     sides = np.real(solid.sides)
     return np.min(sides, axis=-1) / np.max(sides, axis=-1)
 
 
 def _least_density(each: Body | Payload) -> Any:
-    """The density of the ball that has this mass and inertia: no body of that density has less inertia."""
+    """Density of the ball with this mass and inertia: the body of least inertia for its density."""
     if each.mass is None or each.inertia is None:
         return None
     trace = np.real(each.inertia.xx) + np.real(each.inertia.yy) + np.real(each.inertia.zz)
@@ -70,7 +70,7 @@ _WORKED_OUT: Mapping[str, Callable[[Any], Any]] = {
 
 
 def _value(rule: Mapping[str, Any], item: Any) -> Any:
-    """What a rule compares of an item; `None` where the item does not state it."""
+    """Value of an item compared by a rule; `None` if unspecified."""
     text = rule.get("value", rule["field"])
     if text in _WORKED_OUT:
         return _WORKED_OUT[text](item)
@@ -86,7 +86,7 @@ def _value(rule: Mapping[str, Any], item: Any) -> Any:
 
 
 def _finding(rule: Mapping[str, Any], where: str, item: Any) -> Finding | None:
-    """What is told of an item outside the range; zero and absent values pass."""
+    """Warning for an item outside the range; zero and absent values pass."""
     value = _value(rule, item)
     if value is None:
         return None
@@ -95,12 +95,12 @@ def _finding(rule: Mapping[str, Any], where: str, item: Any) -> Finding | None:
     if not np.any(outside):
         return None
     told = float(np.real(np.ravel(value))[int(np.argmax(outside))])
-    what = f"{told:.4g} {rule['unit']} is not plausible: real ones have {rule['low']:.3g} to {rule['high']:.3g} ({rule['source']})"
+    what = f"not plausible (got {told:.4g} {rule['unit']}, expected {rule['low']:.3g} to {rule['high']:.3g}; {rule['source']})"
     return Finding(f"{where}.{rule['field']}" if where else rule["field"], what, "Check the unit and the power of ten")
 
 
 def implausible(items: Iterable[tuple[str, Any]]) -> Iterator[Finding]:
-    """Findings about named items whose numbers lie outside the table, one a number.
+    """Return warnings for numbers of named items outside the table, one per number.
 
     >>> [finding.where for finding in implausible([("materials.steel", Material(young=200e6, poisson=0.3, density=7800.0))])]
     ['materials.steel.young']

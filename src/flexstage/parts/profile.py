@@ -1,7 +1,7 @@
-"""Profiles of flexure hinges: how the cross-section's thickness grows along the hinge.
+"""Profiles of flexure hinges: thickness of the cross-section along the hinge.
 
-A profile gives the half length a of the hinge and the added height w(s) >= 0 on each side at the station s in [-1, 1], x = a s. The
-section's thickness there is t + 2 w. Stations let the quadrature concentrate where the section is thin.
+A profile has the half length a of the hinge and the added height w(s) >= 0 on each side. The station is s in [-1, 1], x = a s. The
+section's thickness there is t + 2 w. Stations concentrate the quadrature in the thin region.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from flexstage.base.units.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE,
 
 @dataclass(frozen=True, eq=False)
 class Circular(Description):
-    """Two half-circle cuts of one radius: x = R sin p, w = R (1 - cos p), p in [-90, 90] degrees."""
+    """Circular profile: two half-circle cuts of equal radius, x = R sin p, w = R (1 - cos p), p in [-90, 90] degrees."""
 
     radius: Annotated[Number, LENGTH, POSITIVE]
 
 
 @dataclass(frozen=True, eq=False)
 class Elliptic(Description):
-    """Two half-ellipse cuts: x = a sin p, w = c (1 - cos p); `along` = a on the hinge axis, `across` = c; c -> 0 is a leaf."""
+    """Elliptic profile of two half-ellipse cuts, x = a sin p, w = c (1 - cos p), `along` = a, `across` = c; c -> 0 is a leaf."""
 
     along: Annotated[Number, LENGTH, POSITIVE]
     across: Annotated[Number, LENGTH, POSITIVE]
@@ -35,7 +35,7 @@ class Elliptic(Description):
 
 @dataclass(frozen=True, eq=False)
 class Filleted(Description):
-    """A straight middle with quarter-circle fillets at both ends: total `length` l, fillet `radius` r, 2 r <= l."""
+    """Corner-filleted profile: a straight middle with quarter-circle end fillets; total `length` l, fillet `radius` r, 2 r <= l."""
 
     length: Annotated[Number, LENGTH, POSITIVE]
     radius: Annotated[Number, LENGTH, POSITIVE]
@@ -43,15 +43,15 @@ class Filleted(Description):
 
 @dataclass(frozen=True, eq=False)
 class Straight(Description):
-    """A prismatic hinge of constant section: `length` l."""
+    """Straight profile: a prismatic hinge of constant section, `length` l."""
 
     length: Annotated[Number, LENGTH, POSITIVE]
 
 
 class Contour(Description):
-    """A profile known by the height of its cuts over the station, alike on both sides of the middle.
+    """Profile by the height of its cuts over the station, symmetric about the middle.
 
-    `TOLD_BY` is how files call it. Its ends are corners: it meets the blocks it grows on at an angle.
+    `TOLD_BY` is its key in files. Its ends are corners: it meets the adjacent blocks at an angle.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]]
@@ -68,26 +68,26 @@ class Contour(Description):
 
     @property
     def radius_at_throat(self) -> Number | None:
-        """Radius of curvature where it is thinnest [m]; `None` where that is not one number."""
+        """Radius of curvature at the thinnest point [m]; `None` if not unique."""
         return None
 
     @property
     def has_arc(self) -> bool:
-        """Whether it is thinnest in its middle alone."""
+        """Whether only the middle is thinnest."""
         return True
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """Stations [m] from the middle to an end, both included, between which it is smooth, of the first design."""
+        """Stations [m] from the middle to an end (inclusive) between which it is smooth, of the first design."""
         return 0.0, 0.5 * single(self.span)
 
     def height(self, station: Array) -> Array:
-        """Height of the cuts at stations [m] from the middle, none beyond the ends, of the first design."""
+        """Height of the cuts at stations [m] from the middle, zero beyond the ends, of the first design."""
         raise NotImplementedError
 
 
 class _Conic(Contour):
-    """A curve of half length `along` that rises by `across`."""
+    """Curve of half length `along` and height `across`."""
 
     along: Annotated[Number, LENGTH, POSITIVE]
     across: Annotated[Number, LENGTH, POSITIVE]
@@ -108,7 +108,7 @@ class _Conic(Contour):
 
 @dataclass(frozen=True, eq=False)
 class Parabolic(_Conic):
-    """Two parabolic cuts, w = c (x/a)^2: `along` = a is half the length, `across` = c (Lobontiu et al., Precision Engineering 26, 2002)."""
+    """Parabolic profile, w = c (x/a)^2: `along` = a is half the length, `across` = c (Lobontiu et al., Precision Engineering 26, 2002)."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "parabolic")
     along: Annotated[Number, LENGTH, POSITIVE]
@@ -126,10 +126,10 @@ class Parabolic(_Conic):
 
 @dataclass(frozen=True, eq=False)
 class Hyperbolic(_Conic):
-    """Two hyperbolic cuts, w = (q^2 + c (c + 2 q) (x/a)^2)^1/2 - q: `along` = a is half the length, `across` = c, `semi_axis` = q.
+    """Hyperbolic profile, w = (q^2 + c (c + 2 q) (x/a)^2)^1/2 - q: `along` = a is half the length, `across` = c, `semi_axis` = q.
 
-    The semi-axis lies across the hinge. With q half the thickness both cuts are branches of one hyperbola, that of Lobontiu et al.
-    (Precision Engineering 26, 2002). q large: a parabola; q small: straight flanks that meet at a corner.
+    The semi-axis is across the hinge. With q half the thickness, both cuts are branches of one hyperbola (Lobontiu et al., Precision
+    Engineering 26, 2002). Large q: a parabola; small q: straight flanks with a corner.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "hyperbolic")
@@ -156,10 +156,10 @@ class Hyperbolic(_Conic):
 
 @dataclass(frozen=True, eq=False)
 class Power(_Conic):
-    """Two cuts of a power, w = c |x/a|^n: `along` = a is half the length, `across` = c, `exponent` = n.
+    """Power-function profile, w = c |x/a|^n: `along` = a is half the length, `across` = c, `exponent` = n.
 
     Linss, Henning & Zentner (Modeling and design of flexure hinge-based compliant mechanisms, in Kinematics, 2019). n = 1: straight flanks
-    that meet at a corner, 2: a parabola, large: a leaf.
+    with a corner, 2: a parabola, large: a leaf.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "power")
@@ -174,9 +174,9 @@ class Power(_Conic):
 
 @dataclass(frozen=True, eq=False)
 class Vee(Contour):
-    """Two V cuts: flanks at an `angle` to one another, rounded at the tip by a `radius`; `length` from end to end.
+    """V-shaped profile: flanks at an `angle` to one another, rounded at the tip by a `radius`; `length` from end to end.
 
-    With e = (180 degrees - angle)/2 a flank's slope: an arc x = r sin p, w = r (1 - cos p) up to p = e, a straight flank from there on.
+    A flank's slope is e = (180 degrees - angle)/2. The arc is x = r sin p, w = r (1 - cos p) up to p = e, then the flank is straight.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "v")
@@ -191,7 +191,7 @@ class Vee(Contour):
 
     @property
     def tip(self) -> Number:
-        """Where the arc ends, r sin e from the middle [m]."""
+        """End of the arc, r sin e from the middle [m]."""
         return self.radius * np.sin(self.slope)
 
     @property
@@ -201,7 +201,7 @@ class Vee(Contour):
 
     @property
     def rise(self) -> Number:
-        """r (1 - cos e) and what the flank rises [m]."""
+        """r (1 - cos e) plus the height of the flank [m]."""
         return 2.0 * self.radius * np.sin(0.5 * self.slope) ** 2 + (0.5 * self.length - self.tip) * np.tan(self.slope)
 
     @property
@@ -211,12 +211,12 @@ class Vee(Contour):
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """The arc's end, and the flank's, where it has one."""
+        """Ends of the arc, and of the flank if present."""
         tip, half = single(self.tip), 0.5 * single(self.length)
         return (0.0, tip, half) if tip < half else (0.0, half)
 
     def height(self, station: Array) -> Array:
-        """That of the arc, or of the flank [m]."""
+        """Height of the arc, or of the flank [m]."""
         radius, tip, slope = single(self.radius), single(self.tip), np.tan(single(self.slope))
         on_arc = np.minimum(np.abs(station), tip)
         return radius - np.sqrt(radius * radius - on_arc * on_arc) + slope * (np.abs(station) - on_arc)
@@ -224,10 +224,10 @@ class Vee(Contour):
 
 @dataclass(frozen=True, eq=False)
 class FreeForm(Contour):
-    """Cuts by a table: `heights` added on each side at `stations` from the middle to an end; the least height is nought.
+    """Free-form profile by a table: `heights` added on each side at `stations` from the middle to an end; the least height is zero.
 
-    Between stations it is a cubic (Hermite) with the slopes of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 1984), as PCHIP has them of
-    the table and its mirror image: it is smooth, and never leaves the interval between two heights.
+    Between stations it is a cubic Hermite spline with the slopes of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 1984), as in PCHIP for
+    the table and its mirror image: smooth, and within the interval between two heights.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "free")
@@ -246,30 +246,30 @@ class FreeForm(Contour):
 
     @property
     def has_arc(self) -> bool:
-        """Whether the height is nought in the middle alone."""
+        """Whether the height is zero only in the middle."""
         return single(self.heights[0]) == 0.0 < min(single(height) for height in self.heights[1:])
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """Its stations."""
+        """Stations."""
         return tuple(single(station) for station in self.stations)
 
     @property
     def slopes(self) -> tuple[Number, ...]:
-        """Slope at every station: nought in the middle and at extremes, a weighed harmonic mean of the neighbours' between."""
+        """Slope at every station: zero in the middle and at extremes, else a weighted harmonic mean of the adjacent ones."""
         steps = [right - left for left, right in pairwise(self.stations)]
         rates = [(high - low) / step for (low, high), step in zip(pairwise(self.heights), steps, strict=True)]
         inner = [_mean_slope(*each) for each in zip(pairwise(steps), pairwise(rates), strict=True)]
         return 0.0, *inner, _end_slope(steps, rates)
 
     def pieces(self) -> Iterator[tuple[Number, Number, tuple[Number, Number, Number, Number]]]:
-        """By piece: where it starts, how long it is, and its height as a cubic of the share of its length, constant first."""
+        """By piece: start, length, and height as a cubic of the normalised length, constant term first."""
         for (left, right), (low, high), (start, end) in zip(*map(pairwise, (self.stations, self.heights, self.slopes)), strict=True):
             step, change = right - left, high - low
             yield left, step, (low, step * start, 3.0 * change - step * (2.0 * start + end), step * (start + end) - 2.0 * change)
 
     def height(self, station: Array) -> Array:
-        """That of the piece a station lies on [m]."""
+        """Height of the piece at a station [m]."""
         found, away = np.zeros(np.shape(station)), np.abs(station)
         for left, step, cubic in self.pieces():
             share = (away - single(left)) / single(step)
@@ -279,7 +279,7 @@ class FreeForm(Contour):
 
 
 def _mean_slope(steps: tuple[Number, Number], rates: tuple[Number, Number]) -> Number:
-    """Weighed harmonic mean of two rates of one sign, nought for others."""
+    """Weighted harmonic mean of two rates of one sign, else zero."""
     (one, two), (first, second) = steps, rates
     alike = np.real(first) * np.real(second) > 0.0
     left, right = (np.where(alike, rate, 1.0) for rate in rates)
@@ -288,7 +288,7 @@ def _mean_slope(steps: tuple[Number, Number], rates: tuple[Number, Number]) -> N
 
 
 def _end_slope(steps: list[Number], rates: list[Number]) -> Number:
-    """Slope at the end: that of the parabola through three points, but of the last rate's sign, and at most three times it at a turn."""
+    """Slope at the end: of the parabola through three points, limited to the last rate's sign, and to three times it at an extreme."""
     last = rates[-1]
     before, step = (rates[-2], steps[-2]) if len(rates) > 1 else (-last, steps[-1])
     slope = ((2.0 * steps[-1] + step) * last - steps[-1] * before) / (steps[-1] + step)
@@ -304,7 +304,7 @@ Profile: TypeAlias = Circular | Elliptic | Filleted | Straight | Parabolic | Hyp
 
 
 def length(profile: Profile) -> Number:
-    """Total length of the hinge between the ends of its arcs [m].
+    """Return the total length of the hinge between the ends of its arcs [m].
 
     >>> length(Circular(0.005)), length(Straight(0.013))
     (0.01, 0.013)
@@ -317,7 +317,7 @@ def length(profile: Profile) -> Number:
 
 
 def rise(profile: Profile) -> Number:
-    """How far the profile's cuts rise above the neck at its ends, w(+-1) [m].
+    """Return the height of the profile's cuts at its ends, w(+-1) [m].
 
     >>> rise(Circular(0.005))
     0.005
@@ -332,7 +332,7 @@ def rise(profile: Profile) -> Number:
 
 
 def closing(profile: Profile, thickness: Number) -> float:
-    """The angle [rad] at which the faces of a cut touch: it is as wide as the hinge is long, and as deep as the profile rises.
+    """Return the angle [rad] at which the faces of a cut touch, with the hinge's length as width and the profile's height as depth.
 
     >>> round(closing(Circular(0.005), 0.0) / np.pi, 9), closing(Straight(0.005), 0.001)
     (0.5, inf)
@@ -343,7 +343,7 @@ def closing(profile: Profile, thickness: Number) -> float:
 
 
 def stations_of(profile: Profile) -> tuple[Array, Array]:
-    """Stations x (s,) from end to end and the height w (s,) a profile adds on each side [m], of the first design.
+    """Return stations x (s,) from end to end and the added height w (s,) on each side [m], of the first design.
 
     >>> stations, heights = stations_of(Circular(0.005))
     >>> float(stations[0]), heights.round(6).tolist()
@@ -371,7 +371,7 @@ def stations_of(profile: Profile) -> tuple[Array, Array]:
 
 
 def single(value: Number) -> float:
-    """A number of the first design.
+    """Return a number of the first design.
 
     >>> single(np.array([1.0, 2.0]))
     1.0

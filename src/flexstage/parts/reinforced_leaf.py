@@ -1,4 +1,4 @@
-"""Leaf springs that are stiffened in their middle."""
+"""Reinforced leaf springs."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _ARC = np.linspace(0.0, 0.5 * np.pi, 9)
 
 @dataclass(frozen=True, eq=False)
 class ReinforcedLeaf(Leaf):
-    """A leaf with a thick middle: thin over the `flexure_length` at both ends, `reinforced_thickness` thick between them.
+    """Leaf spring with a reinforced middle: thin over the `flexure_length` at both ends, `reinforced_thickness` between them.
 
-    The step is square, or has a quarter circle of radius `fillet` at its foot, which takes its radius of the flexure's length. Intended
-    freedoms are a leaf's.
+    The step is square, or has a quarter-circle fillet of radius `fillet` at its foot, within the flexure's length. Ideal degrees of freedom
+    are those of a leaf.
     """
 
     kind: ClassVar[str] = "reinforced_leaf"
@@ -33,7 +33,7 @@ class ReinforcedLeaf(Leaf):
 
     @property
     def is_prismatic(self) -> bool:
-        """It has steps."""
+        """False: it has steps."""
         return False
 
     @property
@@ -43,7 +43,7 @@ class ReinforcedLeaf(Leaf):
 
     @property
     def silhouette(self) -> tuple[tuple[float, Section], ...]:
-        """Stations of its ends, steps and fillets, and the sections there."""
+        """Stations of ends, steps and fillets, and the sections there."""
         half, radius = 0.5 * single(self.length), 0.0 if self.fillet is None else single(self.fillet)
         start = half - single(self.flexure_length)
         arc = [(start + radius * (1.0 - np.sin(p)), radius * (1.0 - np.cos(p))) for p in (_ARC[::-1] if radius else _ARC[:1])]
@@ -53,7 +53,7 @@ class ReinforcedLeaf(Leaf):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Thinner than wide, two flexures fit into its length and their fillets into them, and the middle is the thicker."""
+        """Order: thinner than wide, flexures within the length, fillets within flexures, middle thicker."""
         yield from super().orders
         half, advice = 0.5 * self.length, "Make it longer or the flexures shorter"
         yield Order("flexure_length", self.flexure_length, half, "half the length", advice)

@@ -14,10 +14,10 @@ from flexstage.parts.shape import INNER_MODES, Shaped, reversed_or_none
 
 @dataclass(frozen=True, eq=False)
 class Rod(Shaped):
-    """A round rod of constant diameter, `length` along x. Intended freedoms: all but the translation along x.
+    """Round rod (wire flexure) of constant diameter, `length` along x. Ideal degrees of freedom: all except translation along x.
 
-    `inner_modes` is how many of its own bending modes, across y and across z, and of its twist, the lumped model counts. `curvature` is
-    that of its blank about z, as of a leaf.
+    `inner_modes` is the number of its bending modes in y and z, and of its torsion modes, in the lumped model. `curvature` of its blank is
+    about z, as for a leaf.
     """
 
     kind: ClassVar[str] = "rod"
@@ -30,30 +30,30 @@ class Rod(Shaped):
 
     @property
     def mirrored(self) -> Rod:
-        """The rod with its blank bent to the other side."""
+        """The rod with reversed curvature."""
         return replace(self, curvature=reversed_or_none(self.curvature)) if self.is_bent else self
 
     @property
     def is_bent(self) -> bool:
-        """Whether it is not straight when it is free."""
+        """Whether it is curved when free."""
         return self.curvature is not None
 
     @property
     def straight(self) -> Rod:
-        """The rod as if it were straight when it is free."""
+        """The rod, straight when free."""
         return replace(self, curvature=None)
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The freedoms the rod is meant to have."""
+        """Ideal degrees of freedom."""
         return others((Freedom.X,))
 
     @property
     def span(self) -> Number:
-        """Its length [m]."""
+        """Length [m]."""
         return self.length
 
     @property
     def throat(self) -> Circle:
-        """Its one section, round."""
+        """Constant round section."""
         return circle(self.diameter)

@@ -16,9 +16,9 @@ from flexstage.base.number import Array, Number, magnitude, with_step
 from flexstage.parts.profile import single
 
 PARABOLIC = 6.0 / 5.0
-"""Shear factor of a rectangle from the energy of the parabolic shear stress (Castigliano); that of the notch formulas."""
+"""Shear factor of a rectangle from the energy of parabolic shear stress (Castigliano), as in the notch formulas."""
 ROUND = 10.0 / 9.0
-"""That of a circle from the energy of its parabolic shear stress."""
+"""Shear factor of a circle from the energy of parabolic shear stress."""
 _ODD = np.arange(1.0, 8.0, 2.0)
 _ODD_FIFTH_POWERS = 1.00452376279513961613
 """Sum of 1/n^5 over odd n, (31/32) zeta(5)."""
@@ -26,10 +26,10 @@ _ODD_FIFTH_POWERS = 1.00452376279513961613
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """A cross-section: `height` along y and `width` along z over all [m], `shear` the factor k of its shear flexibility k / (G A).
+    """Cross-section: overall `height` along y and `width` along z [m], factor `shear` k of the shear flexibility k / (G A).
 
-    A form of section is a dataclass of its dimensions, which may be arrays and complex. It states `area`, `inertia_y`, `inertia_z`,
-    `torsion` and `outline`, and what differs from the rest.
+    A form of section is a dataclass of its dimensions, which may be arrays and complex. It implements `area`, `inertia_y`, `inertia_z`,
+    `torsion` and `outline`, and overrides other properties.
     """
 
     height: Number
@@ -38,7 +38,7 @@ class Section:
     is_axisymmetric: ClassVar[bool] = False
     """Whether the outline is a circle about x."""
     shear_peak: ClassVar[float] = 1.5
-    """The largest shear stress of a shear force over the mean one."""
+    """Ratio of largest to mean shear stress of a shear force."""
 
     @cached_property
     def area(self) -> Number:
@@ -62,7 +62,7 @@ class Section:
 
     @cached_property
     def warping(self) -> Number | None:
-        """Warping constant C_w [m^6]; `None` where plane sections stay plane in torsion, or are taken to."""
+        """Warping constant C_w [m^6]; `None` if warping is zero or neglected."""
         return None
 
     @cached_property
@@ -86,34 +86,34 @@ class Section:
         return np.minimum(self.height, self.width)
 
     def outline(self, angles: Array) -> Array:
-        """Corners (n, 2) of the outline, counter-clockwise, of the first design [m]; of a curve its points at `angles` [rad] from y."""
+        """Corners (n, 2) of the outline, counter-clockwise, of the first design [m]; for a curve, points at `angles` [rad] from y."""
         raise NotImplementedError
 
     def pieces(self, angles: Array) -> tuple[Array, ...]:
-        """Convex polygons (n, 2) that make up the outline, as many in each design."""
+        """Convex polygons (n, 2) of the outline, equal in number in each design."""
         return (self.outline(angles),)
 
     def normal_stress(self, axial: Array, about_y: Array, about_z: Array) -> Array:
-        """An upper bound of the normal stress of an `axial` stress and of bending by |M_y| / I_y and |M_z| / I_z [Pa/m]."""
+        """Upper bound of the normal stress due to an `axial` stress and bending by |M_y| / I_y and |M_z| / I_z [Pa/m]."""
         return axial + 0.5 * self.height * about_z + 0.5 * self.width * about_y
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Largest shear stress [Pa] of a torque of which a share `uniform` is carried as Saint-Venant has it, the rest by warping."""
+        """Largest shear stress [Pa] of a torque, with a share `uniform` of Saint-Venant torsion, the other part by warping."""
         raise NotImplementedError
 
     def each(self, function: Callable[[Number], Any]) -> Self:
-        """The section with a function of each of its numbers in their place."""
+        """The section with a function applied to each of its numbers."""
         return type(self)(**{item.name: function(getattr(self, item.name)) for item in fields(self)})
 
     @property
     def first(self) -> Self:
-        """That of the first design, in floats."""
+        """Section of the first design, in floats."""
         return self.each(single)
 
 
 @dataclass(frozen=True, eq=False)
 class Rectangle(Section):
-    """The rectangle `height` x `width`.
+    """Rectangle `height` x `width`.
 
     >>> section = Rectangle(0.001, 0.01)
     >>> round(section.area, 12), round(section.inertia_z * 12e12, 9)
@@ -137,21 +137,21 @@ class Rectangle(Section):
 
     @cached_property
     def torsion(self) -> Number:
-        """As `rectangle_torsion` has it [m^4]."""
+        """Torsion constant by `rectangle_torsion` [m^4]."""
         return rectangle_torsion(self.height, self.width)
 
     @cached_property
     def warping(self) -> Number:
-        """That of the shape y z, b^3 t^3 / 144 [m^6] (see `beams.torsion`)."""
+        """Warping constant of the shape y z, b^3 t^3 / 144 [m^6] (see `beams.torsion`)."""
         return self.area * self.area * self.area / 144.0
 
     def outline(self, angles: Array) -> Array:  # noqa: ARG002
-        """Its four corners."""
+        """Four corners."""
         section = self.first
         return 0.5 * np.array([section.height, section.width]) * [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Saint-Venant's in the middle of the longer sides, and the shear of strips that bend."""
+        """Saint-Venant stress in the middle of the longer sides, and shear of bending strips."""
         short, long = np.minimum(self.height, self.width), np.maximum(self.height, self.width)
         ratio = 0.5 * np.pi * (long / short)[..., None] * _ODD
         crest = 1.0 - 8.0 / np.pi**2 * np.sum(2.0 * np.exp(-ratio) / (1.0 + np.exp(-2.0 * ratio)) / _ODD**2, axis=-1)
@@ -161,7 +161,7 @@ class Rectangle(Section):
 
 @dataclass(frozen=True, eq=False)
 class Circle(Section):
-    """The circle whose diameter is its height and its width.
+    """Circle with its diameter as height and width.
 
     >>> round(Circle(1.0, 1.0).shear, 6)
     1.111111
@@ -183,12 +183,12 @@ class Circle(Section):
 
     @cached_property
     def inertia_z(self) -> Number:
-        """That about y [m^4]."""
+        """Equal to that about y [m^4]."""
         return self.inertia_y
 
     @cached_property
     def torsion(self) -> Number:
-        """The polar second moment [m^4]."""
+        """Polar second moment [m^4]."""
         return 2.0 * self.inertia_y
 
     def outline(self, angles: Array) -> Array:
@@ -196,7 +196,7 @@ class Circle(Section):
         return 0.5 * single(self.height) * np.column_stack([np.cos(angles), np.sin(angles)])
 
     def normal_stress(self, axial: Array, about_y: Array, about_z: Array) -> Array:
-        """Bending about both axes adds up as a vector."""
+        """Vector sum of bending about both axes."""
         return axial + 0.5 * self.height * np.sqrt(about_y * about_y + about_z * about_z)
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:  # noqa: ARG002  (it does not warp)
@@ -205,7 +205,7 @@ class Circle(Section):
 
 
 def circle(diameter: Number, shear: Number = ROUND) -> Circle:
-    """The circle of `diameter` [m]; `shear` that of the energy of the parabolic stress unless stated.
+    """Return the circle of `diameter` [m]; default `shear` from the energy of parabolic stress.
 
     >>> section = circle(2.0, cowper_circle(0.3))
     >>> round(section.area / np.pi, 12), round(section.torsion / np.pi, 12)
@@ -215,10 +215,10 @@ def circle(diameter: Number, shear: Number = ROUND) -> Circle:
 
 
 def rectangle_torsion(thickness: Number, width: Number) -> Array:
-    """Saint-Venant torsion constant J [m^4] of a rectangle, either side the longer, correct to rounding.
+    """Compute the Saint-Venant torsion constant J [m^4] of a rectangle, exact to rounding.
 
     J = a^3 c / 3 (1 - (192/pi^5) (a/c) sum over odd n of tanh(n pi c / 2a) / n^5), a <= c (Timoshenko & Goodier, Theory of Elasticity,
-    section 109). The sum is (31/32) zeta(5) less a series in exp(-n pi c / a), of which four terms leave out less than 1e-17.
+    section 109). The sum is (31/32) zeta(5) minus a series in exp(-n pi c / a); after four terms its remainder is below 1e-17.
 
     >>> round(float(rectangle_torsion(1.0, 1.0)), 10), round(float(rectangle_torsion(100.0, 1.0)), 4)
     (0.140577015, 33.1233)
@@ -238,7 +238,7 @@ def rectangle_torsion(thickness: Number, width: Number) -> Array:
 
 
 def cowper_rectangle(poisson: Number) -> Number:
-    """Shear factor of a rectangular prism, (12 + 11 nu) / (10 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966; as SPACAR Light).
+    """Return the shear factor of a rectangular prism, (12 + 11 nu) / (10 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966; as SPACAR Light).
 
     >>> round(cowper_rectangle(0.3), 6)
     1.176923
@@ -247,7 +247,7 @@ def cowper_rectangle(poisson: Number) -> Number:
 
 
 def cowper_circle(poisson: Number) -> Number:
-    """Shear factor of a circular prism, (7 + 6 nu) / (6 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966; as SPACAR Light).
+    """Return the shear factor of a circular prism, (7 + 6 nu) / (6 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966; as SPACAR Light).
 
     >>> round(cowper_circle(0.3), 6)
     1.128205

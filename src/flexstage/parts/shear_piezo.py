@@ -1,4 +1,4 @@
-"""Shear piezo actuators: stacks of plates along x whose faces slide past one another along y."""
+"""Shear piezo actuators: stacks of plates along x with shear displacement along y."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ from flexstage.parts.stated import Stated, point_masses
 
 @dataclass(frozen=True, eq=False)
 class ShearPiezo(ChargedActuator):
-    """A shear piezo: a block of plates glued along x, whose second face slides along y by the stroke u against the first.
+    """Shear piezo actuator: a block of plates along x; its second face moves along y by the stroke u against the first.
 
-    `length` along x, `width` along y, `depth` along z. `stiffness` is that along y with both faces kept parallel, `axial_stiffness` that
-    along x: modulus E = k_a L / A and shear compliance 1/k - L^3 / (12 E I_z) follow, and with them the other freedoms, as of a uniform
-    block. Blocking force = stroke x stiffness. `mass` counts half at each face.
+    `length` along x, `width` along y, `depth` along z. `stiffness` is along y with parallel faces, `axial_stiffness` along x. They
+    determine the modulus E = k_a L / A and the shear compliance 1/k - L^3 / (12 E I_z); other degrees of freedom are as for a uniform
+    block. Blocked force = stroke x stiffness. Half of `mass` is at each face.
     """
 
     kind: ClassVar[str] = "shear_piezo"
@@ -65,30 +65,30 @@ class ShearPiezo(ChargedActuator):
 
     @property
     def blocking_force(self) -> Number:
-        """Along y, its faces held: stroke x stiffness [N]."""
+        """Blocked force along y: stroke x stiffness [N]."""
         return self.stroke * self.stiffness
 
     @property
     def is_axisymmetric(self) -> bool:
-        """Its stroke has a direction across its axis."""
+        """False: its stroke is across its axis."""
         return False
 
     @property
     def bending(self) -> tuple[Number, Number]:
-        """E I about y and about z [N m^2], with E = k_a L / A."""
+        """Bending rigidities E I about y and z [N m^2], with E = k_a L / A."""
         rigidity = self.axial_stiffness * self.length / 12.0
         return rigidity * self.depth**2, rigidity * self.width**2
 
     @property
     def shear_compliance(self) -> Number:
-        """What shear alone gives way along y [m/N]: the whole less the bending between parallel faces."""
+        """Shear compliance along y [m/N]: total minus bending between parallel faces."""
         return 1.0 / self.stiffness - self.length**3 / (12.0 * self.bending[1])
 
     @property
     def compliance(self) -> Array:
-        """Compliance (..., 6, 6) about its centre: 1/k_a along x, 1/k along y, along z as along y but for the bending, L/(E I), L/(G J).
+        """Compliance (..., 6, 6) about its centre: 1/k_a along x, 1/k along y, similar along z, rotational L/(E I) and L/(G J).
 
-        G follows from what shear gives way, L / (k G A) with k = 5/6 (parabolic); torsion after Saint-Venant. Both faces stay plane.
+        G follows from the shear compliance L / (k G A) with k = 5/6 (parabolic); Saint-Venant torsion. Both faces stay plane.
         """
         about_y, about_z = self.bending
         shear = self.shear_compliance
@@ -99,12 +99,12 @@ class ShearPiezo(ChargedActuator):
         return diagonal[..., None] * np.eye(6)
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """The inverse of its compliance, and half of its mass at each face."""
+        """Inverse of the compliance, and half of the mass at each face."""
         return Stated(np.linalg.inv(self.compliance), point_masses(0.5 * self.mass, 0.5 * self.mass))
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Bending alone gives way less than the whole."""
+        """Errors: bending compliance above the total."""
         if np.any(np.real(self.shear_compliance) <= 0.0):
-            what = "a block of these dimensions and axial stiffness is softer than that along y by its bending alone"
+            what = "too large for a block of these dimensions and axial stiffness: its bending compliance exceeds the total"
             yield Finding("stiffness", what, "Check length, width and both stiffnesses")

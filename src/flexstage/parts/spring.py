@@ -1,4 +1,4 @@
-"""Springs without a drawn shape: coil springs, magnets, cables, membranes, by their stiffness, which may be negative."""
+"""Springs without a drawn shape, by stiffness (also negative): coil springs, magnets, cables, membranes."""
 
 from __future__ import annotations
 
@@ -33,15 +33,14 @@ _About: TypeAlias = Annotated[Number, ROTATIONAL_STIFFNESS]
 
 @dataclass(frozen=True, eq=False)
 class Spring(Elastic):
-    """A spring along x, without a drawn shape: what it is stated to have, and no stiffness in any other freedom.
+    """Spring along x, without a drawn shape, with specified stiffness; zero in other degrees of freedom.
 
-    One of: `stiffness` along its axis alone, `diagonal` of all six freedoms (x, y, z, rx, ry, rz), `matrix`, a whole symmetric 6x6 about
-    its centre. Any of them may be negative (magnets); the stage must be stable, not each part of it. `free` are the freedoms that the
-    ideal model takes for free: all, as a spring guides nothing.
+    One of: `stiffness` along its axis, `diagonal` (x, y, z, rx, ry, rz), `matrix`, a symmetric 6x6 about its centre. Any of them may be
+    negative (magnets); only the whole stage must be stable. `free` are the free degrees of freedom of the ideal model (default: all).
 
-    With a `length` it turns about both of its ends, so that the force it carries stiffens it across its axis by F / L; without, it acts in
-    one point. `preload` is the force with which it pushes its ends apart as drawn (negative: pulls), or, with `free_length`,
-    k (free_length - length). It has no stroke of its own. `mass` is spread evenly over its length.
+    With a `length` it pivots at both ends, so that its force stiffens it across its axis by F / L. Without, it acts in one point. `preload`
+    is its initial force that pushes the ends apart (negative: pulls), or with `free_length`, k (free_length - length). It has no stroke.
+    `mass` is uniform over its length.
     """
 
     kind: ClassVar[str] = "spring"
@@ -58,12 +57,12 @@ class Spring(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """The freedoms it leaves free."""
+        """Free degrees of freedom."""
         return self.free
 
     @property
     def whole(self) -> Array:
-        """Its whole stiffness (..., 6, 6) about its centre.
+        """Stiffness (..., 6, 6) about its centre.
 
         >>> Spring(stiffness=-2e3).whole.diagonal().tolist()
         [-2000.0, 0.0, 0.0, 0.0, 0.0, 0.0]
@@ -75,41 +74,41 @@ class Spring(Elastic):
 
     @property
     def is_axisymmetric(self) -> bool:
-        """Whether freedoms and stiffness are the same along and about y and z."""
+        """Whether degrees of freedom and stiffness are equal along and about y and z."""
         return is_even(self.free) and turns_into_itself(self.whole)
 
     @property
     def mirrored(self) -> Spring:
-        """Its stiffness as its own mirror across y shows it."""
+        """Mirror image of its stiffness across y."""
         return self if self.matrix is None else replace(self, matrix=mirror_rows(self.matrix))
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Its whole stiffness, its mass along its length."""
+        """Stiffness, and mass along its length."""
         return Stated(self.whole, line_mass(self.mass, 0.0 if self.length is None else self.length))
 
     @property
     def push(self) -> Number | None:
-        """Its preload, as stated or by its free length."""
+        """Preload, as specified or by its free length."""
         if self.free_length is None or self.length is None:
             return self.preload
         return self.whole[..., 0, 0] * (self.free_length - self.length)
 
     @property
     def strut(self) -> Number | None:
-        """Its length."""
+        """Length."""
         return self.length
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """It states its stiffness once, symmetric, and a length where a force acts over it."""
+        """Errors: stiffness not specified exactly once or not symmetric, preload without a length."""
         stated = [name for name in ("stiffness", "diagonal", "matrix") if getattr(self, name) is not None]
         if len(stated) != 1:
-            what = f"it states {' and '.join(stated)}" if stated else "it states no stiffness"
-            yield Finding("", what, "State one of stiffness (along its axis), diagonal (six) and matrix (6x6)")
+            what = f"both {' and '.join(stated)} specified" if stated else "stiffness missing"
+            yield Finding("", what, "Specify one of stiffness (along its axis), diagonal (six) and matrix (6x6)")
         if self.matrix is not None:
             yield from symmetry_findings("matrix", self.whole)
         if self.free_length is not None and self.preload is not None:
-            yield Finding("free_length", "it states a preload too", "Leave one of them: the preload is k (free_length - length)")
+            yield Finding("free_length", "preload specified too", "Remove one of them: the preload is k (free_length - length)")
         if self.length is None and (self.free_length is not None or self.preload is not None):
-            what = "it states a preload and no length, and the force stiffens or softens it across its axis by force over length"
-            yield Finding("length", what, 'Add its length between its ends, for example length = "20 mm"')
+            what = "length missing: with a preload, the stiffness across the axis is force over length"
+            yield Finding("length", what, 'Add its length between its ends, e.g. length = "20 mm"')

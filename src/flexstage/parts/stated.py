@@ -1,4 +1,4 @@
-"""What parts without a shape are stated to do, and their 6x6 matrices: whether they are symmetric, and alike in all directions across x."""
+"""Specified matrices of parts without a shape, and checks of 6x6 matrices: symmetry, axisymmetry."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _QUARTER: Array = np.kron(np.eye(2), np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]
 
 @dataclass(frozen=True, eq=False)
 class Stated:
-    """What a part without a shape is stated to do between its ends, about its centre and in its frame, SI.
+    """Specified matrices of a part without a shape, about its centre and in its frame, SI.
 
-    `stiffness` (..., 6, 6) of the second end against the first, `mass` (..., 12, 12) over the twists of both, viscous `damping`
-    (..., 6, 6) where it states some. It is data: no theory of elastic parts is in it.
+    `stiffness` (..., 6, 6) of the second end against the first, `mass` (..., 12, 12) over the twists of both, optional viscous `damping`
+    (..., 6, 6). Data only, without a theory of elastic parts.
     """
 
     stiffness: Array
@@ -30,7 +30,7 @@ class Stated:
 
 
 def point_masses(first: Number, second: Number) -> Array:
-    """Masses (..., 12, 12) that the two bodies carry at a part's centre [kg], without rotary inertia.
+    """Return point masses (..., 12, 12) on the two bodies at a part's centre [kg], without rotary inertia.
 
     >>> point_masses(1.0, 2.0).diagonal().tolist()
     [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 0.0, 0.0, 0.0]
@@ -41,7 +41,7 @@ def point_masses(first: Number, second: Number) -> Array:
 
 
 def halves(inertia: Array) -> Array:
-    """Half of a rigid solid's 6x6 (..., 6, 6) with each end (..., 12, 12).
+    """Distribute a rigid solid's 6x6 (..., 6, 6) equally to both ends (..., 12, 12).
 
     >>> halves(4.0 * np.eye(6)).diagonal()[5:7].tolist()
     [2.0, 2.0]
@@ -51,10 +51,10 @@ def halves(inertia: Array) -> Array:
 
 
 def line_mass(mass: Number, length: Number) -> Array:
-    """Consistent mass (..., 12, 12) of a straight line of uniform mass between its ends, at +-L/2 from the centre; without length, there.
+    """Compute the consistent mass (..., 12, 12) of a line of uniform mass between its ends, at +-L/2 from the centre.
 
-    Its points move as s between the ends, v = (1 - s) v_a + s v_b: m/3 at each end, m/6 between them, so that a spring held at one end adds
-    a third of its mass to the other.
+    Linear interpolation v = (1 - s) v_a + s v_b: m/3 at each end, m/6 coupling. A spring fixed at one end thus adds a third of its mass to
+    the other.
 
     >>> line_mass(6.0, 0.0)[0, [0, 6]].tolist()
     [2.0, 1.0]
@@ -75,7 +75,7 @@ def _end(arm: Array) -> Array:
 
 
 def is_even(freedoms: tuple[Freedom, ...]) -> bool:
-    """Whether freedoms along and about y are those along and about z.
+    """Return whether degrees of freedom along and about y equal those of z.
 
     >>> is_even((Freedom.RZ,)), is_even((Freedom.RY, Freedom.RZ))
     (False, True)
@@ -85,7 +85,7 @@ def is_even(freedoms: tuple[Freedom, ...]) -> bool:
 
 
 def turns_into_itself(matrix: Array) -> bool:
-    """Whether a quarter turn about x leaves a 6x6 (..., 6, 6) as it is.
+    """Return whether a 6x6 (..., 6, 6) is invariant under a quarter turn about x.
 
     >>> turns_into_itself(np.eye(6)), turns_into_itself(np.diag([1.0, 2.0, 3.0, 1.0, 1.0, 1.0]))
     (True, False)
@@ -94,7 +94,7 @@ def turns_into_itself(matrix: Array) -> bool:
 
 
 def mirror_rows(rows: tuple[tuple[Number, ...], ...]) -> tuple[tuple[Number, ...], ...]:
-    """A 6x6 with the entries reversed that tell a motion along y, or a rotation about x or z, with another one.
+    """Return the mirror image of a 6x6 across y: entries that couple y, rx or rz with other motions are reversed.
 
     >>> mirror_rows(tuple(map(tuple, np.ones((6, 6)).tolist())))[0]
     (1.0, -1.0, 1.0, -1.0, 1.0, -1.0)
@@ -104,10 +104,10 @@ def mirror_rows(rows: tuple[tuple[Number, ...], ...]) -> tuple[tuple[Number, ...
 
 
 def symmetry_findings(where: str, matrix: Array) -> Iterator[Finding]:
-    """A finding where a 6x6 (..., 6, 6) is not symmetric, telling the first design's entries.
+    """Return an error if a 6x6 (..., 6, 6) is not symmetric, with entries of the first design.
 
     >>> [each.what for each in symmetry_findings("parts.a.matrix", np.eye(6) + np.eye(6, k=1))]
-    ['it is not symmetric: 1 and 0 SI']
+    ['not symmetric: 1 and 0 SI']
     """
     real = np.real(matrix)
     mirrored = np.swapaxes(real, -1, -2)
@@ -117,15 +117,15 @@ def symmetry_findings(where: str, matrix: Array) -> Iterator[Finding]:
     if np.any(unequal):
         flat = [each.reshape(-1, 6, 6) for each in (unequal, real, mirrored)]
         at = tuple(np.argwhere(flat[0])[0])
-        what = f"it is not symmetric: {flat[1][at]:.6g} and {flat[2][at]:.6g} SI"
-        yield Finding(f"{where} at index {at[1]}, {at[2]}", what, "Give equal entries on both sides")
+        what = f"not symmetric: {flat[1][at]:.6g} and {flat[2][at]:.6g} SI"
+        yield Finding(f"{where} at index {at[1]}, {at[2]}", what, "Use equal entries on both sides")
 
 
 def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
-    """Findings about a 6x6 that is not symmetric, or not positive definite.
+    """Return errors of a 6x6 that is not symmetric, or not positive definite.
 
     >>> [each.what[:28] for each in definite_findings("matrix", np.diag([1.0, 1.0, 1.0, 1.0, 1.0, -1.0]))]
-    ['it is not positive definite:']
+    ['not positive definite: the l']
     """
     unequal = tuple(symmetry_findings(where, matrix))
     yield from unequal
@@ -133,12 +133,12 @@ def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
     safe = np.where(scale > 0.0, scale, 1.0)
     lowest = np.min(np.linalg.eigvalsh(np.real(matrix) / safe[..., :, None] / safe[..., None, :]))
     if not unequal and lowest <= 0.0:
-        what = f"it is not positive definite: the lowest eigenvalue of its scaled form is {lowest:.3g}"
-        yield Finding(where, what, "Check signs and units of its entries; a locked freedom is Restricted, not zero")
+        what = f"not positive definite: the lowest eigenvalue of its scaled form is {lowest:.3g}"
+        yield Finding(where, what, "Check signs and units of its entries; use Restricted for a locked degree of freedom, not zero")
 
 
 def negative_part(matrix: Array, lengths: Array) -> Array:
-    """What is negative in the first design of a stiffness (..., 6, 6), as a positive semidefinite matrix; `lengths` (6,) compare freedoms.
+    """Return the negative part of a stiffness (..., 6, 6) as a positive semidefinite matrix (first design), scaled by `lengths` (6,).
 
     >>> negative_part(np.diag([-2.0, 1.0, 0.0, 0.0, 0.0, 0.0]), np.ones(6)).diagonal()[:2].tolist()
     [2.0, 0.0]

@@ -13,9 +13,9 @@ from flexstage.parts.gauge import Instrument
 
 @dataclass(frozen=True, eq=False)
 class StrainGauge(Instrument):
-    """A strain gauge on a link reads how much longer the link has become between its faces, the free stroke of a stack included.
+    """Strain gauge on a link: elongation between its faces, including the free stroke of a stack.
 
-    Its numbers are stated in elongation, not in strain: measuring `range` (total span) and `resolution` (quantisation step) [m], white
+    Its numbers are elongations, not strains: measuring `range` (total span) and `resolution` (quantisation step) [m], white
     `noise_density` [m/Hz^0.5], `bandwidth` [Hz].
     """
 

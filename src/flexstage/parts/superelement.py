@@ -1,4 +1,4 @@
-"""Superelements: parts known by the stiffness and mass matrices of a finite element code, with any number of ports."""
+"""Superelements: parts with stiffness and mass matrices of a finite-element code, and any number of ports."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from flexstage.parts.shape import Elastic
 
 
 class FileUnits(Enum):
-    """Units of force, length and mass that a file of matrices is in; times are in seconds, angles in radians."""
+    """Units of force, length and mass of a matrix file; time in seconds, angles in radians."""
 
     SI = "N-m-kg"
     MILLIMETRES = "N-mm-t"
@@ -24,9 +24,9 @@ class FileUnits(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Port(Description):
-    """An interface frame of a superelement, in the part's axes: its origin `at`, x along `along`, z along `up` (perpendicular to it).
+    """Port (interface frame) of a superelement, in the part's axes: origin `at`, x along `along`, z along `up` (perpendicular to it).
 
-    Its six coordinates (x, y, z, rx, ry, rz: its twist at its origin, in its axes) stand in the file's matrices from `row` on, counted
+    Its six coordinates (x, y, z, rx, ry, rz) are its twist at its origin, in its axes. They are in the file's matrices from `row`, counted
     from 1.
     """
 
@@ -38,7 +38,7 @@ class Port(Description):
 
 @dataclass(frozen=True, eq=False)
 class MatrixNames(Description):
-    """What the arrays of a MAT or NPZ file are called; without a name of its own the viscous damping is none."""
+    """Names of the arrays of a MAT or NPZ file; viscous damping is optional."""
 
     stiffness: str = "K"
     mass: str = "M"
@@ -47,19 +47,18 @@ class MatrixNames(Description):
 
 @dataclass(frozen=True, eq=False)
 class Superelement(Elastic):
-    """An elastic body known by its stiffness K and mass M over the twists of its `ports` and inner coordinates, from files in `units`.
+    """Superelement: stiffness K and mass M over the twists of its `ports` and internal coordinates, from files in `units`.
 
-    Either `file` is a MAT or NPZ file of both (`arrays` says what they are called), or `stiffness_file` and `mass_file` are Matrix
-    Market files. A matrix of viscous damping D may stand beside them (`arrays`, or `damping_file`). All coordinates that are no port's
-    are inner ones: freedoms of nodes or amplitudes of modes, whatever the code has. `sha256` is the digest of the bytes of the file, or
-    of all files one after the other (stiffness, mass, damping): it says which version is meant and stands for the matrices in caches. A
-    relative path is looked for from the design file.
+    Either `file` is a MAT or NPZ file of both (named in `arrays`), or `stiffness_file` and `mass_file` are Matrix Market files. A viscous
+    damping matrix D is optional (`arrays`, or `damping_file`). All other coordinates are internal: nodal degrees of freedom or modal
+    amplitudes. `sha256` is the digest of the bytes of the file, or of all files in order (stiffness, mass, damping). It identifies the
+    version and represents the matrices in caches. A relative path is from the design file.
 
-    The inner coordinates are reduced to modes with the ports held (Craig and Bampton, AIAA J. 6, 1313, 1968), which keeps the statics and
-    the mass of the whole: as many as `modes` says (0: none, the condensation of Guyan, AIAA J. 3, 380, 1965), those `below` a frequency,
-    or all. `mass`, `centre` of mass and `inertia` about it, in the part's axes, are for a check: what the matrices say must agree.
-    `loss_factor` is that of its stiffness. `reflected`: it is the mirror image of the file's part across its x-z plane, as are the ports,
-    mass, centre and inertia that are stated. Linear: small motions, no buckling; how it grows with temperature is not known.
+    Internal coordinates are reduced to fixed-interface modes (Craig and Bampton, AIAA J. 6, 1313, 1968), which preserves statics and total
+    mass: `modes` of them (0: Guyan condensation, AIAA J. 3, 380, 1965), those `below` a frequency, or all. `mass`, `centre` of mass and
+    `inertia` about it, in the part's axes, are for a check against the matrices. `loss_factor` is of its stiffness. `reflected`: the mirror
+    image of the file's part across its x-z plane, with ports, mass, centre and inertia. Linear: small motions, no buckling, unknown thermal
+    expansion.
     """
 
     kind: ClassVar[str] = "superelement"
@@ -82,17 +81,17 @@ class Superelement(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """None: it is a body, and rigid where bodies are; a link of it may state others."""
+        """None, as for a rigid body; a link may specify others."""
         return ()
 
     @property
     def is_axisymmetric(self) -> bool:
-        """It is not: its axes are those of its file."""
+        """False: its axes are those of its file."""
         return False
 
     @property
     def mirrored(self) -> Superelement:
-        """Its mirror image across its x-z plane: ports and what is stated of its mass stand on the other side."""
+        """Mirror image across its x-z plane, with ports and specified mass properties."""
         ports = {name: replace(port, at=across(port.at), along=across(port.along), up=across(port.up)) for name, port in self.ports.items()}
         centre = None if self.centre is None else across(self.centre)
         inertia = None if self.inertia is None else self.inertia.mirrored
@@ -100,10 +99,10 @@ class Superelement(Elastic):
 
     @property
     def files(self) -> tuple[str, ...]:
-        """The files it is known by, in the order in which their bytes are digested."""
+        """Its files, in the order of the digest."""
         return (self.file,) if self.file else tuple(each for each in (self.stiffness_file, self.mass_file, self.damping_file) if each)
 
     @property
     def order(self) -> tuple[str, ...]:
-        """The names of its ports in the order of their rows in the file."""
+        """Names of its ports in the order of their rows in the file."""
         return tuple(sorted(self.ports, key=lambda name: self.ports[name].row))

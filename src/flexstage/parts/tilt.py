@@ -14,7 +14,7 @@ from flexstage.parts.gauge import Instrument
 
 @dataclass(frozen=True, eq=False)
 class Tilt(Instrument):
-    """A tilt gauge reads the rotation of a body about the gauge's x axis, by the right-hand rule; where it stands does not matter.
+    """Tilt gauge: right-handed rotation of a body about the gauge's x axis, independent of position.
 
     Measuring `range` (total span) and `resolution` (quantisation step) [rad], white `noise_density` [rad/Hz^0.5], `bandwidth` [Hz].
     """

@@ -1,9 +1,9 @@
-"""Union: what outlines of one body have in common, so that it weighs once.
+"""Mass of the union of a body's outlines: common volumes count once.
 
-The union of solids follows by inclusion and exclusion from their common regions, each solid being its outer form less its hole. A common
-region is weighed where the outlines are prisms along one axis: blocks along any edge, extrusions along their height, cylinders along their
-axis; and balls within their sections. Its section is a polygon clipped by half-planes, its moments are line integrals (Green's theorem):
-formulas, so that batches and steps of complex numbers pass through. Everything else that overlaps is refused.
+The union of solids follows by inclusion and exclusion from their intersections, each solid being its outer form minus its hole. An
+intersection is computed for prisms along one axis: blocks along any edge, extrusions along their height, cylinders along their axis. It is
+also computed for balls within these sections. Its section is a polygon clipped by half-planes, its moments are line integrals (Green's
+theorem): closed formulas, valid for batches and complex steps. Other overlaps are refused.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from flexstage.spatial.convex import Boxes, Convex, separation, separations
 from flexstage.spatial.frame import Frame
 
 _FLUSH = 1e-9
-"""Faces nearer than this share of the solids' size coincide."""
+"""Distance of coincident faces relative to the solids' size."""
 _ROUNDING = 1e-14
-"""Points beyond a line by less than this share of their size lie on it."""
+"""Tolerance of points on a line relative to their size."""
 _MOST = 2000
-"""Common regions of more outlines than this are not weighed."""
+"""Largest number of outlines in an intersection."""
 _AXES: dict[type[Solid], tuple[int, ...]] = {Block: (0, 1, 2), Cylinder: (0,), Extrusion: (2,)}
-"""Along which of its own axes a solid is a prism."""
+"""Prism axes of a solid."""
 _SQUARE = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
 
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """A solid of a body: its name, its density [kg/m^3], and the frame that it is drawn in."""
+    """Solid of a body: name, density [kg/m^3], and drawing frame."""
 
     name: str
     solid: Solid
@@ -45,7 +45,7 @@ class Drawn:
 
     @cached_property
     def placed(self) -> Frame:
-        """The solid's own frame."""
+        """Frame of the solid."""
         return self.solid.frame.within(self.frame)
 
 
@@ -64,18 +64,18 @@ class Moments:
         return Moments(self.volume + other.volume, self.first + other.first, self.second + other.second)
 
     def times(self, weight: Number) -> Moments:
-        """The moments, counted so many times."""
+        """The moments times a factor."""
         weight = np.asarray(weight)
         return Moments(weight * self.volume, weight[..., None] * self.first, weight[..., None, None] * self.second)
 
     def shift(self, by: Array) -> Moments:
-        """The moments of the region moved by a vector (..., 3), or (..., 2)."""
+        """Moments of the region translated by a vector (..., 3), or (..., 2)."""
         cross = self.first[..., :, None] * by[..., None, :]
         moved = self.second + cross + np.swapaxes(cross, -1, -2) + self.volume[..., None, None] * by[..., :, None] * by[..., None, :]
         return Moments(self.volume, self.first + self.volume[..., None] * by, moved)
 
     def within(self, frame: Frame) -> Moments:
-        """The moments seen from the frame that `frame` stands in."""
+        """Moments in the parent frame of `frame`."""
         turn = frame.rotation
         second = turn @ self.second @ np.swapaxes(turn, -1, -2)
         return Moments(self.volume, (turn @ self.first[..., None])[..., 0], second).shift(frame.position)
@@ -83,7 +83,7 @@ class Moments:
 
 @dataclass(frozen=True, eq=False)
 class _Prism:
-    """A prism along x of its frame, `half` its length on either side, over a polygon of `corners` (..., n, 2) or a circle; or a ball.
+    """Prism along x of its frame, of half length `half`, over a polygon of `corners` (..., n, 2) or a circle; or a ball.
 
     `is_rectangle`: the polygon is convex.
     """
@@ -97,11 +97,10 @@ class _Prism:
 
 
 def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
-    """What solids of a body have in common and would weigh more than once: densities, and the moments to add (most are negative).
+    """Compute densities and moments to add for common volumes of a body's solids (most are negative).
 
-    Solids that remove weigh nothing themselves: what they have in common with others of their material is taken away, P less H being the
-    union of both less H. Raises `DesignError` where the common volume cannot be weighed: of several materials, or of outlines that are no
-    prisms along one axis.
+    Subtracted solids remove their intersection with others of their material: P minus H is the union of both minus H. Raises `DesignError`
+    if the common volume cannot be computed: of several materials, or of outlines other than prisms along one axis.
 
     >>> from flexstage.parts.body import Block
     >>> from flexstage.spatial.frame import identity
@@ -141,8 +140,8 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
         told += len(groups)
         if told > _MOST:
             names = ", ".join(seen[number].name for number in next(iter(groups)))
-            advice = "Draw the body of fewer outlines, or state its mass"
-            require([Finding(names, "too many outlines overlap in one place to weigh their union", advice)])
+            advice = "Use fewer outlines, or specify the body's mass"
+            require([Finding(names, "too many overlapping outlines for the mass of their union", advice)])
         wider = [
             (*group, more) for group in groups for more in range(group[-1] + 1, len(seen)) if {(each, more) for each in group} <= pairs
         ]
@@ -155,17 +154,17 @@ def _common(seen: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
 
 
 def _box(drawn: Drawn) -> tuple[tuple[Array, int], ...]:
-    """Axes, centre and half sides of the box around a solid, each with how many axes it has beside those of the batch."""
+    """Axes, centre and half sides of a solid's bounding box, each with its number of non-batch axes."""
     return (drawn.placed.rotation, 2), (drawn.placed.position, 1), (0.5 * drawn.solid.sides, 1)
 
 
 def _shape(seen: Sequence[Drawn]) -> tuple[int, ...]:
-    """The batch axes of where solids stand and how large they are."""
+    """Batch axes of positions and sizes of solids."""
     return np.broadcast_shapes(*(value.shape[: value.ndim - own] for each in seen for value, own in _box(each)))
 
 
 def _spread(value: Array, own: int, shape: tuple[int, ...]) -> Array:
-    """The real parts of a value in every design."""
+    """Real parts of a value in every design."""
     return np.broadcast_to(np.real(value), (*shape, *value.shape[value.ndim - own :]))
 
 
@@ -190,27 +189,25 @@ def _near(seen: Sequence[Drawn]) -> Iterator[tuple[int, int]]:
 
 
 def _is_apart(first: Drawn, second: Drawn) -> bool:
-    """Whether one is a hole, which takes away nothing of another material."""
+    """Whether one is a hole of another material."""
     return (first.solid.subtract or second.solid.subtract) and first.solid.material != second.solid.material
 
 
 def _refusals(seen: Sequence[Drawn]) -> Iterator[Finding]:
     first, *others = seen
     names = " and ".join(other.name for other in others)
-    what = f"it overlaps {names}, which would weigh twice: only blocks, extrusions and cylinders along one axis may overlap"
-    yield Finding(
-        first.name, what, "Trim one of them so that they only touch, draw one as a hole along that axis, or state the body's mass"
-    )
+    what = f"unsupported overlap with {names}: only blocks, extrusions and cylinders along one axis may overlap"
+    yield Finding(first.name, what, "Trim one of them, draw one as a hole along that axis, or specify the body's mass")
 
 
 def _mixtures(first: Drawn, second: Drawn, volume: float) -> Iterator[Finding]:
     there = f"{second.name} of {second.solid.material} by {1e9 * volume:.4g} mm^3"
-    what = f"it is of {first.solid.material} and overlaps {there}: which of them fills it is not known"
-    yield Finding(first.name, what, "Cut one of them (a block may have a hole, a cylinder a bore), or state the body's mass")
+    what = f"ambiguous material: {first.solid.material} overlaps {there}"
+    yield Finding(first.name, what, "Cut one of them (a block may have a hole, a cylinder a bore), or specify the body's mass")
 
 
 def _region(group: Sequence[Drawn]) -> Moments | None:
-    """Moments of what solids have in common; `None`: they are no prisms along one axis, or a ball crosses the sides of one."""
+    """Moments of the intersection of solids; `None` unless prisms along one axis, with balls within their sections."""
     for chosen in _alignments(group):
         parts = [_moments(prisms) for prisms in product(*chosen)]
         known = [each for each in parts if each is not None]
@@ -220,7 +217,7 @@ def _region(group: Sequence[Drawn]) -> Moments | None:
 
 
 def _alignments(group: Sequence[Drawn]) -> Iterator[list[list[_Prism]]]:
-    """The prisms that each solid is the sum of, along every axis that all of them are prisms along."""
+    """Decomposition of each solid into prisms along every common prism axis."""
     first, *others = sorted(group, key=lambda each: isinstance(each.solid, Sphere))
     for axis in _AXES.get(type(first.solid), ()):
         way = first.placed.rotation[..., :, axis]
@@ -230,7 +227,7 @@ def _alignments(group: Sequence[Drawn]) -> Iterator[list[list[_Prism]]]:
 
 
 def _is_along(drawn: Drawn, axis: int, way: Array) -> bool:
-    """Whether an axis of a solid is parallel to a direction, and stays so as numbers are stepped; those of a ball are."""
+    """Whether an axis of a solid is parallel to a direction, also under complex steps; always for a ball."""
     own = drawn.placed.rotation[..., :, axis]
     across, turning = np.cross(own, way), max(float(np.max(np.abs(np.imag(each)))) for each in (own, way))
     level = np.all(np.abs(np.real(across)) < _FLUSH) and np.all(np.abs(np.imag(across)) <= _FLUSH * turning)
@@ -238,7 +235,7 @@ def _is_along(drawn: Drawn, axis: int, way: Array) -> bool:
 
 
 def _prisms(drawn: Drawn, axis: int) -> list[_Prism]:
-    """A solid as a sum of prisms along one of its axes: its outer form, less its hole."""
+    """A solid as a sum of prisms along one of its axes: outer form minus hole."""
     solid, placed = drawn.solid, drawn.placed
     frame, half = Frame(np.roll(placed.rotation, -axis, axis=-1), placed.position), 0.5 * solid.sides
     if isinstance(solid, Sphere):
@@ -257,7 +254,7 @@ def _prisms(drawn: Drawn, axis: int) -> list[_Prism]:
 
 
 def _moments(prisms: Sequence[_Prism]) -> Moments | None:
-    """Moments of what prisms along one axis have in common; `None` where a ball crosses the sides of one."""
+    """Moments of the intersection of prisms along one axis; `None` if a ball crosses the sides of one."""
     base = prisms[0].frame
     turn = np.swapaxes(base.rotation, -1, -2)
     at = [(turn @ (each.frame.position - base.position)[..., None])[..., 0] for each in prisms]
@@ -280,17 +277,17 @@ def _moments(prisms: Sequence[_Prism]) -> Moments | None:
 
 
 def _unstepped(value: Array) -> Array:
-    """A value as real numbers where none of it is stepped: its section is worked out several times faster."""
+    """A value as real numbers if without complex steps, for faster evaluation."""
     return value if np.any(np.imag(value)) else np.real(value)
 
 
 def _least(values: Sequence[Array]) -> Array:
-    """Of values that of the least real part."""
+    """Value with the least real part."""
     return reduce(lambda one, other: np.where(np.real(other) < np.real(one), other, one), values)
 
 
 def _extruded(section: Moments, low: Array, high: Array) -> Moments:
-    """The moments of a section (y, z) drawn out along x from `low` to `high`; nothing where these do not follow one another."""
+    """Moments of a section (y, z) extruded along x from `low` to `high`; zero if empty."""
     size = np.where(np.real(high - low) > 0.0, high - low, 0.0)
     shape = np.broadcast_shapes(section.volume.shape, size.shape)
     first = np.zeros((*shape, 3), dtype=np.result_type(section.volume, size))
@@ -303,7 +300,7 @@ def _extruded(section: Moments, low: Array, high: Array) -> Moments:
 
 
 def polygon_moments(corners: Array, height: Array) -> Moments:
-    """Moments of a prism over a polygon of corners (..., n, 2), counter-clockwise, half of its `height` on either side (Green's theorem).
+    """Compute moments of a prism over a counter-clockwise polygon (..., n, 2), half of its `height` on either side (Green's theorem).
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> float(polygon_moments(square, np.asarray(2.0)).volume)
@@ -322,8 +319,8 @@ _Circle = tuple[Array, Array]
 def _section(polygons: Sequence[_Polygon], circles: Sequence[_Circle]) -> Moments:
     """Moments of the region within all polygons and circles.
 
-    The first polygon is clipped by the sides of the others, which are taken apart into triangles that count as they turn. Several circles
-    have in common what each one has in common with the region where its power, |p - c|^2 - r^2, is the largest.
+    The first polygon is clipped by the sides of the others, which are split into signed triangles. The intersection with several circles is
+    the sum over circles, each in the region of its largest power, |p - c|^2 - r^2.
     """
     if polygons:
         regions = [(_turn(polygons[0][0]), polygons[0][0])]
@@ -337,12 +334,12 @@ def _section(polygons: Sequence[_Polygon], circles: Sequence[_Circle]) -> Moment
 
 
 def _turn(corners: Array) -> Array:
-    """1 where a polygon's corners go round counter-clockwise, -1 where the other way."""
+    """Orientation of a polygon: 1 counter-clockwise, -1 clockwise."""
     return np.where(np.sum(np.real(_cross(corners, np.roll(corners, -1, axis=-2))), axis=-1) < 0.0, -1.0, 1.0)
 
 
 def _clip_by(region: Array, corners: Array) -> Array:
-    """A region within a convex polygon."""
+    """Region within a convex polygon."""
     run = np.roll(corners, -1, axis=-2) - corners
     outward = _turn(corners)[..., None, None] * np.stack([run[..., 1], -run[..., 0]], axis=-1)
     for number in range(corners.shape[-2]):
@@ -352,9 +349,9 @@ def _clip_by(region: Array, corners: Array) -> Array:
 
 
 def _clip(points: Array, normal: Array, offset: Array, *, strict: bool = False) -> Array:
-    """A closed path (..., n, 2) within the half-plane normal . p <= offset: what lies beyond runs along its edge and encloses nothing.
+    """Closed path (..., n, 2) clipped to the half-plane normal . p <= offset; outside parts run along its edge with zero area.
 
-    Where the normal is zero all of it lies within or beyond; where the offset is too, beyond if `strict`.
+    With a zero normal all points are inside or outside; with a zero offset too, outside if `strict`.
     """
     beyond = (points @ normal[..., None])[..., 0] - offset[..., None]
     square = np.sum(normal * normal, axis=-1)[..., None]
@@ -373,7 +370,7 @@ def _clip(points: Array, normal: Array, offset: Array, *, strict: bool = False) 
 
 
 def _in_circles(region: Array, circles: Sequence[_Circle]) -> Moments:
-    """Moments of what a path encloses within circles."""
+    """Moments of the area enclosed by a path within circles."""
     if not circles:
         return _along(region, np.roll(region, -1, axis=-2))
     powers = [np.sum(centre * centre, axis=-1) - radius * radius for centre, radius in circles]
@@ -388,7 +385,7 @@ def _in_circles(region: Array, circles: Sequence[_Circle]) -> Moments:
 
 
 def _in_circle(path: Array, radius: Array) -> Moments:
-    """Moments of what a path encloses within a circle about the origin: triangles to its sides within, sectors beside those without."""
+    """Moments of the area enclosed by a path within a circle about the origin: triangles to inside sides, sectors to outside ones."""
     run = np.roll(path, -1, axis=-2) - path
     square, slope, power = (np.sum(one * other, axis=-1) for one, other in ((run, run), (path, run), (path, path)))
     under = slope * slope - square * (power - radius * radius)
@@ -400,7 +397,7 @@ def _in_circle(path: Array, radius: Array) -> Moments:
 
 
 def _along(start: Array, end: Array) -> Moments:
-    """Moments of the triangles from the origin to sides (..., n, 2), counted as they turn."""
+    """Moments of the triangles from the origin to sides (..., n, 2), signed by orientation."""
     cross = _cross(start, end)
     total = start + end
     second = sum((np.swapaxes(each, -1, -2) @ (cross[..., None] * each) for each in (start, end, total)), np.zeros((2, 2)))
@@ -408,7 +405,7 @@ def _along(start: Array, end: Array) -> Moments:
 
 
 def _sectors(start: Array, end: Array, radius: Array) -> Moments:
-    """Moments of the sectors of a circle between directions (..., n, 2), counted as they turn."""
+    """Moments of the sectors of a circle between directions (..., n, 2), signed by orientation."""
     (a, b), (c, d) = (np.moveaxis(each / _length(each)[..., None], -1, 0) for each in (start, end))
     angle = _angle(a * c + b * d, a * d - b * c)
     area, cubic, quartic = 0.5 * radius**2 * angle, radius**3 / 3.0, 0.125 * radius**4
@@ -428,7 +425,7 @@ def _length(vectors: Array) -> Array:
 
 
 def _angle(x: Array, y: Array) -> Array:
-    """The angle of a direction, analytic in its components."""
+    """Angle of a direction, analytic in its components."""
     base = np.arctan2(np.real(y), np.real(x))
     return base + (y * np.cos(base) - x * np.sin(base)) / np.sqrt(np.where(np.real(x * x + y * y) > 0.0, x * x + y * y, 1.0))
 
@@ -437,7 +434,7 @@ def _angle(x: Array, y: Array) -> Array:
 
 
 def _zone(radius: Array, at: Array, ends: tuple[Array, Array], polygons: Sequence[_Polygon], circles: Sequence[_Circle]) -> Moments | None:
-    """Moments of a ball between two planes across x; `None` where it does not keep within all sections."""
+    """Moments of a ball between two planes normal to x; `None` if outside any section."""
     centre = at[..., 1:]
     for corners, _ in polygons:
         shape = np.broadcast_shapes(centre.shape[:-1], radius.shape, corners.shape[:-2])
@@ -474,7 +471,7 @@ def _meet(first: Drawn, second: Drawn, scale: float) -> bool:
 
 
 def _at(value: Any, shape: tuple[int, ...], design: tuple[int, ...]) -> Any:
-    """A solid, or a value that it holds, in one design."""
+    """A solid, or one of its values, in one design."""
     if isinstance(value, Solid):
         return replace(value, **{each.name: _at(getattr(value, each.name), shape, design) for each in fields(value)})  # type: ignore[type-var,arg-type]
     if isinstance(value, tuple):

@@ -1,4 +1,4 @@
-"""Voice coils: linear motors of a coil in the field of a magnet, whose force is proportional to the current."""
+"""Voice coils: linear motors with a force proportional to the current."""
 
 from __future__ import annotations
 
@@ -39,21 +39,21 @@ DUTY = Bound(low=0.0, high=1.0, open_low=True)
 
 
 class Supply(Enum):
-    """What the amplifier imposes: the current, or the voltage, of which the coil's motion takes k_f v."""
+    """Amplifier output: current, or voltage with the back-EMF k_f v of the coil's motion."""
 
     CURRENT = "current"
     VOLTAGE = "voltage"
 
 
 class CoilSide(Enum):
-    """One of the two bodies that a link joins, in the order of its `joins`."""
+    """First or second body of a link, in the order of its `joins`."""
 
     FIRST = "first"
     SECOND = "second"
 
 
 class Coil(ThrustActuator):
-    """A coil in the field of a magnet, driven by a current: limits, heat and damping by its thrust per ampere, along or about x."""
+    """Coil in the field of a magnet, driven by a current: limits, heat and damping, along or about x."""
 
     input = CURRENT
     peak_current: Number | None
@@ -73,12 +73,12 @@ class Coil(ThrustActuator):
 
     @property
     def maximum(self) -> Number | None:
-        """Its largest force [N] or torque [N m]."""
+        """Largest force [N] or torque [N m]."""
         raise NotImplementedError
 
     @property
     def viscous_damping(self) -> Number:
-        """Its own damping and, under a voltage drive, that of the induced voltage, k_f^2 / R [N s/m, N m s/rad].
+        """Damping along or about x, with the back-EMF term k_f^2 / R for a voltage drive [N s/m, N m s/rad].
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, damping=1.0, drive=Supply.VOLTAGE).viscous_damping
         21.0
@@ -88,7 +88,7 @@ class Coil(ThrustActuator):
         return self.damping + self.thrust**2 / self.resistance
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """The magnets' stiffness and the damping along or about x, both sides' masses."""
+        """Magnets' stiffness and damping along or about x, masses of both sides."""
         sides = (self.mass, self.magnet_mass)
         mass = point_masses(*(sides if self.coil is CoilSide.FIRST else sides[::-1]))
         own = np.diag(np.eye(6)[self.axis])
@@ -97,7 +97,7 @@ class Coil(ThrustActuator):
 
     @property
     def limits(self) -> Iterator[ForceLimit]:
-        """What bounds its current: by name, held for ever, and in short use."""
+        """Current limits by name: continuous, and in short use."""
         yield ForceLimit("peak current", self.peak_current, self.peak_current)
         rested = self.duty**-0.5
         if self.continuous_current is not None:
@@ -112,7 +112,7 @@ class Coil(ThrustActuator):
 
     @property
     def cutoff(self) -> Number | None:
-        """R / (2 pi L) of a voltage drive [Hz]; a current drive makes up for it.
+        """R / (2 pi L) of a voltage drive [Hz]; none for a current drive.
 
         >>> round(VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, drive=Supply.VOLTAGE).cutoff, 1)
         954.9
@@ -122,7 +122,7 @@ class Coil(ThrustActuator):
         return self.resistance / (2.0 * np.pi * self.inductance)
 
     def slew(self, limit: Number) -> Number | None:
-        """(V - R i) / L of the voltage that is left, in the mean from no current to a `limit` [A/s]; the induced voltage is left out.
+        """Mean slew rate (V - R i) / L from zero current to a `limit` [A/s], without back-EMF.
 
         >>> VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, voltage=24.0).slew(2.0)
         18000.0
@@ -132,7 +132,7 @@ class Coil(ThrustActuator):
         return (self.voltage - 0.5 * (self.resistance or 0.0) * limit) / self.inductance
 
     def in_series(self, count: int) -> Self:
-        """Their resistances and inductances add up; so does their heat, through as many thermal resistances.
+        """Identical coils in series: resistance, inductance and heat add up.
 
         >>> pair = VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0, temperature_rise=80.0).in_series(2)
         >>> pair.loss(1.0), pair.heat_current
@@ -143,11 +143,11 @@ class Coil(ThrustActuator):
         return replace(self, **total, thermal_resistance=thermal)  # type: ignore[type-var]
 
     def loss(self, rms: Number) -> Number | None:
-        """i^2 R [W]; None where no resistance is stated."""
+        """i^2 R [W]; None without a resistance."""
         return None if self.resistance is None else rms**2 * self.resistance
 
     def warming(self, rms: Number) -> Number | None:
-        """i^2 R over its thermal resistance [K]; None where one of these numbers is not stated.
+        """i^2 R times the thermal resistance [K]; None if a number is missing.
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0).warming(2.0)
         80.0
@@ -156,7 +156,7 @@ class Coil(ThrustActuator):
 
     @property
     def heat_current(self) -> Number | None:
-        """The direct current whose heat i^2 R warms the coil by what it bears [A]; None where one of these numbers is not stated.
+        """Direct current at the limit of temperature rise by i^2 R [A]; None if a number is missing.
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0, temperature_rise=80.0).heat_current
         2.0
@@ -167,32 +167,30 @@ class Coil(ThrustActuator):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Its continuous current is at most its peak current."""
+        """Order: continuous current at most equal to peak current."""
         advice = "Exchange them"
         yield Order("continuous_current", self.continuous_current, self.peak_current, "the peak current", advice, CURRENT, strict=False)
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """A voltage drive damps by the coil's resistance, and a limit of volts bounds the current by it."""
+        """Errors: voltage drive or voltage limit without a resistance."""
         for name, asked in (("drive", self.drive is Supply.VOLTAGE), ("voltage", self.voltage is not None)):
             if asked and self.resistance is None:
-                what = "it states no resistance, and the current that a voltage drives follows from it"
-                yield Finding(name, what, 'Add for example resistance = "5 ohm"')
+                what = "resistance missing, required for the current of a voltage"
+                yield Finding(name, what, 'Add e.g. resistance = "5 ohm"')
 
 
 @dataclass(frozen=True, eq=False)
 class VoiceCoil(Coil):
-    """A voice coil along x: force = `force_constant` x current between two bodies, positive pushing them apart.
+    """Voice coil along x: force = `force_constant` x current between two bodies, positive pushing them apart.
 
-    `mass` is that of the coil's side, which the body named by `coil` carries, `magnet_mass` that of the other side, carried by the other
-    body; both count at the link's centre, without rotary inertia. `stiffness` is the magnets' own along x (negative: they pull away from
-    the middle), `damping` the coil's own (eddy currents of its former); with `drive` "voltage" the coil's motion induces a voltage that
-    the amplifier does not make up for, and damps with k_f^2 / R more. `travel` is the whole range of motion along x for which the force
-    constant holds, half of it to either side. `temperature_rise` of the coil is what it bears, through `thermal_resistance` to its
-    surroundings; `duty` the share of time that the current flows in short use. The input is the current at rest: of a voltage drive V/R.
+    `mass` is of the coil, on the body named by `coil`, `magnet_mass` of the magnet, on the other body. Both are at the link's centre,
+    without rotary inertia. `stiffness` is of the magnets along x (negative: unstable about the middle), `damping` of the coil (eddy
+    currents of its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the whole range of motion along x of
+    constant `force_constant`, half to either side. `temperature_rise` is the coil's limit, through `thermal_resistance` to its
+    surroundings; `duty` is the duty cycle of the current in short use. The input is the static current: V/R for a voltage drive.
 
-    Not modelled: the change of R with temperature, saturation, and the lag L/R of the current under a voltage drive, which counts above
-    R / (2 pi L).
+    Not modelled: change of R with temperature, saturation, and the current lag L/R under a voltage drive, significant above R / (2 pi L).
     """
 
     kind: ClassVar[str] = "voice_coil"
@@ -217,10 +215,10 @@ class VoiceCoil(Coil):
 
     @property
     def thrust(self) -> Number:
-        """The force constant [N/A]."""
+        """Force constant [N/A]."""
         return self.force_constant
 
     @property
     def maximum(self) -> Number | None:
-        """Its largest force [N]."""
+        """Largest force [N]."""
         return self.maximum_force

@@ -1,4 +1,4 @@
-"""Reports of stages away from their drawn position: a stroke, and what gives way under a load; HTML files that stand alone."""
+"""Reports of large displacements: a stroke, buckling, misalignment; self-contained HTML files."""
 
 from __future__ import annotations
 
@@ -29,33 +29,33 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 
 def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
-    """A path as a page of HTML: the stage moves along it with curves and a cursor; in print they stand still."""
+    """A path as an HTML page: an animated stage with curves and a cursor; static in print."""
     data, words_beyond = stroke_data(mechanism, path, found), limits(found)
     beyond = [each for each in words_beyond if each]
     words = f"{len(found.along.values)} points, {path.drive} {data.motions[0].label.partition('  ')[2]}"
     figure = stroke_figure(curves_of(found.along), np.array([each != "" for each in words_beyond]))
     sections = [
-        section("Over the stroke", [Picture(to_svg(figure, "stroke", "What the stage does over its stroke"), to_typography(f"{words}."))]),
+        section("Over the stroke", [Picture(to_svg(figure, "stroke", "Results over the stroke"), to_typography(f"{words}."))]),
         caveat_section(mechanism, found.warnings),
         section("Point by point", stroke_tables(found)),
     ]
     text = f"{words}; {len(beyond)} of them beyond a limit: {beyond[0]}" if beyond else words
     headline = Headline(to_typography(text), not beyond)
-    said = "Bodies and flexures lie where they are at large displacements. Red is beyond a limit."
+    said = "Bodies and flexures are shown at large displacements. Red: beyond a limit."
     return _page(mechanism, "A stroke at large displacements", found.provenance, headline, data, sections=sections, said=said)
 
 
 def stroke_tables(found: Stroke) -> list[Table]:
-    """What the stage does at every point of its stroke, and where it sags to before."""
-    start = "where the stage sags to" if found.sag is not None else "the drawn place"
-    free = "Of f1 to f3 and of the ways in which it would leave (unstable), the stage is free under the force that holds it."
-    table = along_table(f"Along {found.drive}", found.along, [f"Counted from {start}. {free} Stress: von Mises, the largest of a flexure."])
-    sag = [] if found.sag is None else [matrix_table("Sag under weight, loads and heat, from as drawn", found.sag)]
+    """Results at every point of a stroke, and the static deflection before it."""
+    start = "static equilibrium" if found.sag is not None else "the undeformed configuration"
+    free = "f1 to f3 and the number of unstable modes are those of the free stage under the force of the drive."
+    table = along_table(f"Along {found.drive}", found.along, [f"Relative to {start}. {free} Stress: von Mises, the largest of a flexure."])
+    sag = [] if found.sag is None else [matrix_table("Static deflection under weight, loads and heat", found.sag)]
     return [table, *sag]
 
 
 def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
-    """What is told of every point of a path: a row a point, a column a quantity in its own display unit."""
+    """Results at every point of a path: one row for each point, one column for each quantity in its own display unit."""
     kept = quiet(along.values)
     told = list(quantities_of(replace(along, values=kept)))
     heads = [Column(name, "" if form.unit == "1" else form.unit) for name, _, form in told]
@@ -65,21 +65,21 @@ def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
 
 
 def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | None = None) -> str:
-    """What gives way in every load case, as a page of HTML in which it moves so, about its last stable state; the least first.
+    """Buckling in every load case as an HTML page: the buckling mode at the last stable state, the lowest factor first.
 
-    `after` is the path from where the least gives way.
+    `after` is the post-buckling path of the lowest factor.
     """
     least = found.least
     known = sorted((case for case in found.cases if case.found is not None), key=lambda case: case.factor)
     data = buckling_data(mechanism, known, after) if known else still_data(mechanism)
     sections = [
-        section("What gives way", buckling_tables(found)),
+        section("Buckling", buckling_tables(found)),
         None if after is None else _beyond_section(after.stroke),
         caveat_section(mechanism, found.warnings if after is None else (*found.warnings, *after.stroke.warnings)),
     ]
     headline = Headline(to_typography(_buckling_text(found)), least is None or least.factor >= max(1.0, found.demand))
-    said = "The shape has no size of its own: it is drawn as large as the slider says." if known else ""
-    return _page(mechanism, "What gives way", found.provenance, headline, data, sections=sections, said=said)
+    said = "The amplitude of the mode is arbitrary: the slider sets it." if known else ""
+    return _page(mechanism, "Buckling", found.provenance, headline, data, sections=sections, said=said)
 
 
 def _buckling_text(found: CaseFactors) -> str:
@@ -87,26 +87,26 @@ def _buckling_text(found: CaseFactors) -> str:
     if open_ is not None and not (least is not None and least.factor <= open_.bound):
         return f"{open_.load}, {open_.place}: stable up to {format_value(open_.bound, '1', 4)} times the load, not followed beyond"
     if least is None:
-        return f"{len(found.cases)} load cases and stroke ends: nothing gives way"
+        return f"{len(found.cases)} load cases and stroke ends: no buckling"
     where = "" if least.place == REST else f", {least.place}"
-    text = f"{least.load}{where}: gives way at {format_value(least.factor, '1', 4)} times the load"
-    return text if len(found.cases) == 1 else f"{text}, the least of {len(found.cases)} load cases and stroke ends"
+    text = f"{least.load}{where}: buckles at {format_value(least.factor, '1', 4)} times the load"
+    return text if len(found.cases) == 1 else f"{text}, the lowest of {len(found.cases)} load cases and stroke ends"
 
 
 def buckling_tables(found: CaseFactors, after: Beyond | None = None) -> list[Table | None]:
-    """Load cases and stroke ends with their factors; how the least gives way, and equilibria `after` that."""
+    """Load cases and stroke ends with their factors; the buckling mode of the lowest, and equilibria `after` it."""
     table = result_table(found.cases)
     least = found.least
     if least is None:
         return [table]
     beyond = [] if after is None else [along_table("Beyond", after.stroke.along)]
-    shape, size = shape_of(least), "It has no size of its own: here its largest number is 1 mm, or 1 mrad."
+    shape, size = shape_of(least), "Arbitrary amplitude, scaled to a largest number of 1 mm, or 1 mrad."
     scaled = replace(shape, values=1e-3 * shape.values)
-    return [table, matrix_table(f"Shape: {least.load}, {least.place}", scaled, notes=[size]), *beyond]
+    return [table, matrix_table(f"Buckling mode: {least.load}, {least.place}", scaled, notes=[size]), *beyond]
 
 
 def shape_of(case: CaseFactor) -> Matrix:
-    """How bodies move as a stage gives way, the largest number 1; without rows where nothing does."""
+    """The buckling mode, scaled to a largest number of 1; without rows if there is none."""
     if case.found is None:
         return Matrix(np.zeros((0, 6)), (), COMPONENTS, ())
     shape = case.found.shape / (np.max(np.abs(case.found.shape), initial=0.0) or 1.0)
@@ -115,16 +115,16 @@ def shape_of(case: CaseFactor) -> Matrix:
 
 def _beyond_section(found: Stroke) -> Section | None:
     figure = stroke_figure(curves_of(found.along), np.array([each != "" for each in limits(found)]))
-    caption = "Equilibria from where the least gives way, by the factor on its load."
-    shown = Picture(to_svg(figure, "beyond", "What the stage does beyond what gives way"), caption)
-    return section("Beyond", [shown, along_table("Along the factor", found.along)])
+    caption = "Equilibria after the lowest critical load, by the factor on the load."
+    shown = Picture(to_svg(figure, "beyond", "Post-buckling path"), caption)
+    return section("Post-buckling path", [shown, along_table("Along the factor", found.along)])
 
 
-_BENT = "Flexures lie as it bends them. Red is beyond a limit."
+_BENT = "Flexures are shown as bent by the misalignment. Red: beyond a limit."
 
 
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
-    """What a misaligned copy does, as a page of HTML: the stage as it is bent, loads, frequencies and stress over the misalignment."""
+    """The effect of a misaligned instance as an HTML page: the deformed stage, loads, frequencies and stress over the misalignment."""
     sections = [
         _misaligned_curves(found),
         caveat_section(mechanism, found.warnings),
@@ -135,8 +135,8 @@ def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
 
 
 def _misaligned_curves(found: Misaligned) -> Section | None:
-    figure = to_svg(stroke_figure(curves_of(found.along), _beyond(found)), "misalign", "What a misalignment does")
-    return section("Over the misalignment", [Picture(figure, to_typography(f"{_misaligned_text(found)}. Shaded: the stage gives way."))])
+    figure = to_svg(stroke_figure(curves_of(found.along), _beyond(found)), "misalign", "Results over the misalignment")
+    return section("Over the misalignment", [Picture(figure, to_typography(f"{_misaligned_text(found)}. Shaded: buckled."))])
 
 
 def _beyond(found: Misaligned) -> Array:
@@ -149,7 +149,7 @@ def _misaligned_text(found: Misaligned) -> str:
 
 
 def misaligned_tables(found: Misaligned) -> list[Table]:
-    """Where the stage gives way, what it does on the way to the last misalignment, and the loads in all flexures there."""
+    """Critical misalignment, results up to the last misalignment, and the loads in all flexures there."""
     last = format_value(float(found.along.values[-1, 0]), MOTION.unit(found.axis), 4)
     return [
         make_table("Misaligned", ["instance", "axis", "stability"], [[found.copy, found.axis, critical_text(found)]]),
@@ -159,7 +159,7 @@ def misaligned_tables(found: Misaligned) -> list[Table]:
 
 
 def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
-    """What each copy bears, as a page of HTML; the worst of them is played."""
+    """Misalignment of each instance as an HTML page; the animation shows the most critical."""
     worst = found.worst
     sections = [
         section("Copy by copy", misalignment_tables(found)),
@@ -175,32 +175,32 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
 
 
 def misalignments_text(found: Misalignments) -> str:
-    """How many copies there are, and which gives way first."""
+    """The number of instances, and the first that buckles."""
     count, worst = len(found.critical.rows), found.worst
     if worst is None:
-        return "no copy and no link joins the ground"
+        return "no instance and no link joins the ground"
     told = f"{_misaligned_text(worst)}, the first"
     if np.isnan(worst.critical) and not np.ptp(found.followed.values):
         where = f"{worst.copy} {'about' if worst.axis.startswith('r') else 'along'} {worst.axis[-1]}"
-        told = f"all are stable as far; {where} is stressed most"
+        told = f"all are stable up to there; highest stress: {where}"
     return f"{count} misaligned one by one: {told}"
 
 
 def critical_text(found: Misaligned) -> str:
-    """At which misalignment the stage gives way, in words."""
+    """The critical misalignment as a text."""
     size = format_value(found.followed, MOTION.unit(found.axis), 4)
-    return f"it is stable up to {size}, and not followed beyond" if np.isnan(found.critical) else f"it gives way at {size}"
+    return f"stable up to {size}, not followed beyond" if np.isnan(found.critical) else f"buckles at {size}"
 
 
 def misalignment_tables(found: Misalignments) -> list[Table]:
-    """What each copy bears along or about its axes: where it gives way, what forces it to a size, and the stress then."""
+    """Results of each instance along or about its axes: critical misalignment, load and stress at one amount."""
     size = format_value(found.size, MOTION.unit(found.critical.columns[0]), 4)
-    alone = "Of one copy alone, in its own frame"
+    alone = "One misaligned instance, in its own frame"
     return [
-        column_table("Critical misalignment", found.critical, head="instance", notes=[f"{alone}. -: stable as far as it is followed."]),
+        column_table("Critical misalignment", found.critical, head="instance", notes=[f"{alone}. -: stable up to the largest amount."]),
         column_table("Largest stable misalignment followed", found.followed, head="instance"),
         column_table(
-            f"Load at a misalignment of {size}", found.load, head="instance", notes=[f"{alone}, about its origin, of a link its middle."]
+            f"Load at a misalignment of {size}", found.load, head="instance", notes=[f"{alone}, about its origin, or the middle of a link."]
         ),
         column_table(f"Largest stress of a flexure at {size}", found.stress, head="instance", notes=["Von Mises; weight included."]),
     ]
@@ -216,7 +216,7 @@ def _page(
     sections: Iterable[Section | None],
     said: str = "",
 ) -> str:
-    """A page that begins with the stage as it moves, `said` below it, and ends with its drawings."""
+    """A page that begins with the animated stage, `said` below it, and ends with its drawings."""
     origin = (("model", provenance), ("physics", digest(mechanism, physics=True)[:16]), ("flexstage", __version__))
     head = Head(mechanism.name or "stage", kind, origin, headline)
     return page(head, [stage_section(data, said=said), *sections, drawing_section(mechanism, data)], {"stage": data})

@@ -1,6 +1,6 @@
-"""Display units and numbers: how an SI value is shown to people. Documents for machines stay in SI and never pass here.
+"""Display units and numbers: how reports show SI values. JSON documents keep SI units.
 
-A unit's preferred display form is left only where the numbers would become unreadable (all below 0.1, or above 100 000).
+The preferred display unit changes only if the numbers would be unreadable (all below 0.1, or above 100 000).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class DisplayUnit:
     factor: float
 
 
-# Per SI unit its display units, the preferred one first.
+# Display units of each SI unit, the preferred one first.
 UNITS: dict[str, str] = {
     "m": "um, pm, nm, mm, m",
     "rad": "urad, nrad, mrad, rad",
@@ -81,7 +81,7 @@ def _factor(name: str, unit: str) -> float:
 
 
 def display_unit_of(unit: str, largest: float = 1.0, *shown: str) -> DisplayUnit:
-    """The display unit of an SI unit for values up to `largest` [SI]: one of those `shown`, else the one that suits the values.
+    """The display unit of an SI unit for values up to `largest` [SI]: one of those `shown`, else the best for the values.
 
     >>> display_unit_of("N/m", 15e6).unit, display_unit_of("m", 5e-9).unit, display_unit_of("rad/m").unit
     ('N/um', 'nm', 'urad/um')
@@ -108,7 +108,7 @@ def preferred_unit(unit: str) -> DisplayUnit:
 
 @lru_cache(maxsize=256)
 def field_unit(quantity: Quantity) -> DisplayUnit:
-    """The unit a description's field is shown in: its quantity's, whichever unit of it that is, as of named numbers.
+    """The display unit of a description's field: that of its quantity.
 
     >>> from flexstage.base.units.quantity import ANGLE, LENGTH
     >>> field_unit(LENGTH), round(field_unit(ANGLE).factor, 6)
@@ -118,7 +118,7 @@ def field_unit(quantity: Quantity) -> DisplayUnit:
 
 
 def display_unit(quantity: Quantity | None, unit: str = "") -> DisplayUnit:
-    """The unit in which results of a quantity are shown: `unit`, one of its display units, or where it is absent the quantity's own.
+    """The display unit of results of a quantity: `unit`, one of its display units, or if absent the preferred one.
 
     >>> from flexstage.base.units.quantity import PIEZO_GAIN
     >>> display_unit(PIEZO_GAIN, "um/V"), display_unit(None)
@@ -148,7 +148,7 @@ def number(value: float, digits: int = DIGITS) -> str:
 
 
 def align_numbers(values: Iterable[float], digits: int = DIGITS) -> list[str]:
-    """Numbers of one column with the same decimals: `digits` significant ones for the largest, one more where the smallest needs it.
+    """Numbers of one column with equal decimals: `digits` significant ones for the largest, one more if the smallest needs it.
 
     A column that spans more than four decades keeps significant digits instead.
 
@@ -204,12 +204,12 @@ _SETTING: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ..
     (re.compile(r"\^(-?\d+)"), lambda found: found[1].translate(_SUPERSCRIPT)),
     (re.compile(r"(?<![\w.)])-(?=\d|inf)"), "−"),
 )
-"""What is set otherwise, one after the other."""
+"""Typographic replacements, in this order."""
 
 
 @lru_cache(maxsize=4096)
 def to_typography(text: str) -> str:
-    """Text with units and numbers as a printer sets them: micro sign, true minus, powers; for HTML and figures.
+    """Typeset units and numbers of a text: micro sign, true minus, powers; for HTML and figures.
 
     >>> [to_typography(text) for text in ("-1.2e-05 N/um", "J/m^2", "nm/Hz^0.5", "1 +- 5 um", "digest 9bc8e8")]
     ['−1.2·10⁻⁵ N/µm', 'J/m²', 'nm/√Hz', '1 ± 5 µm', 'digest 9bc8e8']

@@ -1,4 +1,4 @@
-"""Documents of commands: the envelope, which results stand in it together, and what is worded by hand. Results describe themselves."""
+"""Documents of commands: the envelope, combined results, and manual wording. Results describe themselves."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from flexstage.models.linear.frequency import Response
 from flexstage.models.theory import Model
 
 FORMAT = "flexstage result 3"
-_UNLUMPED = "deflection under dead load needs the lumped model"
-_UNSORTED = "it is told of platforms with fewer than six ideal motions, loaded at the point of theirs that is read"
+_UNLUMPED = "deflection under permanent load needs the lumped model"
+_UNSORTED = "requires a platform with fewer than six ideal motions, loaded at its output point"
 _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "budget"}
-"""Fields of an analysis whose document has the name of their command."""
+"""Fields of an analysis whose document is named after their command."""
 
 
 def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: Any, more: Iterable[Finding] = ()) -> Document:
-    """A document: what it is, of which description (absent: of a record alone), by which model and version, caveats, then its `body`.
+    """A document: kind, description (`None`: a record only), model, version, warnings and defaults, then its `body`.
 
-    `body` is a result, or a mapping with results in it. `more` are warnings of the result's own.
+    `body` is a result, or a mapping with results. `more` are further warnings about the result.
 
     >>> envelope("mapping", Mechanism("stage"), None, {"mobility": 6})["name"]
     'stage'
@@ -50,7 +50,7 @@ def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: 
 
 
 def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) -> Document:
-    """The document of a check: whether the design is sound, and its findings; without the envelope's digest and caveats if it is not.
+    """The document of a check: whether the design is sound, and its errors; without the envelope's digest and warnings if it is not.
 
     >>> check_document(None, [Finding("B4/pivot", "it is thin", "Thicken it")])["sound"]
     False
@@ -63,7 +63,7 @@ def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) 
 
 
 def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
-    """Every result of an analysis under its command's name; None where model or stage give none."""
+    """Every result of an analysis under its command's name; `None` if the model or the stage has none."""
     damping = None if analysis.linear is None else analysis.linear.damping
     return {
         "mapping": analysis.kinematics,
@@ -76,6 +76,8 @@ def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
         "transmissibility": None if analysis.transmissibility is None else response_body(analysis.transmissibility, damping),
         "workspace": analysis.workspace,
         **({} if analysis.force_workspace is None else {"force_workspace": analysis.force_workspace}),
+        **({} if analysis.drive_force is None else {"drive_force": analysis.drive_force}),
+        **({} if analysis.stress is None else {"stress": analysis.stress}),
         "buckling": analysis.buckling,
         **({} if analysis.ends is None else {"ends": analysis.ends}),
         "drift": analysis.drift,
@@ -85,7 +87,7 @@ def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
 
 
 def analysis_body(analysis: Analysis) -> Document:
-    """Requirements first, then every analysis under its command's name; null with a reason where the model or the stage gives none.
+    """Requirements first, then every analysis under its command's name; null with a reason if the model or the stage has none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -109,7 +111,7 @@ def stiffness_body(
     mass: MassMatrix | None = None,
     missing: Mapping[str, str] | None = None,
 ) -> SideBySide:
-    """Statics of the platform, its stiffness by freedom where fewer than six are left, its mass, and its deflection under dead load."""
+    """Statics of the platform, its stiffness by DOF if fewer than six are free, its mass, and its deflection under permanent load."""
     reasons = {} if freedoms is not None else {"freedoms": (missing or {}).get("freedoms", _UNSORTED)}
     reasons |= {} if deflection is not None else {"dead_load": _UNLUMPED}
     return SideBySide((statics, {"freedoms": freedoms, "mass": mass, "dead_load": deflection, "reasons": reasons}))

@@ -1,4 +1,4 @@
-"""Listings: the shipped cases, the catalogue and findings as tables."""
+"""Listings: the shipped cases, the catalogue and errors as tables."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def case_table() -> Table | None:
 
 
 def parameter_table(name: str) -> Table | None:
-    """The parameters of a shipped case: name, quantity, value. Raises `DesignError` with the nearest name where there is no such case.
+    """The parameters of a shipped case: name, quantity, value. Raises `DesignError` with the nearest name for an unknown case.
 
     >>> parameter_table("parallelogram").texts()[-2]
     ['spacing', 'length', '50 mm']
@@ -53,12 +53,12 @@ def find_section(catalogue: Catalogue, name: str) -> Catalogue:
     ['Gauge']
     """
     if name not in (names := [section.name for section in catalogue.sections]):
-        raise refuse(name, "the catalogue has no such section", suggest_nearest(name, names))
+        raise refuse(name, "unknown section", suggest_nearest(name, names))
     return replace(catalogue, sections=tuple(section for section in catalogue.sections if section.name == name))
 
 
 def catalogue_body(catalogue: Catalogue) -> dict[str, Any]:
-    """The catalogue as plain values: section, entry, and its values as they would stand in a design file; and the sources.
+    """The catalogue as plain values: section, entry, and its values as written in a design file; and the sources.
 
     >>> from flexstage.mechanism.catalogue import Catalogue
     >>> catalogue_body(Catalogue((), {}).extended({"materials": {"steel": {"young": "200 GPa"}}}))["materials"]

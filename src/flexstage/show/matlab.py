@@ -1,4 +1,4 @@
-"""MATLAB files (v5): mappings, matrices and state space of a stage under their names in the field, with names and units beside them."""
+"""MATLAB files (v5): mappings, matrices and state space of a stage under textbook names, with row and column names and units."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _write_mat(variables: dict[str, Any]) -> bytes:
 def to_mat(result: Any) -> bytes:
     """The MATLAB v5 file of a result, its parts as structs of columns, those of matrices with `values`, `rows`, `columns` and `unit`.
 
-    Names are those of the document, with `_` for what MATLAB takes in no name; SI units.
+    Names are those of the document, with `_` for characters that MATLAB names cannot contain; SI units.
 
     >>> import scipy.io
     >>> scipy.io.loadmat(io.BytesIO(to_mat({"loss": {"B/1": 0.1}})), simplify_cells=True)["loss"]
@@ -61,7 +61,7 @@ def to_mat(result: Any) -> bytes:
 
 
 def _identifier(name: str) -> str:
-    """A name as MATLAB takes it: letters, digits and _, beginning with a letter."""
+    """A valid MATLAB name: letters, digits and _, beginning with a letter."""
     return re.sub(r"^(?![A-Za-z])", "x", re.sub(r"\W", "_", name, flags=re.ASCII))[:63]
 
 
@@ -70,7 +70,7 @@ def _matrix(matrix: Matrix) -> dict[str, Any]:
 
 
 def _sheet(sheet: Sheet) -> dict[str, Any]:
-    """Columns; where the rows are all combinations of names, the names once and arrays of as many axes."""
+    """Columns; if the rows are all combinations of names, the names once and arrays with one axis for each name."""
     ends = [tuple(dict.fromkeys(each)) for each in sheet.names.values()]
     whole = len(ends) > 1 and list(zip(*sheet.names.values(), strict=True)) == list(product(*ends))
     names, shape = (ends, [len(each) for each in ends]) if whole else (list(sheet.names.values()), [-1])
@@ -89,10 +89,10 @@ def _words(value: Any) -> str:
 
 
 def mat_variables(analysis: Analysis) -> dict[str, Any]:
-    """Variables of the MATLAB file: R_a, R_s, and of elastic models K, M, B, C, D, frequencies and state space.
+    """Variables of the MATLAB file: R_a, R_s, and for elastic models K, M, B, C, D, frequencies and state space.
 
-    M q'' + K q = B u, y = C q + D u. What a model or a stage does not have is left out, and `notes` says why. SI units; names and
-    units of rows and columns in cell arrays.
+    M q'' + K q = B u, y = C q + D u. Variables that a model or a stage does not have are left out, with the reason in `notes`. SI units;
+    names and units of rows and columns in cell arrays.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -155,7 +155,7 @@ def _channels(kind: str, channels: tuple[Channel, ...]) -> dict[str, Any]:
 
 
 def _state_space(model: LinearModel, notes: list[str]) -> dict[str, Any]:
-    """State space from all inputs to what is seen from outside: twists of platform and points, gauges."""
+    """State space from all inputs to the external outputs: twists of platform and points, gauges."""
     places = {each.name.rpartition(".")[0] for each in model.inputs if each.unit != "m"}
     seen = [each.name for each in model.outputs if each.name.rpartition(".")[0] in places | {""}]
     try:

@@ -56,9 +56,9 @@ _TABLES: Mapping[type, Callable[[Any], Iterable[Table | None]]] = {
 
 
 def to_html(value: Any) -> str:
-    """A stage's picture, or the tables that sum a result up: those that a person made of it, else one for each of its parts.
+    """A stage's picture, or the tables that summarise a result: its own tables, else one for each part.
 
-    A stage that cannot be drawn is told with what is wrong with it.
+    A stage that cannot be drawn is replaced by its errors.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")

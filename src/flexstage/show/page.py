@@ -1,4 +1,4 @@
-"""A page of HTML that stands alone: sections of prose, tables and pictures, style inside, nothing loaded from anywhere."""
+"""A self-contained HTML page: sections of prose, tables and pictures, inline style, nothing loaded."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Prose:
 class Picture:
     """An SVG element with a caption (plain text); `plays` is the motion of the page's viewer that it shows ("mode 1").
 
-    `reading` is what a cursor over it reads, of `show.figures.reading`.
+    `reading` is the data for its cursor, from `show.figures.reading`.
     """
 
     svg: str
@@ -40,9 +40,9 @@ class Picture:
 
 @dataclass(frozen=True)
 class Viewer:
-    """A stage that turns and moves: the page's data called `key`, beginning with a `motion` ("mode 1"), data called `ghost` behind it.
+    """An animated stage: the page's data named `key`, starting with a `motion` ("mode 1"), with data named `ghost` behind it.
 
-    `instead` stands there in print, and where there are no scripts or no WebGL.
+    `instead` replaces it in print, and without scripts or WebGL.
     """
 
     key: str
@@ -53,7 +53,7 @@ class Viewer:
 
 @dataclass(frozen=True)
 class Joined:
-    """Two viewers side by side: where a motion of one is chosen, its partner plays in the other."""
+    """Two viewers side by side: a motion chosen in one plays its counterpart in the other."""
 
     viewers: tuple[Viewer, Viewer]
     partners: tuple[tuple[str, str], ...]
@@ -61,7 +61,7 @@ class Joined:
 
 @dataclass(frozen=True)
 class Fact:
-    """A number that sums something up: what it is, its value with unit, a remark."""
+    """A summary value: name, value with unit, remark."""
 
     name: str
     value: str
@@ -77,7 +77,7 @@ class Facts:
 
 @dataclass(frozen=True)
 class Abreast:
-    """Blocks side by side where there is room: `narrow` in columns of a third, else of a half."""
+    """Blocks side by side if the width allows: `narrow` in columns of a third, else of a half."""
 
     blocks: tuple[Block, ...]
     narrow: bool = False
@@ -93,7 +93,7 @@ class Folded:
 
 @dataclass(frozen=True)
 class Legend:
-    """Names of colours: pairs of a CSS colour and what it stands for."""
+    """Names of colours: pairs of a CSS colour and its meaning."""
 
     entries: tuple[tuple[str, str], ...]
 
@@ -111,7 +111,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Headline:
-    """What a page comes to, in one line; `good` says whether that is well, absent where nothing was asked."""
+    """The summary of a page in one line; `good` is its verdict, `None` without requirements."""
 
     text: str
     good: bool | None = None
@@ -119,7 +119,7 @@ class Headline:
 
 @dataclass(frozen=True)
 class Head:
-    """What stands on top of a page: title, kind of page and headline; at its end, what it was made from, as pairs of a name and a value."""
+    """The top of a page: title, kind of page and headline; its sources for the end of the page, as pairs of a name and a value."""
 
     title: str
     kind: str
@@ -128,7 +128,7 @@ class Head:
 
 
 def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
-    """A section of the blocks that exist; `None` where there are none.
+    """A section of the blocks that exist; `None` if there are none.
 
     >>> section("Empty", [None]) is None
     True
@@ -138,7 +138,7 @@ def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
 
 
 def fold(title: str, *blocks: Block | None) -> Folded | None:
-    """The blocks that exist, shown on demand; `None` where there are none.
+    """The blocks that exist, shown on demand; `None` if there are none.
 
     >>> fold("Empty", None) is None
     True
@@ -148,10 +148,9 @@ def fold(title: str, *blocks: Block | None) -> Folded | None:
 
 
 def page(head: Head, sections: Iterable[Section | None], stages: Mapping[str, StageData] = MappingProxyType({})) -> str:
-    """The whole page as HTML, of the sections that exist; every text that comes in is escaped, SVG is taken as it is.
+    """The HTML page with the existing sections; every text is escaped, SVG is inserted unchanged.
 
-    `stages` are the data of its viewers by key. Of scripts the browser runs the page's own alone, and it may load nothing: the page's
-    policy says so.
+    `stages` are the data of its viewers by key. The content security policy allows only the page's own scripts and no loading.
 
     >>> "<h1>a &lt; b</h1>" in page(Head("a < b", "report", ()), [Section("One", (Prose("x"),))])
     True
@@ -164,7 +163,7 @@ def page(head: Head, sections: Iterable[Section | None], stages: Mapping[str, St
 
 
 def _policy(scripts: Iterable[str]) -> str:
-    """What the browser may do: run these scripts, apply styles inside, show pictures inside; load nothing."""
+    """Content security policy: these scripts, inline styles and inline pictures; no loading."""
     sums = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(each.encode()).digest()).decode()}'" for each in scripts)
     return f"default-src 'none'; script-src {sums}; style-src 'unsafe-inline'; img-src data: blob:"
 

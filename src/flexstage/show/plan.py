@@ -1,4 +1,4 @@
-"""The dimensioned plan: the stage from above as a workshop would draw it, with radii, angles, names and sizes in mm."""
+"""The dimensioned plan: the stage from above as a workshop drawing, with radii, angles, names and sizes in mm."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _PLATE = {"boxstyle": "round,pad=0.15", "facecolor": PAPER, "edgecolor": "none",
 
 @dataclass(frozen=True)
 class Ring:
-    """Copies on a circle: their names, radius [mm], position angle of the first [deg] and angular step [deg]."""
+    """Instances on a circle: their names, radius [mm], position angle of the first [deg] and angular step [deg]."""
 
     names: tuple[str, ...]
     radius: float
@@ -39,7 +39,7 @@ class Ring:
 
 
 def rings(mechanism: Mechanism) -> tuple[Ring, ...]:
-    """The circles on which units and gauges stand.
+    """The circles of units and gauges.
 
     >>> rings(Mechanism(""))
     ()
@@ -62,7 +62,7 @@ def _ring(names: tuple[str, ...], pattern: Polar) -> Ring:
 def plan_figure(mechanism: Mechanism, data: StageData) -> Any:
     """The stage from above with dimensions in mm, as a matplotlib Figure.
 
-    Drawn are outlines of bodies and parts, the circles units and gauges stand on with radius and position angles, envelope and opening.
+    Drawn are outlines of bodies and parts, circles of units and gauges with radius and position angles, envelope and aperture.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import still_data
@@ -94,7 +94,7 @@ def _reach(mechanism: Mechanism, data: StageData, middle: Array) -> Array:
 
 
 def _outlines(axes: Any, data: StageData) -> None:
-    """Every part as the convex outline of its plan; of the platform its edges alone, holes' included."""
+    """Every part as the convex outline of its plan; of the platform only its edges, including holes."""
     from matplotlib.collections import PolyCollection
 
     mesh, flat = data.mesh, 1e3 * data.mesh.points[:, :2]
@@ -110,7 +110,7 @@ def _rectangle(axes: Any, size: Sequence[float], colour: str, centre: Sequence[f
 
 
 def _rectangles(axes: Any, mechanism: Mechanism, middle: Array) -> None:
-    """Envelope and clear opening, with their names: the opening lies about the stage's axis, the envelope about all that takes up room."""
+    """Envelope and aperture with their names: the aperture is centred on the stage's axis, the envelope on all outlines."""
     if mechanism.envelope is not None:
         size, (x, y) = [1e3 * first_value(value) for value in mechanism.envelope[:2]], middle
         _rectangle(axes, size, MUTED, (x, y))
@@ -127,7 +127,7 @@ def _size_text(name: str, size: Sequence[float]) -> str:
 
 
 def _outline_middle(mechanism: Mechanism) -> Array:
-    """Middle (x, y) [mm] of the box around all outlines: an envelope says how much room there is, not where."""
+    """Middle (x, y) [mm] of the box around all outlines: an envelope has a size but no position."""
     found = outlines(expand(mechanism)) if mechanism.envelope is not None else ()
     if not found:
         return np.zeros(2)
@@ -144,7 +144,7 @@ def _axes_of_symmetry(axes: Any, reach: Array) -> None:
 
 
 def _rings(axes: Any, found: tuple[Ring, ...]) -> None:
-    """Circles with their radii, and a ray to each first copy with its position angle; `taken` are places of other texts."""
+    """Circles with their radii, and a ray to the first instance of each with its position angle."""
     circle = np.linspace(0.0, 2.0 * np.pi, 121)
     for angle in sorted({round(ring.first % 360.0, 6) for ring in found} - {0.0}):
         _ray(axes, np.deg2rad(angle), max(ring.radius for ring in found if round(ring.first % 360.0, 6) == angle))

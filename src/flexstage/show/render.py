@@ -1,4 +1,4 @@
-"""Renderers: tables as HTML, by templates, and for the terminal."""
+"""Renderers: tables as HTML from templates, and for the terminal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.show.table import PAGE_ROWS, Cell, Column, Mark, Table, first_row
 if TYPE_CHECKING:
     import jinja2
 else:
-    jinja2 = Late("jinja2")  # tables on a terminal need none of it
+    jinja2 = Late("jinja2")  # not needed for a terminal
 
 _STYLES = {
     Mark.STRONG: "bold",
@@ -33,7 +33,7 @@ _STYLES = {
 
 
 def to_html(table: Table) -> str:
-    """The table as HTML without style of its own; classes say what cells mean, all texts are escaped.
+    """The table as HTML without style; classes give the meaning of cells, all texts are escaped.
 
     >>> from flexstage.show.table import make_table
     >>> to_html(make_table("a < b", ["x"], [("1",)]))
@@ -44,7 +44,7 @@ def to_html(table: Table) -> str:
 
 @functools.cache
 def templates() -> Any:
-    """The macros of `static/page.html`: every text that comes in is typeset and escaped."""
+    """The macros of `static/page.html`: every inserted text is typeset and escaped."""
     loader = jinja2.PackageLoader("flexstage.show", "static")
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, finalize=_typeset)
     environment.filters |= _FILTERS
@@ -60,9 +60,9 @@ def _anchor(title: str) -> str:
 
 
 _WORDY = 28
-"""Signs in a cell beside a name from which a table does not fit a narrow screen; its rows are stacked there."""
+"""Smallest length of a cell next to a name [characters] for which a table is stacked on narrow screens."""
 _LONG = 12
-"""Signs in a name from which it may be broken where the screen is narrow."""
+"""Smallest length of a name [characters] for which it may be broken on narrow screens."""
 
 
 def _has_long_names(table: Table) -> bool:
@@ -82,7 +82,7 @@ def _kind(block: object) -> str:
 
 
 def _attributes(cell: Cell, column: Column) -> str:
-    """What says how a cell looks."""
+    """Attributes for the style of a cell."""
     marked = {"number": column.numeric, cell.mark.value: cell.mark is not Mark.PLAIN, "bar": cell.bar is not None}
     classes = " ".join(name for name, told in marked.items() if told)
     share = "" if cell.bar is None else f' style="--share:{cell.length:.3f}"'
@@ -107,17 +107,17 @@ _INNER_BREAKS = re.compile(r"(?<=[./,_-])(?=[A-Za-z])")
 
 @dataclass(frozen=True)
 class _Span:
-    """How wide a column is at least, its words whole, and at most, its lines whole."""
+    """Width of a column: at least its longest word, at most its longest line."""
 
     least: int
     most: int
 
 
 def to_rich(table: Table, width: int) -> Iterator[Any]:
-    """What is printed of a table on so many columns of the terminal: its title, the table, its notes.
+    """The printed parts of a table on a terminal with this number of columns: title, table, notes.
 
-    Texts are broken between words, never within, and numbers stay with their units. Columns for which there is no place stand in a table
-    below, their rows named anew.
+    Texts are broken between words only, and numbers stay with their units. Columns that do not fit are printed in further tables
+    below, with the row names repeated.
 
     >>> from flexstage.show.table import make_table
     >>> [type(each).__name__ for each in to_rich(make_table("Masses", ["body"], [("platform",)]), 80)]
@@ -141,7 +141,7 @@ def to_rich(table: Table, width: int) -> Iterator[Any]:
 
 
 def _rich_table(table: Table, widths: Mapping[int, int]) -> Any:
-    """The columns that are named, each so wide."""
+    """The columns of these indices with these widths."""
     from rich import box
     from rich.table import Table as RichTable
     from rich.text import Text
@@ -157,7 +157,7 @@ def _rich_table(table: Table, widths: Mapping[int, int]) -> Any:
 
 
 def _span(table: Table, index: int, longest: int | None = None) -> _Span:
-    """A column's span; names longer than the `longest` may be broken within."""
+    """A column's span; names longer than `longest` may be broken."""
     column = table.columns[index]
     texts = [column.head, *(printable(row[index].text, keep="\n") for row in table.rows)]
     unit = cell_len(f"[{column.unit}]") if column.unit else 0
@@ -174,7 +174,7 @@ def _words(text: str) -> list[str]:
 
 
 def _panels(spans: Sequence[_Span], width: int) -> list[dict[int, _Span]]:
-    """The columns in as many tables as the width asks for; the first column, which names the rows, stands in each."""
+    """The columns in as many tables as the width requires; the first column, with the row names, is in each."""
     panels: list[dict[int, _Span]] = []
     for index, span in enumerate(spans):
         if panels and _total([*(each.least for each in panels[-1].values()), span.least]) <= width:
@@ -190,7 +190,7 @@ def _total(widths: Iterable[int]) -> int:
 
 
 def _fit(spans: Mapping[int, _Span], width: int) -> dict[int, int]:
-    """Widths of columns that fit, taken from the widest that can give."""
+    """Widths of columns that fit, reduced from the widest."""
     found = {index: span.most for index, span in spans.items()}
     while _total(found.values()) > width:
         able = [index for index, span in spans.items() if found[index] > span.least]
@@ -206,12 +206,12 @@ def _head_text(column: Column, width: int) -> str:
 
 
 def _fill(text: str, width: int) -> str:
-    """The text on lines of so many cells, broken between words, within long names after a dot or a slash."""
+    """The text on lines of at most this width, broken between words, within long names after a dot or a slash."""
     return "\n".join(line for each in printable(text, keep="\n").split("\n") for line in fold(each, width))
 
 
 def fold(text: str, width: int) -> list[str]:
-    """A line on lines of so many cells, broken between words; names that are longer after a dot or a slash, numbers never from their units.
+    """A line on lines of at most this width, broken between words, in longer names after a dot or a slash; numbers keep their units.
 
     >>> fold("at least 50 um at parts.neck.thickness", 15)
     ['at least 50 um', 'at parts.neck.', 'thickness']

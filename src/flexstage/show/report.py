@@ -1,4 +1,4 @@
-"""The report of a complete analysis: one HTML file that stands alone and is the same for the same input."""
+"""The report of a complete analysis: one self-contained HTML file, identical for identical input."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from flexstage.show.viewer.motions import Group
 
 @check_arguments
 def report(analysis: Analysis, compared: Comparison | None = None) -> str:
-    """The analysis of a stage as a self-contained HTML page: verdict and stage first, nothing loaded, no date.
+    """The analysis of a stage as a self-contained HTML page: verdict and stage first, no date.
 
-    With `compared`, the values that were set and what that did stand after the requirements, as old, new and change.
-    Results that the model or the stage does not give are left out, with the reasons under "Limits". One design; of a
+    With `compared`, the changed values and their effects follow the requirements, as old, new and change.
+    Results that the model or the stage does not have are left out, with the reasons under "Limits". One design; of a
     batch the first is shown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -61,7 +61,7 @@ def report(analysis: Analysis, compared: Comparison | None = None) -> str:
 
 
 def _turning(analysis: Analysis) -> StageData:
-    """The stage for its viewer, with what its model knows: of the ideal one motions of the platform alone."""
+    """The stage for its viewer, with the motions of its model: for the ideal one only those of the platform."""
     weighed = analysis.felt if analysis.felt is not analysis.linear else None
     data = stage_data(analysis.mechanism, model=analysis.linear, weighed=weighed, kinematics=analysis.kinematics, found=analysis.modes)
     return data if analysis.linear is not None else replace(data, motions=tuple(each for each in data.motions if each.group is Group.AXIS))

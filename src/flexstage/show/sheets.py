@@ -1,4 +1,4 @@
-"""Results for other programs, part by part: CSV, pandas, xarray. Full precision, SI units; parts are those of `base.sheet`."""
+"""Results for other programs, part by part: CSV, pandas, xarray. Full precision, SI units; `base.sheet` defines the parts."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _FORMULA = ("=", "+", "-", "@")
 
 @check_arguments
 def to_csv(result: Any) -> dict[str, str]:
-    r"""Every part of a result as CSV (RFC 4180), by its path: names first, numbers as they are, SI units in the heads.
+    r"""Every part of a result as CSV (RFC 4180), by its path: names first, unformatted numbers, SI units in the heads.
 
     Texts that a spreadsheet would run as formulas (`=`, `+`, `-`, `@` first) begin with an apostrophe.
-    A number that is not known is an empty cell. Where the columns of a matrix have no unit in common, each row has its unit beside it;
-    where rows have none either, each entry is a row.
+    An unknown number is an empty cell. If the columns of a matrix have no common unit, each row states its unit; if rows have none
+    either, each entry is a row.
 
     >>> to_csv({"gain": 2.0, "loss": {"B1": 0.1}})
     {'': 'gain\r\n2.0\r\n', 'loss': 'name,loss\r\nB1,0.1\r\n'}
@@ -33,14 +33,14 @@ def to_csv(result: Any) -> dict[str, str]:
 
 def _lines(part: Sheet | Matrix) -> Iterator[Sequence[Any]]:
     grid = grid_of(part)
-    units = grid.units if isinstance(part, Matrix) else ("",) * len(grid.heads)  # heads of sheets are keys, which end in units
+    units = grid.units if isinstance(part, Matrix) else ("",) * len(grid.heads)  # heads of sheets are keys that end in units
     yield [f"{head} [{unit}]" if unit else head for head, unit in zip(grid.heads, units, strict=True)]
     yield from grid.rows
 
 
 @dataclass(frozen=True)
 class Grid:
-    """A part of a result as a spreadsheet has it: heads, their SI units, and rows, whose first cells are names, so many as `named`."""
+    """A part of a result as a spreadsheet: heads, their SI units, and rows, whose first `named` cells are names."""
 
     heads: tuple[str, ...]
     units: tuple[str, ...]
@@ -49,7 +49,7 @@ class Grid:
 
 
 def grid_of(part: Sheet | Matrix) -> Grid:
-    """The grid of a part; a matrix whose units no columns have in common has them beside its rows, or beside its entries, a row each.
+    """The grid of a part; units of a matrix are in the heads, else in each row, else in a row for each entry.
 
     >>> import numpy as np
     >>> grid_of(Matrix(np.array([[2.0, 3.0]]), ("x",), ("a", "b"), (("m", "N"),)))
@@ -90,9 +90,9 @@ def _cell(value: Any) -> Any:
 
 @check_arguments
 def to_pandas(result: Any) -> dict[str, Any]:
-    """Every part of a result as a pandas frame, by its path; the names of rows are the index (extra `tables`).
+    """Every part of a result as a pandas frame, by its path; row names are the index (extra `tables`).
 
-    Units stand in the names of columns, and those of matrices in `attrs["unit"]`.
+    Units are in the names of columns, and those of matrices in `attrs["unit"]`.
     """
     return {path: part.to_pandas() if isinstance(part, Matrix) else _frame(part) for path, part in parts(result)}
 

@@ -1,4 +1,4 @@
-"""Tables: results laid out for people, independent of where they are shown."""
+"""Tables: results in a layout for readers, independent of the output format."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ class Cell:
 
     @property
     def length(self) -> float:
-        """The bar's share, not beyond the cell."""
+        """The bar's share, limited to the cell."""
         return min(max(self.bar or 0.0, 0.0), 1.0)
 
 
 @dataclass(frozen=True)
 class Column:
-    """A table's column: head and unit; `numeric` columns are set flush right."""
+    """A table's column: head and unit; `numeric` columns are aligned right."""
 
     head: str
     unit: str = ""
@@ -56,7 +56,7 @@ _MANY = 60
 _PLAIN = Heading()
 _NO_FIELDS: Mapping[str, Field] = {}
 PAGE_ROWS = 300
-"""Rows of a table that a page shows: the freedoms of a thousand bodies were a megabyte that nobody reads."""
+"""Rows of a table in a page: all DOFs of a thousand bodies would need a megabyte."""
 
 Content: TypeAlias = str | Cell
 
@@ -66,7 +66,7 @@ _ColumnCells: TypeAlias = tuple[Column, list[Cell]]
 
 @dataclass(frozen=True)
 class Table(InNotebook):
-    """A table for people: title, columns, rows, notes under it and where its numbers come from."""
+    """A table for readers: title, columns, rows, notes below it and the source of its numbers."""
 
     title: str
     columns: tuple[Column, ...]
@@ -88,7 +88,7 @@ def make_table(
     notes: Iterable[str] = (),
     provenance: str = "",
 ) -> Table:
-    """A table from columns (a text alone is the head of a column of words) and rows of cells (a text alone is a plain cell).
+    """A table from columns (a text is the head of a text column) and rows of cells (a text is a plain cell).
 
     >>> make_table("Masses", ["body", Column("mass", "kg")], [("platform", "14")]).texts()
     [['body', 'mass [kg]'], ['platform', '14']]
@@ -116,7 +116,7 @@ def text_table(
 
 
 def number_cells(values: Iterable[float], form: DisplayUnit, digits: int | None = None) -> list[Cell]:
-    """A column of SI values in a display unit, decimals aligned, or each to as many significant `digits`.
+    """A column of SI values in a display unit, decimals aligned, or each with this number of significant `digits`.
 
     Rounding noise against the column's largest value is shown as 0.
 
@@ -136,11 +136,11 @@ def row_table(
     notes: Iterable[str] = (),
     provenance: str = "",
 ) -> Table:
-    """One row a record, or a name, and a column a field, headed by its name in words with its quantity's unit, or as its `Heading` says.
+    """One row for each record, or name, and one column for each field; a `Heading` or the field's name and unit is the head.
 
-    `source` is a mapping or sequence of records of one kind, or a record. Arrays `Along` names are a row a name, as are labelled matrices.
-    `fields` are those shown, in that order (absent: all that a cell can hold); `head` stands over the names, `path, axis` over two. Values
-    outside of a field's `Bound` are marked.
+    `source` is a mapping or sequence of records of one kind, or a record. Arrays with `Along` names, and labelled matrices, have one
+    row for each name. `fields` are the shown fields in order (absent: all that a cell can show); `head` is the head of the names,
+    `path, axis` for two. Values outside a field's `Bound` are marked.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
@@ -163,12 +163,12 @@ def row_table(
 
 
 def _headed(names: Mapping[str, Iterable[Any]], head: str) -> dict[str, tuple[Any, ...]]:
-    """Names under the heads stated, one each, else under their own."""
+    """Names under the specified heads, one each, else under their own."""
     return dict(zip(head.split(", ") if head else names, map(tuple, names.values()), strict=True))
 
 
 def _row_names(record: Any, paths: Iterable[str]) -> tuple[str, Sequence[Any]]:
-    """What the rows of a record are, and the name of each; a single row without a name where nothing in it stands along names."""
+    """The kind of the rows of a record, and the name of each; a single row without a name if no field has names."""
     found = [field_at(record, path) for path in paths]
     matrix = next((value for _, value in found if isinstance(value, Matrix)), None)
     if matrix is not None:
@@ -178,7 +178,7 @@ def _row_names(record: Any, paths: Iterable[str]) -> tuple[str, Sequence[Any]]:
 
 
 def _spread(values: Iterable[Any], counts: Iterable[int], *, along: bool = False) -> list[Any]:
-    """A value a row: of each record its entries along names, or what it has once, repeated."""
+    """A value for each row: the entries of a record along names, or its single value, repeated."""
     pairs = zip(values, counts, strict=True)
     return [each for value, count in pairs for each in (by_name(value) if along and value is not None else (value,) * count)]
 
@@ -190,7 +190,7 @@ def _values_at(records: Iterable[Any], path: str, counts: Iterable[int]) -> list
 
 
 def _columns_at(records: Sequence[Any], path: str, counts: Sequence[int], names: Sequence[str]) -> Iterator[_ColumnCells]:
-    """The columns of a field: those of a matrix, one of other values, none where it has no value in any row and no word for that."""
+    """The columns of a field: those of a matrix, one for other values, none without a value or text in any row."""
     field, value = field_at(records[0], path)
     if isinstance(value, Matrix):
         yield from matrix_columns(value, result_fields(type(records[0])), field.annotation(Heading) or _PLAIN)
@@ -205,7 +205,7 @@ def _columns_at(records: Sequence[Any], path: str, counts: Sequence[int], names:
 
 
 def merge_rows(table: Table) -> Table:
-    """A table in which rows of equal cells are one, under all of their names; links of copies only with those of the same name.
+    """Merge rows with equal cells under all their names; links of instances only with those of the same name.
 
     >>> merge_rows(make_table("", ["link", "free"], [("B1/tip", "rz"), ("B1/foot", "rz"), ("B2/tip", "rz")])).texts()[1:]
     [['tip (B1, B2)', 'rz'], ['B1/foot', 'rz']]
@@ -230,7 +230,7 @@ def sheet_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance:
 
 
 def column_table(title: str, matrix: Matrix, *, head: str = "", unit: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table:
-    """A labelled matrix whose columns are quantities, as `matrix_columns` shows them; `head` heads the names, `unit` is a display unit.
+    """A labelled matrix whose columns are quantities, as in `matrix_columns`; `head` is the head of the names, `unit` a display unit.
 
     >>> column_table("a", Matrix(np.array([[2e-6, 3.0]]), ("x",), ("low", "share"), (("m", "1"),)), head="along").texts()
     [['along', 'low [um]', 'share'], ['x', '2', '3']]
@@ -251,7 +251,7 @@ def _columns_table(title: str, columns: Sequence[_ColumnCells], notes: Iterable[
 def array_table(
     title: str, record: Any, *fields: str, names: Mapping[str, Iterable[Any]] = MappingProxyType({}), notes: Iterable[str] = ()
 ) -> Table:
-    """Arrays of a record as columns, an entry a row; `names` of the rows by their head."""
+    """Arrays of a record as columns, one row for each entry; `names` of the rows by their head."""
     columns = (field_column(field, list(values)) for field, values in (field_at(record, name) for name in fields))
     return _columns_table(title, [*(_name_column(*each) for each in names.items()), *columns], notes)
 
@@ -264,7 +264,7 @@ def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (
 
 
 def result_table(source: Any, fields: str = "", *, title: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table | None:
-    """The table of a result, or of results in a sequence or by name, as `TABLE` of its class says; `None` where there is none.
+    """The table of a result, or of results in a sequence or by name, from `TABLE` of its class; `None` without one.
 
     `fields` and `title` replace those of `TABLE`.
 
@@ -292,21 +292,21 @@ def result_table(source: Any, fields: str = "", *, title: str = "", notes: Itera
 
 
 def _told(text: str, source: Any, one: Any) -> list[str]:
-    """A note of a result, or of results by name, of each where they differ."""
+    """A note of a result, or of results by name, one for each if they differ."""
     notes = {name: text.format(self=each) for name, each in (source if isinstance(source, Mapping) else {"": one}).items()}
     alike = list(dict.fromkeys(notes.values()))
     return alike if len(alike) == 1 else [f"{name}: {note}" for name, note in notes.items()]
 
 
 def _vertical_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance: str = "") -> Table:
-    """A single row of a sheet, set upright."""
+    """A single row of a sheet as a vertical table."""
     columns = [(each.heading.text, *field_column(each, values)) for each, values in sheet.columns.items()]
     rows = [(Cell(name, Mark.STRONG), cells[0], column.unit) for name, column, cells in columns]
     return make_table(title, ["", Column("value"), "unit"], rows, notes=notes, provenance=provenance)
 
 
 def result_tables(result: Any) -> Iterator[Table]:
-    """A table for every part of a result, headed by its path in the document; of many rows the first ones.
+    """A table for every part of a result, with its path in the document as head; long tables show their first rows.
 
     >>> [table.title for table in result_tables({"gain": 2.0, "loss": {"B1": 0.1, "B2": 0.2}})]
     ['', 'loss']
@@ -322,7 +322,7 @@ def result_tables(result: Any) -> Iterator[Table]:
 
 
 def first_rows(table: Table, most: int) -> Table:
-    """A table without the rows beyond so many, which a note counts.
+    """A table limited to `most` rows; a note counts the others.
 
     >>> first_rows(make_table("", ["body"], [("b1",), ("b2",), ("b3",)]), 1).notes
     ('2 further rows.',)
@@ -332,7 +332,7 @@ def first_rows(table: Table, most: int) -> Table:
 
 
 def further(rest: int) -> str:
-    """How many rows are not shown, in words.
+    """The number of rows not shown, as a sentence.
 
     >>> further(12)
     '12 further rows.'
@@ -341,7 +341,7 @@ def further(rest: int) -> str:
 
 
 def field_column(field: Field, values: Sequence[Any], units: Sequence[str] = ()) -> _ColumnCells:
-    """The column of a field and its cells, for tables beside other columns; `units`: the SI unit of each value.
+    """The column of a field and its cells, for tables with further columns; `units`: the SI unit of each value.
 
     >>> from flexstage.base.units.quantity import SHARE, STIFFNESS
     >>> from flexstage.base.record import Heading
@@ -363,7 +363,7 @@ def field_column(field: Field, values: Sequence[Any], units: Sequence[str] = ())
 
 
 def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> _ColumnCells:
-    """The column of a field and its cells, not graded."""
+    """The column of a field and its cells, without bars."""
     heading, quantity = field.heading, field.annotation(Quantity)
     form = display_unit(quantity, heading.unit)
     if field.type == tuple[float, float] and not any(isinstance(each, NUMBERS) for each in values):
@@ -381,7 +381,7 @@ def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> 
     elif form.unit == "%":
         shares = _zero_noise(numbers, 1.0).tolist()
         cells = [Cell(percent(each, heading.digits or 4), bar=each if quantity == SHARE else None) for each in shares]
-    elif quantity is None and not units:  # numbers of who knows what beside one another: none is noise against the others
+    elif quantity is None and not units:  # numbers of unknown units: noise cannot be identified
         cells = [Cell(text, _mark_of(text)) for text in (number(each, heading.digits or DIGITS) for each in numbers.tolist())]
     else:
         cells = number_cells(numbers, form, heading.digits)
@@ -407,7 +407,7 @@ def interval_text(low: float, high: float) -> str:
 
 
 def matrix_columns(matrix: Matrix, fields: Mapping[str, Field] = _NO_FIELDS, heading: Heading = _PLAIN) -> Iterator[_ColumnCells]:
-    """The columns of a labelled matrix (first design): numbers in one display unit where they share an SI unit, else each with its own.
+    """The columns of a labelled matrix (first design): numbers with a common SI unit in one display unit, else each with its own.
 
     A column named as one of `fields` has its heading and bound, others that of the matrix.
 
@@ -421,7 +421,7 @@ def matrix_columns(matrix: Matrix, fields: Mapping[str, Field] = _NO_FIELDS, hea
 
 
 def _cells_with_units(values: Array, units: Sequence[str], digits: int | None = None) -> list[Cell]:
-    """Values each with the display unit that suits it; rounding noise against the largest of the same unit is 0."""
+    """Values each with its best display unit; rounding noise against the largest of the same unit is 0."""
     owns = np.array(units)
     kept = [_zero_noise(np.where(owns == unit, values, 0.0))[place] for place, unit in enumerate(units)]
     return [_with_unit(float(value), unit, digits or DIGITS) for value, unit in zip(kept, units, strict=True)]
@@ -436,7 +436,7 @@ def _cell_text(value: Any) -> str:
 
 
 def _zero_noise(values: Array, least: float = 0.0) -> Array:
-    """A column of values in which rounding noise against its largest, or `least` where that is more, is 0."""
+    """Replace rounding noise against the column's largest value, or `least` if that is larger, by 0."""
     largest = np.max(np.abs(values[np.isfinite(values)]), initial=least)
     return np.where(np.isfinite(values) & (np.abs(values) < NOISE * largest), 0.0, values)
 
@@ -452,9 +452,9 @@ def matrix_table(
 ) -> Table:
     """A labelled matrix (first design of a batch) in display units.
 
-    Rows and columns carry units and an entry is in row unit per column unit; where the entries' units are no such ratios, each entry
-    carries its own. `against` sets the scale of rounding noise; `units` are display units that
-    replace the preferred ones (with mrad, lever arms are in mm).
+    Rows and columns have units, and an entry is in row unit per column unit; if the entries' units are not such ratios, each entry
+    has its own. `against` sets the scale of rounding noise; `units` replace the preferred display units
+    (with mrad, lever arms are in mm).
 
     >>> table = matrix_table("K", Matrix(np.array([[2e6]]), ("fx",), ("x",), (("N/m",),)))
     >>> table.texts()
@@ -478,7 +478,7 @@ def matrix_table(
 
 
 def short_names(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Names without the owner that all of them have in common.
+    """Names without a common owner.
 
     >>> short_names(("platform.x", "platform.y")), short_names(("platform.x", "chuck.x")), short_names(("B1", "B2"))
     (('x', 'y'), ('platform.x', 'chuck.x'), ('B1', 'B2'))
@@ -496,7 +496,7 @@ _ENDS = ("m", "rad", "N", "N m", "K", "K/m", "V", "1")
 
 
 def _ends(matrix: Matrix) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
-    """Units of rows and columns of which every entry's unit is the ratio; `None` if there are none."""
+    """Units of rows and columns whose ratios are the units of all entries; `None` if none exist."""
     units = _entry_units(matrix)
     if isinstance(matrix.unit, str):
         return None if matrix.unit != "1" else (("1",) * len(matrix.rows), ("1",) * len(matrix.columns))
@@ -556,7 +556,7 @@ def first_design(values: Array, axes: int) -> Array:
 
 
 def batch_note(values: Array, axes: int) -> tuple[str, ...]:
-    """What is said under a table of a batch's first design; nothing for a single one.
+    """The note under a table of a batch's first design; nothing for a single design.
 
     >>> batch_note(np.ones((4, 2, 2)), 2)
     ('The first of 4 designs.',)

@@ -1,4 +1,4 @@
-"""Results as an Excel workbook (XLSX): a sheet a part (see `base.sheet`), numbers as numbers in SI units, and where they come from."""
+"""Results as an Excel workbook (XLSX): a sheet for each part (see `base.sheet`), numbers in SI units, and their source."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PROVENANCE = "provenance"
 _LONGEST_NAME = 31
 _FORBIDDEN = re.compile(r"[\[\]:*?/\\]")
 _MOST_ROWS, _MOST_COLUMNS, _LONGEST_TEXT = 1_048_576, 16_384, 32_767
-_LARGEST = 9.99999999999999e307  # that a cell takes; 16 digits of the largest float are beyond all floats
+_LARGEST = 9.99999999999999e307  # of a cell; the largest float rounded to 16 digits is infinite
 _WIDEST = 40
 _WRITTEN = datetime(1980, 1, 1)  # noqa: DTZ001 (a workbook's dates have no zone; equal results are equal files)
 
@@ -30,9 +30,9 @@ _WRITTEN = datetime(1980, 1, 1)  # noqa: DTZ001 (a workbook's dates have no zone
 def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
     """Every part of a result as a sheet of an XLSX file: heads, SI units below them, then names and numbers of 16 digits.
 
-    What is not known is an empty cell, infinity and what a cell does not take (1e308) a text. The last sheet says where the numbers come
-    from: flexstage's version and what is said in `about`. Equal results are equal bytes. Raises `DesignError` for tables that are longer or
-    wider than a sheet.
+    Unknown values are empty cells; infinity and numbers too large for a cell (1e308) are texts. The last sheet lists the source: the
+    version of flexstage and the entries of `about`. Equal results are equal bytes. Raises `DesignError` for tables longer or wider than a
+    sheet.
 
     >>> to_xlsx({"gain": 2.0, "loss": {"B1": 0.1}})[:2]
     b'PK'
@@ -53,7 +53,7 @@ def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
 def _write(sheet: Any, grid: Grid, head: Any, unit: Any) -> None:
     if len(grid.rows) + 2 > _MOST_ROWS or len(grid.heads) > _MOST_COLUMNS:
         size = f"{len(grid.rows)} rows and {len(grid.heads)} columns"
-        raise refuse(sheet.name, f"{size} are more than a sheet of a workbook holds", "Write CSV files: --csv FOLDER")
+        raise refuse(sheet.name, f"{size} exceed the limits of a worksheet", "Write CSV files: --csv FOLDER")
     for row, line in enumerate((grid.heads, grid.units)):
         for column, text in enumerate(line):
             if text:
@@ -67,7 +67,7 @@ def _write(sheet: Any, grid: Grid, head: Any, unit: Any) -> None:
 
 
 def _write_cell(sheet: Any, row: int, column: int, value: Any) -> None:
-    """A cell: a number as a number, all else as text; nothing where nothing is known."""
+    """A cell: a number as a number, others as text; empty if unknown."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return
     if isinstance(value, bool):
@@ -104,7 +104,7 @@ def _about(result: Any, about: Mapping[str, Any]) -> Grid:
 
 
 def sheet_names(paths: Sequence[str]) -> list[str]:
-    """Names that Excel takes, one a path: 31 characters, none of `[ ] : * ? /` and backslashes, unlike each other in whatever case.
+    """Valid Excel names, one for each path: 31 characters, without `[ ] : * ? /` and backslashes, different also without regard to case.
 
     >>> sheet_names(["", "modes", "Modes", "a/b", "statics.stiffness.by_direction.principal"])
     ['result', 'modes', 'Modes (2)', 'a_b', 'by_direction.principal']
@@ -121,7 +121,7 @@ def sheet_names(paths: Sequence[str]) -> list[str]:
 
 
 def _last_parts(path: str) -> str:
-    """As much of a path's end as there is place for."""
+    """The end of a path that fits."""
     while len(path) > _LONGEST_NAME and "." in path:
         path = path.partition(".")[2]
     return path

@@ -1,4 +1,4 @@
-"""The solid wing: a stage as three-dimensional elastic bodies, and theory beside it."""
+"""The solid package: a stage as three-dimensional elastic bodies, compared with theory."""
 
 from flexstage.base.lazy import lazy_attributes
 

@@ -1,4 +1,4 @@
-"""The wing of many designs: sweeps, optimisation, tolerances."""
+"""The studies package: sweeps, optimisation, tolerances."""
 
 from flexstage.base.lazy import lazy_attributes
 

@@ -1,4 +1,4 @@
-"""The form of a study's file: what each section may hold. The fields alone make its reader and its schema."""
+"""The form of a study's file: the fields of each section. They define its reader and its schema."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ _YIELD = Bound(low=0.5, high=1.0, open_low=True, open_high=True)
 
 @dataclass(frozen=True)
 class VariedTable:
-    """What a study varies: `address`, one or several that move together (absent: the name), or `parameter`, one of the case or several.
+    """A variable: `address`, one or several that change together (absent: the name), or `parameter`, one of the case or several.
 
-    It moves between `from` and `to`, with units or in percent of what the design states. `logarithmic`: equal steps are equal ratios.
-    `levels`: how many values a grid takes. `step`: only its multiples can be made.
+    Its range is `from` ... `to`, with units or in percent of the design's value. `logarithmic`: equal steps are equal ratios.
+    `levels`: number of values of a grid. `step`: only its multiples can be made.
     """
 
     low: Amount = field(metadata={KEY: "from"})
@@ -49,7 +49,7 @@ class VariedTable:
 
 @dataclass(frozen=True)
 class SweepTable:
-    """How designs are drawn: `sampling`, how many `designs` (1024, of a grid what its levels make), the `seed` of everything random.
+    """Sampling of designs: `sampling`, number of `designs` (1024; for a grid, from its levels), the `seed` of all random numbers.
 
     `pairs`: Saltelli's plan with indices of second order.
     """
@@ -62,9 +62,9 @@ class SweepTable:
 
 @dataclass(frozen=True)
 class OptimiseTable:
-    """What is best: responses to `maximise` or `minimise`, two in all at most, of which a front is drawn of `pareto_points` designs.
+    """Objectives: responses to `maximise` or `minimise`; with two of them a Pareto front of `pareto_points` designs is computed.
 
-    The search begins from so many `starts`, drawn by `seed`. Without `requirements` the design's own are no limits.
+    The search has this number of `starts`, drawn with `seed`. Without `requirements` the design's own are not limits.
     """
 
     maximise: Texts | None = None
@@ -77,9 +77,9 @@ class OptimiseTable:
 
 @dataclass(frozen=True)
 class ScatterTable:
-    """What deviates: `address`, a kind or several of them (absent: the name), by a standard deviation `normal` or a half width `uniform`.
+    """Scatter: `address`, one or several of a kind (absent: the name), by a standard deviation `normal` or a half width `uniform`.
 
-    Both with their unit or in percent of the nominal value. `within` truncates a normal distribution. `interval` of an asymmetric
+    Both have a unit or are in percent of the design's value. `within` truncates a normal distribution. `interval` of an asymmetric
     tolerance, lower and upper: uniform between them, or with `normal` about their middle and truncated there. `independent`: every
     instance has its own deviation.
     """
@@ -94,9 +94,9 @@ class ScatterTable:
 
 @dataclass(frozen=True)
 class ToleranceTable:
-    """How many `copies` are drawn, by which `sampling` and `seed`, and the `yield` that each line of the specification shall have.
+    """Number of `copies`, their `sampling` and `seed`, and the required `yield` of each requirement.
 
-    Without `requirements` the design's own are no part of it. `crosstalk` of the platform at a `point` (absent: where the stage
+    Without `requirements` the design's own are excluded. `crosstalk` of the platform at a `point` (absent: if the stage
     has any).
     """
 
@@ -111,10 +111,10 @@ class ToleranceTable:
 
 @dataclass(frozen=True, kw_only=True)
 class StudyFile:
-    """A study: the `design` file or the shipped `case` it starts from, with its `parameters`; what is asked, and what limits it.
+    """A study: the `design` file or the shipped `case` it starts from, with its `parameters`; its responses and limits.
 
-    `responses` are measures by name, `limits` say at least or at most by measure. `variables` and `sweep` belong to a sweep, `variables`
-    and `optimise` to an optimisation, `scatter` and `tolerance` to a study of copies.
+    `responses` are measures by name, `limits` contain "at least" or "at most" by measure. `variables` and `sweep` belong to a sweep,
+    `variables` and `optimise` to an optimisation, `scatter` and `tolerance` to a tolerance analysis.
     """
 
     name: str = "study"
@@ -131,7 +131,7 @@ class StudyFile:
 
 
 def study_file(text: str, where: str) -> StudyFile:
-    """What a study's file says. Raises `DesignError` with all that is no study's file in it.
+    """The contents of a study's file. Raises `DesignError` with all errors in it.
 
     >>> study_file('format = "flexstage study 1"' + chr(10) + 'case = "parallelogram"', "here").sweep.seed
     0
@@ -153,7 +153,7 @@ def study_schema() -> dict[str, Any]:
 
 
 def is_share(raw: str | float) -> bool:
-    """Whether an amount is in percent of what the design states.
+    """Whether an amount is in percent of the design's value.
 
     >>> is_share("-10 %"), is_share("1.4 mm")
     (True, False)
@@ -162,7 +162,7 @@ def is_share(raw: str | float) -> bool:
 
 
 def parse_amount(raw: str | float, quantity: Quantity, where: str) -> float:
-    """An amount in SI; raises `DesignError` at `where` where it is none of that quantity.
+    """An amount in SI; raises `DesignError` at `where` for another quantity.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> parse_amount("1.5 mm", LENGTH, "variables.neck.from")

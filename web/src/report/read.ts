@@ -148,7 +148,7 @@ class Reading {
 
   private rest(): void {
     for (const each of this.panels) each.cursor.setAttribute("visibility", "hidden");
-    this.told.textContent = "Point at the curves to read them; a click keeps the cursor, at a peak too.";
+    this.told.textContent = "Point at the curves to read them; a click fixes the cursor, also at a peak.";
   }
 
   private show(panel: Panel, x: number, text = ""): void {

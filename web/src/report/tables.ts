@@ -51,13 +51,13 @@ function copyBySelection(content: string): boolean {
 
 function save(content: string, name: string): void {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob(["\ufeff", content], { type: "text/csv;charset=utf-8" })); // the mark tells spreadsheets it is UTF-8
+  link.href = URL.createObjectURL(new Blob(["\ufeff", content], { type: "text/csv;charset=utf-8" })); // with a byte order mark for spreadsheets
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** What a table is called as a file: the page's title and the table's own, else its section's. */
+/** The file name of a table: the page's title and the table's own, else its section's. */
 function fileName(table: HTMLTableElement): string {
   const own = table.caption?.textContent ?? table.closest("section")?.querySelector("h2")?.textContent ?? "table";
   const stage = document.querySelector("h1")?.textContent ?? "";

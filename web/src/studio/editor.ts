@@ -119,7 +119,7 @@ export class Editor {
   private differ(): void {
     const mine = h("button", { type: "button", click: () => (this.edit(), fill(this.problems)) }, "keep mine");
     const theirs = h("button", { type: "button", click: () => ((this.isOurs = true), this.studio.state.value && this.take(this.studio.state.value)) }, "take theirs");
-    fill(this.problems, h("li", { className: "error" }, "The text was changed elsewhere meanwhile. ", mine, " ", theirs));
+    fill(this.problems, h("li", { className: "error" }, "Another page changed the text. ", mine, " ", theirs));
   }
 
   private take(state: State): void {
@@ -167,7 +167,7 @@ export class Editor {
     if (!state.value) return;
     const { sound, problems } = state.value;
     const count = `${problems.length} error${problems.length === 1 ? "" : "s"}`;
-    const results = figures.value === null ? "there are no results" : this.studio.isPresent(figures.value.revision) ? "results may be incomplete" : "results are of the last text without errors";
+    const results = figures.value === null ? "no results" : this.studio.isPresent(figures.value.revision) ? "results may be incomplete" : "results are of the last text without errors";
     const badge = byId("sound");
     badge.className = sound ? (this.studio.isCurrent ? "pill good" : "pill") : "pill poor";
     fill(badge, sound ? "sound" : `${count}: ${results}`);

@@ -5,7 +5,7 @@ import { byId, change, digits, fill, grouped, h, percent, shown, table } from ".
 import type { Studio } from "./studio";
 
 const PINS = ["A", "B", "C"];
-const NONE = "No results: the design file has errors, which are listed below its text.";
+const NONE = "No results: the design file has errors, listed below its text.";
 
 /** The requirements: value, limit, and a bar of the margin, full at 50 % to spare. */
 export class VerdictTable {
@@ -112,7 +112,7 @@ export class FigureTable {
   }
 
   private pin(name: string, isKept: boolean): HTMLElement {
-    const title = isKept ? `take ${name} back as the present design (shift: let it go)` : `pin the present design as ${name}`;
+    const title = isKept ? `make ${name} the present design (shift: remove it)` : `pin the present design as ${name}`;
     return h("button", { type: "button", title, className: isKept ? "pressed" : "", click: (event: MouseEvent) => void this.press(name, isKept, event.shiftKey) }, isKept ? name : `pin ${name}`);
   }
 
@@ -206,7 +206,7 @@ export class FigureTable {
 
   private drawn(said: Frequencies): void {
     const known = said.frequencies.filter((each) => each !== null).map((each) => digits(each));
-    fill(this.loading, h("b", {}, "Without its load"), ", as the slider moves, the platform's frequencies are ", h("output", { className: "moving" }, `${known.join(", ")} Hz`), ". The rows below are of the loaded stage, where the slider last rested.");
+    fill(this.loading, h("b", {}, "Without its load"), ", at the slider's position, the platform's frequencies are ", h("output", { className: "moving" }, `${known.join(", ")} Hz`), ". The rows below are of the loaded stage, where the slider last rested.");
   }
 }
 

@@ -37,9 +37,9 @@ export class FreedomPane {
       h("p", {}, `Mobility ${said.mobility}: the platform has ${said.free.length} free ${said.free.length === 1 ? "motion" : "motions"}.`),
       ...list("Free", said.free, (each) => this.point([each])),
       ...list("Locked", said.locked, (each) => this.point([each])),
-      ...told("What locks it", said.blocked),
-      ...told("Redundant constraints: they stress the stage where parts do not fit exactly", said.redundant),
-      ...told("Idle: motions that move neither platform nor stroke", said.idle),
+      ...told("Locked motions", said.blocked),
+      ...told("Redundant constraints: they stress the stage if parts do not fit exactly", said.redundant),
+      ...told("Free internal modes: move neither platform nor stroke", said.idle),
       h("button", { type: "button", click: () => this.picture(this.said) }, "show all arrows"),
     );
     this.picture(this.studio.tab.value === "freedom" ? said : null);
@@ -81,7 +81,7 @@ function spell(screw: Screw): string {
   if (screw.pitch === null) return `moves along (${screw.direction.map((each) => digits(Math.abs(each) < 1e-9 ? 0 : each, 3)).join(", ")})`;
   const point = screw.point.map((each) => digits(Math.abs(each) < 1e-9 ? 0 : 1000 * each, 4)).join(", ");
   const pitch = Math.abs(screw.pitch) < 1e-9 ? "" : `, ${digits(1000 * screw.pitch, 4)} mm a radian`;
-  return `turns about (${screw.direction.map((each) => digits(Math.abs(each) < 1e-9 ? 0 : each, 3)).join(", ")}) through (${point}) mm${pitch}`;
+  return `rotates about (${screw.direction.map((each) => digits(Math.abs(each) < 1e-9 ? 0 : each, 3)).join(", ")}) through (${point}) mm${pitch}`;
 }
 
 function told(title: string, said: Fact[]): HTMLElement[] {

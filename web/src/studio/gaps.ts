@@ -15,7 +15,7 @@ export class GapsPane {
   }
 
   private ask(): void {
-    if (!this.root.childElementCount) fill(this.root, h("p", { className: "quiet" }, "Gaps are worked out…"));
+    if (!this.root.childElementCount) fill(this.root, h("p", { className: "quiet" }, "Gaps are computed…"));
     this.studio.connection.newest("gaps", { kind: "gaps" }, (said) => said.kind === "clearances" && this.show(said));
   }
 
@@ -24,7 +24,7 @@ export class GapsPane {
     fill(
       this.root,
       ...said.problems.map((each) => h("p", { className: "poor" }, `${each.where}: ${sentence(each)}`)),
-      said.clashes.length ? table(["bodies", "distance"], rows, "figures") : h("p", { className: "quiet" }, "No clash, and no gap to tell."),
+      said.clashes.length ? table(["bodies", "distance"], rows, "figures") : h("p", { className: "quiet" }, "No clash, and no small gap."),
     );
   }
 

@@ -41,11 +41,11 @@ export class Header {
     const since = new Date(1000 * each.time).toLocaleString();
     const answer = (keep: boolean) => (): void => void this.studio.ask({ kind: "recover", draft: each.name, keep });
     const words = `Unsaved changes of ${since} were found${each.stale ? "; the file was changed since" : ""}. `;
-    return h("p", {}, words, h("button", { type: "button", click: answer(true) }, "take them back"), " ", h("button", { type: "button", click: answer(false) }, "discard them"));
+    return h("p", {}, words, h("button", { type: "button", click: answer(true) }, "restore them"), " ", h("button", { type: "button", click: answer(false) }, "discard them"));
   }
 
   private tell(): void {
-    const words = { opens: "connects…", open: "", lost: "connection lost; trying again", refused: "the server does not let this page in: open the address it printed" };
+    const words = { opens: "connects…", open: "", lost: "connection lost; trying again", refused: "the server refuses this page: open the printed address" };
     const link = this.studio.connection.state.value;
     const engine = this.engine;
     const left = engine?.seconds ? `, ${digits(engine.seconds, 2)} s` : "";
@@ -97,10 +97,10 @@ export class Header {
     place.hidden = false;
     fill(
       place,
-      "Another program changed the file since it was read. ",
-      h("button", { type: "button", click: hide(() => void this.save(true)) }, "write over it"),
+      "Another program changed the file. ",
+      h("button", { type: "button", click: hide(() => void this.save(true)) }, "overwrite it"),
       " ",
-      h("button", { type: "button", click: hide(() => void this.studio.ask({ kind: "reload" })) }, "take the file's text (undo brings yours back)"),
+      h("button", { type: "button", click: hide(() => void this.studio.ask({ kind: "reload" })) }, "read the file's text (undo restores yours)"),
     );
   }
 }

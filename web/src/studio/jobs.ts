@@ -29,12 +29,12 @@ const SWEEP = '[sweep]\nsampling = "sobol"\ndesigns = 64';
 const OPTIMISE = '[optimise]\nmaximise = "worst"';
 
 const FORMS: Record<Command, Form> = {
-  sweep: { title: "Sweep", about: "Computes many designs and shows what varies with what.", study: SWEEP, record: null },
+  sweep: { title: "Sweep", about: "Computes many designs, effects and interactions.", study: SWEEP, record: null },
   optimise: { title: "Optimise", about: "Finds the best design within ranges and limits.", study: OPTIMISE, record: null },
   verify: { title: "Verify", about: "Compares theory with finite elements, hinges first.", study: null, record: null },
   identify: { title: "Identify", about: "Finds the modes in a record of a test.", study: null, record: "needed" },
-  loop: { title: "Loop", about: "Closes the control loop; without a set-up the usual one. With a record of a test, on what was measured.", study: "", record: "possible" },
-  analyse: { title: "Report", about: "Writes the report: everything at once, with the turning model, in one file.", study: null, record: null },
+  loop: { title: "Loop", about: "Closes the control loop, by default the standard one. With a record of a test, on the measured responses.", study: "", record: "possible" },
+  analyse: { title: "Report", about: "Writes the report: all analyses, with the animated model, in one file.", study: null, record: null },
 };
 
 /** What the last design that an optimisation found is pinned as. */

@@ -68,7 +68,7 @@ export class Jog {
     this.rows = this.sliders(this.actuators, state.actuators, this.rows, (at, value) => this.push(at, value));
     this.axisRows = this.sliders(this.axes, state.axes, this.axisRows, (at, value) => this.move(at, value));
     if (this.strokes.length !== state.actuators.length) this.strokes = state.actuators.map(() => 0);
-    if (!state.actuators.length) fill(this.beyond, h("span", { className: "quiet" }, "This stage has no actuators: nothing moves it but loads."));
+    if (!state.actuators.length) fill(this.beyond, h("span", { className: "quiet" }, "This stage has no actuators: only loads move it."));
   }
 
   private sliders(parent: HTMLElement, channels: Channel[], held: Map<string, Row>, act: (at: number, value: number) => void): Map<string, Row> {

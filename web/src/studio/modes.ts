@@ -7,7 +7,7 @@ import { singles } from "./floats";
 import type { StageView } from "./stage";
 import type { Studio } from "./studio";
 
-const OTHERS: Partial<Record<MotionGroup, string>> = { deflection: "Under dead load", drift: "As it warms, strokes held" };
+const OTHERS: Partial<Record<MotionGroup, string>> = { deflection: "Under permanent load", drift: "Thermal drift, actuators fixed" };
 
 export class ModeBar {
   readonly root = h("div", { className: "strip" });
@@ -33,7 +33,7 @@ export class ModeBar {
     private readonly stage: StageView,
   ) {
     const energy = this.paints("energy", "strain energy", "links by their share of the mode's strain energy");
-    const stress = this.paints("stress", "stress", "links by the share of what is allowed that they bear: under loads, and as they are jogged");
+    const stress = this.paints("stress", "stress", "links by their utilisation: under loads, and for jogged strokes");
     const two = h("label", {}, h("input", { type: "checkbox", change: (event: Event) => this.two((event.target as HTMLInputElement).checked) }), "two side by side");
     fill(
       this.root,
@@ -156,7 +156,7 @@ export class ModeBar {
     const { partner } = this;
     if (partner) return `finite elements ${digits(partner.frequency)} Hz, theory ${percent(partner.difference, 2) || "0 %"}, assurance ${digits(partner.assurance, 3)}`;
     if (!mode.platform) return "";
-    return this.solids.length ? "no mode of finite elements is like it" : this.beside.hidden ? "" : this.why;
+    return this.solids.length ? "no paired mode of finite elements" : this.beside.hidden ? "" : this.why;
   }
 
   /** The link that bears most in a motion whose stress is known. */
@@ -165,7 +165,7 @@ export class ModeBar {
     if (!motion.stress || !scene.value) return "";
     const shares = [...singles(motion.stress)].map((share, at) => [share, scene.value!.parts[scene.value!.links[at] ?? -1]?.name ?? ""] as const).filter(([share]) => Number.isFinite(share));
     const [share, name] = shares.reduce((best, each) => (each[0] > best[0] ? each : best), [0, ""] as const);
-    return name ? `stress: most in ${name}, ${digits(100 * share, 3)} % of what is allowed, ${motion.stressed ?? ""}` : "";
+    return name ? `stress: most in ${name}, ${digits(100 * share, 3)} % of the limit, ${motion.stressed ?? ""}` : "";
   }
 
   private written(): void {
@@ -173,7 +173,7 @@ export class ModeBar {
     const motion = this.motion(this.now);
     const size = this.studio.scene.value?.size ?? 0;
     const drawn = Number(this.amplitude.value) * size;
-    if (this.chosen() && this.studio.scene.value?.motions.length && !motion) return fill(this.factor, "the picture does not hold this mode");
+    if (this.chosen() && this.studio.scene.value?.motions.length && !motion) return fill(this.factor, "the picture does not contain this mode");
     const text = motion?.scaled ? `drawn × ${digits(motion.reach > 0 ? drawn / motion.reach : null, 3)}` : `largest motion drawn as ${digits(1000 * drawn, 3)} mm`;
     fill(this.factor, motion && probe ? text : "");
   }

@@ -32,7 +32,7 @@ export class Numbers {
   private layoutOf = "";
 
   constructor(private readonly studio: Studio) {
-    this.order.append(new Option("as in the file", "file"), new Option("by what it buys", "worth"), new Option("changed first", "changed"));
+    this.order.append(new Option("as in the file", "file"), new Option("by sensitivity", "worth"), new Option("changed first", "changed"));
     fill(byId("numbers"), h("div", { className: "bar" }, h("h2", {}, "Numbers"), this.filter, this.order), this.list, h("div", { className: "bar foot" }, this.count));
     studio.state.watch(() => this.update());
     studio.slopes.watch((said) => said && this.buy(said));
@@ -69,7 +69,7 @@ export class Numbers {
     const slider = h("input", { type: "range", min: 0, max: STEPS, step: 1, tabIndex: -1, ariaLabel: `${address}, slider` });
     const field = h("input", { type: "text", spellcheck: false, autocomplete: "off", ariaLabel: address });
     const buys = h("span", { className: "buys" });
-    const was = h("button", { type: "button", className: "was", title: "take the file's value back" });
+    const was = h("button", { type: "button", className: "was", title: "restore the file's value" });
     const name = h("button", { type: "button", className: "name", title: address }, address.slice(amount.group.length).replace(/^\./, "") || address);
     const root = h("div", { className: "amount" }, name, slider, field, buys, was);
     root.dataset["address"] = address;
@@ -170,7 +170,7 @@ export class Numbers {
       row.buys.style.setProperty("--share", String(Math.abs(gain ?? 0) / most));
       row.buys.classList.toggle("minus", (gain ?? 0) < 0);
     }
-    this.order.title = `what one per cent of a number changes in the margin of ${said.worst} [%]`;
+    this.order.title = `change of the margin of ${said.worst} by one per cent of a number [%]`;
     if (this.order.value === "worth") this.layout();
   }
 

@@ -39,7 +39,7 @@ export class PartCard {
   }
 
   private hint(): void {
-    fill(this.body, h("p", { className: "quiet" }, "Click a part of the stage, or put the cursor into its line of the file."));
+    fill(this.body, h("p", { className: "quiet" }, "Click a part of the stage, or its line in the file."));
   }
 
   private refresh(): void {
@@ -60,9 +60,9 @@ export class PartCard {
       h("div", { className: "buttons" }, ...lines, h("button", { type: "button", click: () => this.studio.viewer.value?.fit(card.link) }, "fit")),
       facts([...this.bears(card), ...(card.free.length ? [{ name: "free", text: card.free.join(", ") }] : []), ...card.facts]),
       shares.length ? facts(shares.map(([name, share]) => ({ name: `of ${name}'s lost motion`, text: percent(share).replace("+", "") || "0 %" }))) : null,
-      card.compliance && section("Compliance about its centre, in its own frame", matrix(card.compliance)),
+      card.compliance && section("Compliance about its centre, in its frame", matrix(card.compliance)),
       card.stiffness && section("Stiffness", matrix(card.stiffness)),
-      card.verified.length ? section("Theory against finite elements", facts(card.verified)) : null,
+      card.verified.length ? section("Theory compared with finite elements", facts(card.verified)) : null,
       ...card.problems.map((each) => h("p", { className: "fair" }, sentence(each))),
       ...Object.entries(card.missing).map(([name, reason]) => h("p", { className: "quiet" }, h("b", {}, name), ` ${reason}`)),
     );

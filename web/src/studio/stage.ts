@@ -31,7 +31,7 @@ export class StageView {
     studio.link.watch((name) => this.viewer?.select(name));
     studio.against.watch(() => this.ghost());
     studio.keptOne.watch(() => this.ghost());
-    fill(this.told, "The picture follows the figures.");
+    fill(this.told, "The picture is updated after the figures.");
   }
 
   private get viewer(): Controller | null {
@@ -73,7 +73,7 @@ export class StageView {
   private without(): void {
     document.body.classList.add("flat");
     this.studio.look();
-    fill(this.told, "This browser gives no WebGL: the stage is not drawn. Numbers, figures, responses and the file work without it; links are chosen under Part.");
+    fill(this.told, "This browser has no WebGL: the stage is not drawn. Numbers, figures, responses and the file work without it; links are selected under Part.");
   }
 
   private tools(): void {

@@ -11,7 +11,7 @@ const PATHS = "paths.";
 
 export class Travel {
   readonly root = h("div", { className: "strip", id: "travel" });
-  private readonly drive = h("select", { ariaLabel: "What is driven", change: () => this.turn() });
+  private readonly drive = h("select", { ariaLabel: "Drive", change: () => this.turn() });
   private readonly start = h("input", { type: "text", size: 7, placeholder: "at rest", ariaLabel: "from" });
   private readonly end = h("input", { type: "text", size: 7, value: "1 mm", required: true, ariaLabel: "to" });
   private readonly points = h("input", { type: "number", min: 2, max: 201, value: "21", ariaLabel: "points" });
@@ -38,7 +38,7 @@ export class Travel {
       this.drive, ...this.own, this.go, this.stop, this.busy,
     );
     fill(this.root, form, this.player, this.about, this.curves);
-    fill(this.about, h("span", { className: "quiet" }, "At large displacements and under its weight: bodies and leaves where they truly are. Strokes count from where the stage rests under its loads."));
+    fill(this.about, h("span", { className: "quiet" }, "Large displacements with weight: true positions of bodies and leaves. Strokes are relative to static equilibrium."));
     studio.state.watch(() => this.offer());
     studio.connection.on("underway", (said) => this.tell(said));
     studio.figures.watch((each) => each?.revision !== this.revision && this.leave("The design has changed: compute again."));

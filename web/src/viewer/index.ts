@@ -34,7 +34,7 @@ const NOWHERE: Probe = {
 function still(element: HTMLElement, error: unknown): Controller {
   const line = document.createElement("p");
   line.className = "flexstage-still";
-  line.textContent = "This browser draws no 3-D pictures here (no WebGL 2): the stage does not turn or move.";
+  line.textContent = "This browser draws no 3-D pictures here (no WebGL 2): the picture is static.";
   line.title = String(error);
   element.append(line);
   const nothing = (): void => undefined, ends = () => nothing;

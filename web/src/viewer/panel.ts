@@ -4,7 +4,7 @@ import { AMPLITUDES, type Player } from "./player";
 import type { Motion, MotionGroup, StageData } from "./types";
 
 const HEADS: Readonly<Record<MotionGroup, string>> = {
-  mode: "Modes", stroke: "One actuator at a time", axis: "Ideal motions of the platform", deflection: "Under dead load", drift: "As it warms", response: "Over time, in the loop", path: "Along a path",
+  mode: "Modes", stroke: "One actuator at a time", axis: "Ideal motions of the platform", deflection: "Under permanent load", drift: "Thermal drift", response: "Over time, in the loop", path: "Along a path",
   state: "About a state",
 };
 
@@ -25,10 +25,10 @@ const TOGGLES: readonly [Toggle, string, string][] = [
   ["platform", "Platform", "Draw the platform translucent, or not (G)"],
   ["names", "Names", "Names of actuators and gauges (L)"],
   ["energy", "Energy", "Paint links by their share of the strain energy (E)"],
-  ["stress", "Stress", "Paint links by the share of their allowed stress: strokes and loads (T)"],
+  ["stress", "Stress", "Paint links by their utilisation: strokes and loads (T)"],
   ["section", "Section", "Cut the stage open (S); again: another plane"],
   ["unit", "Unit", "Show the unit of the picked part alone (I)"],
-  ["keys", "?", "What the keys do (?)"],
+  ["keys", "?", "List of the keys (?)"],
 ];
 
 function button(text: string, title: string, act: () => void): HTMLButtonElement {
@@ -78,7 +78,7 @@ export class Panel {
     this.cutRow = slider("Section", 1, "0.01", (value) => acts.cut(value));
     player.append(phaseName, phase, amplitudeName, amplitude, this.words, ...this.cutRow);
     this.showCut(null, 0.5);
-    this.play = button("Pause", "Play or hold (space)", () => acts.play());
+    this.play = button("Pause", "Play or pause (space)", () => acts.play());
     tools.append(this.play, button("Fit", "Show all (F)", () => acts.fit()), button("View", "Next standard view (V)", () => acts.turn()));
     for (const [what, text, title] of TOGGLES) {
       const made = button(text, title, () => this.press(what));

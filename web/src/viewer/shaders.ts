@@ -63,7 +63,7 @@ vec3 rotated(vec3 w, vec3 v) {
   return v * cos(angle) + cross(axis, v) * sin(angle) + axis * dot(axis, v) * (1.0 - cos(angle));
 }
 
-// Large displacements: bodies turn about the origin, what bends lies along its nodes.
+// Large displacements: bodies rotate about the origin, bent pieces follow their nodes.
 vec3 posed() {
   int c = int(carrier);
   vec3 link = row(carriers, 3 * c).xyz;
@@ -93,7 +93,7 @@ flat in float partNumber;
 flat in vec4 paint;
 in vec3 seen;
 in vec3 place;
-uniform vec4 plane;  // what lies before it is cut away: dot(plane.xyz, p) > plane.w
+uniform vec4 plane;  // cut away in front of it: dot(plane.xyz, p) > plane.w
 out vec4 colour;
 void cut() { if (dot(plane.xyz, place) > plane.w) discard; }
 `;

@@ -129,7 +129,7 @@ export class Viewer implements Controller {
   private show(data: StageData): void {
     this.overlay.replace(data);
     this.panel?.replace(data);
-    this.stage.setAttribute("aria-label", `${data.name}, drawn from its design: drag to turn it, keys 1 to 9 for its modes`);
+    this.stage.setAttribute("aria-label", `${data.name}, drawn from its design: drag to rotate it, keys 1 to 9 for its modes`);
     this.paint();
   }
 
@@ -456,10 +456,10 @@ export class Viewer implements Controller {
   private get meaning(): string {
     const { motion } = this.player;
     if (this.painted !== "stress" || !motion) return "";
-    if (!this.shares) return "stress is told of strokes and loads";
+    if (!this.shares) return "stress is known for strokes and loads";
     const [most, at] = [...this.shares].reduce<[number, number]>((best, share, link) => (share > best[0] ? [share, link] : best), [0, 0]);
     const name = this.data.parts[this.data.links[at] ?? -1]?.name ?? "";
-    return `stress: from none to all that is allowed; most in ${name}, ${written(100 * most)} %, ${motion.stressed ?? ""}`;
+    return `stress: from zero to the limit; most in ${name}, ${written(100 * most)} %, ${motion.stressed ?? ""}`;
   }
 
   private opacityOf(kind: Kind, unit: string | undefined, name: string): number {
@@ -497,7 +497,7 @@ export class Viewer implements Controller {
     const { motion } = this.player, of = (packed: string | undefined): number => (packed && link >= 0 ? floats(packed)[link]! : NaN);
     const energy = of(motion?.energy), stress = of(motion?.stress);
     if (Number.isFinite(energy)) more.push(["strain energy", `${written(100 * energy)} %`]);
-    if (Number.isFinite(stress)) more.push(["stress", `${written(100 * stress)} % of what is allowed, ${motion?.stressed ?? ""}`]);
+    if (Number.isFinite(stress)) more.push(["stress", `${written(100 * stress)} % of the limit, ${motion?.stressed ?? ""}`]);
     this.overlay.showCard(this.options.controls === false ? null : part, more); // a page with controls of its own has a card too
     this.draw();
   }

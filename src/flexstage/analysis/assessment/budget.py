@@ -1,4 +1,4 @@
-"""The error budget of a stage, composed from its results."""
+"""Error budget of a stage, composed from its results."""
 
 from __future__ import annotations
 
@@ -44,17 +44,16 @@ def budget(
     noise: Mapping[str, Spectrum] | None = None,
     band: tuple[float, float] | None = None,
 ) -> ErrorBudget:
-    """Error budget at a point of the platform over a box of commands (half widths by coordinate [m, rad]) and a temperature change [K].
+    """Compute the error budget at a platform point for a box of commands (half widths [m, rad]) and a temperature change [K].
 
-    Lost motion and drift (strokes held) by the lumped model, of the loaded stage where its dead load is felt. `drifted` absent: the ground
-    as the description has it (`ground_of`). No change of temperature (0, or `None`: 1 K where drift is known) asks for no drift: what
-    states no expansion then leaves it out, and `reasons` say so.
+    Lost motion and drift (strokes fixed) are by the lumped model, of the loaded stage if its permanent load is significant. Default
+    `drifted`: the ground of the description (`ground_of`). A temperature change of `None` means 1 K if drift is known. With 0 or `None`,
+    missing expansion coefficients omit drift, with a note in `reasons`.
 
-    Lost motion J diag(Lambda) R_a xi, crosstalk J (Lambda - diag) R_a xi with the motion outside the ideal ones; with the gains
-    a = (R_a V^+ T)^-1 R_a xi only T a - V xi is left, counted as crosstalk. Linear map: finite less linear kinematics at the corners.
-    Noise: `coverage` standard deviations. Quantisation: half a step of every gauge with the worst signs. Actuators that move in steps: half
-    a step of each alike, in a column that other stages do not have (evenly spread, it has a standard deviation of step/sqrt(12)). Largest
-    absolute values.
+    Lost motion J diag(Lambda) R_a xi, crosstalk J (Lambda - diag) R_a xi with the motion outside the ideal ones. With the gains a = (R_a
+    V^+ T)^-1 R_a xi, only the residual T a - V xi remains, as crosstalk. Linear map: finite minus linear kinematics at the corners. Noise:
+    `coverage` standard deviations. Quantisation: half a step of every gauge with the worst signs. Stepping actuators: half a step of each
+    in the same direction, in a separate column (uniformly distributed, its standard deviation is step/sqrt(12)). Largest absolute values.
 
     Of a force-driven stage in open loop: forces u = (V^+ C)^+ xi by the static gain C of the elastic model, in the place of lost motion,
     crosstalk and linear map the parasitic motion C u - V xi. `noise` are one-sided densities of actuator inputs (current, force, stroke) or
@@ -67,10 +66,10 @@ def budget(
     """
     assembly = expand(mechanism)
     if at != PLATFORM and at not in assembly.points:
-        raise refuse(at, "no point of this name is in the description", suggest_nearest(at, (PLATFORM, *assembly.points)))
+        raise refuse(at, "unknown point", suggest_nearest(at, (PLATFORM, *assembly.points)))
     body, point = (PLATFORM, assembly.bodies[PLATFORM].reference) if at == PLATFORM else assembly.points[at]
     if body != PLATFORM:
-        raise refuse(at, f"is a point of {body}", "An error budget is that of a point of the platform")
+        raise refuse(at, f"it is a point of {body}", "Use a point of the platform")
     kinematics, model = ideal(mechanism), felt_links(mechanism)
     forced = bool(kinematics.thrusts) and not kinematics.actuated
     warmed, reasons = (drifted, {}) if drifted is not None else _drift(mechanism, model, asked=bool(np.any(temperature)))
@@ -142,7 +141,7 @@ def _noises(
 
 
 def _command_errors(kinematics: Kinematics, lost: LostMotion, columns: list[int]) -> tuple[Array, Array, Array]:
-    """Errors (..., 6, c) per command: own loss, the rest, and what the correction gains leave."""
+    """Errors (..., 6, c) per command: own loss, crosstalk, and the residual of the correction gains."""
     strokes = kinematics.mapping.values[..., columns]
     own = np.eye(strokes.shape[-2]) * lost.loss.values
     loss = kinematics.jacobian.values @ (own @ strokes)
@@ -156,17 +155,17 @@ def _times(matrix: Array, vector: Array) -> Array:
 
 
 def _steps(assembly: Assembly, actuators: tuple[str, ...]) -> Array | None:
-    """Steps of the actuators (..., n) [m], NaN where they are not stated; `None` where all move continuously."""
+    """Steps of the actuators (..., n) [m], NaN if unspecified; `None` if all move continuously."""
     steps = [assembly.actuator(name).step for name in actuators]
     continuous = all(step is not None and not np.any(step) for step in steps)
     return None if continuous else stack([np.nan if step is None else step for step in steps])
 
 
 def _drift(mechanism: Mechanism, model: LinearModel, *, asked: bool) -> tuple[Drift | None, dict[str, str]]:
-    """Drift, or why it is not known where no temperature asks for it."""
+    """Drift; without a required temperature change, `None` with the reason if it is unknown."""
     try:
         return drift(mechanism, model), {}
     except DesignError as error:
         if asked:
             raise
-        return None, {"drift": "; ".join(f"{finding.where} {finding.what}" for finding in error.findings)}
+        return None, {"drift": "; ".join(f"{finding.where}: {finding.what}" for finding in error.findings)}

@@ -1,4 +1,4 @@
-"""What a change does: the key figures of a stage before and after."""
+"""Comparison of key figures of a stage before and after a change."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS, WRENCH_UNIT
 
 @dataclass(frozen=True)
 class KeyFigure:
-    """A key figure: its name, SI unit and value."""
+    """Key figure: name, SI unit and value."""
 
     name: str
     unit: str
@@ -35,7 +35,7 @@ class KeyFigure:
 
 @dataclass(frozen=True)
 class Change:
-    """A key figure before and after; `None` where it exists on one side only."""
+    """Key figure before and after a change; `None` if missing on one side."""
 
     TABLE: ClassVar[Layout] = Layout("Changes of key figures", "name old new difference relative")
 
@@ -46,18 +46,18 @@ class Change:
 
     @property
     def difference(self) -> Annotated[float | None, INNER, UnitIn("unit"), Heading(digits=4)]:
-        """New less old; None where either is missing."""
+        """New minus old; None if either is missing."""
         return None if self.old is None or self.new is None else self.new - self.old
 
     @property
     def relative(self) -> Annotated[float | None, SHARE, Heading(digits=3)]:
-        """New over old less one; None where that has no meaning."""
+        """New over old minus one; None if undefined."""
         return None if self.old is None or self.new is None or self.old == 0.0 else self.new / self.old - 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """What setting values did: the description as `stated`, the `addresses` that were set, the key `figures` before and after."""
+    """Effect of set values: the original description `stated`, the `addresses` set, the key `figures` before and after."""
 
     stated: Mechanism
     addresses: tuple[str, ...]
@@ -65,7 +65,7 @@ class Comparison:
 
 
 def set_values(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> tuple[Change, ...]:
-    """The values that were set, before and after; values that are no single numbers are left out.
+    """Return set values before and after; only single numbers.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.addresses.address import set_value
@@ -82,7 +82,7 @@ def set_values(before: Mechanism, after: Mechanism, addresses: Iterable[str]) ->
 
 
 def difference(before: Analysis, after: Analysis) -> tuple[Change, ...]:
-    """Every key figure of two analyses, old against new.
+    """Compare every key figure of two analyses, old and new.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -100,9 +100,9 @@ def _value(figures: Mapping[str, KeyFigure], name: str) -> float | None:
 
 
 def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
-    """What a designer looks at first: required values, frequencies of the platform, stiffness, losses, strokes, strength.
+    """Return the key figures: required values, platform frequencies, stiffness, losses, strokes, strength.
 
-    Names are those of requirements.
+    Names are as in requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -121,7 +121,7 @@ def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
 
 
 def requirement_figures(verdicts: Iterable[Verdict]) -> Iterator[KeyFigure]:
-    """What requirements ask about, as far as it is known."""
+    """Return the known values of requirements."""
     for verdict in verdicts:
         if verdict.value is not None:
             asked = verdict.requirement
@@ -130,7 +130,7 @@ def requirement_figures(verdicts: Iterable[Verdict]) -> Iterator[KeyFigure]:
 
 
 def frequency_figures(found: Modes | None) -> Iterator[KeyFigure]:
-    """The platform's frequencies."""
+    """Return the platform's frequencies."""
     if found is None:
         return
     for number, index in enumerate(found.platform, start=1):
@@ -138,7 +138,7 @@ def frequency_figures(found: Modes | None) -> Iterator[KeyFigure]:
 
 
 def stiffness_figures(found: Statics | None) -> Iterator[KeyFigure]:
-    """The platform's stiffness along and about each axis, all other freedoms free."""
+    """Return the platform's stiffness along and about each axis, all other degrees of freedom free."""
     if found is None:
         return
     compliance = np.diag(found.compliance.values)
@@ -148,7 +148,7 @@ def stiffness_figures(found: Statics | None) -> Iterator[KeyFigure]:
 
 
 def loss_figures(found: LostMotion | None) -> Iterator[KeyFigure]:
-    """What each actuator loses of its own motion."""
+    """Return the lost motion of each actuator."""
     if found is None:
         return
     for name in found.loss.rows:
@@ -161,7 +161,7 @@ def _workspace_figures(reach: Workspace | None) -> Iterator[KeyFigure]:
 
 
 def reach_figures(strokes: SingleAxis | None, stress: HingeStress | None, buckling: Buckling | None) -> Iterator[KeyFigure]:
-    """Strokes of the platform, and how far hinges and columns are from their limits."""
+    """Return platform strokes, and safety factors of hinges and columns."""
     if strokes is not None:
         for name, value in zip(strokes.coordinates, strokes.symmetric, strict=True):
             yield KeyFigure(f"stroke.{name}", MOTION.unit(name), float(value))

@@ -1,4 +1,4 @@
-"""Error budget: every source of pose error for a stated command and temperature change, on one line an axis."""
+"""Error budget: every source of pose error for a command and temperature change, a row per axis."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisatio
 class ErrorBudget(Result):
     """Largest errors by axis (rows) and source (columns) [m, rad], commanded by the ideal mapping, and with the lost-motion gains.
 
-    `missing` names sources that could not be counted (no gauge noise stated): they are NaN and left out of the sums. `ground` is what drift
-    took it to be of; `coverage` how many standard deviations of noise count. `reasons` say why a source is not known. Of a force-driven
-    stage both commands are the same: the forces that the elastic model gives for the command.
+    `missing` names unknown sources (unspecified gauge noise): they are NaN and omitted from the sums. `ground` is the ground material
+    assumed for drift, `coverage` the number of standard deviations of gauge noise. `reasons` explain unknown sources. Of a force-driven
+    stage both commands are equal: the forces that the elastic model gives for the command.
     """
 
     ideal: Matrix
@@ -61,7 +61,7 @@ class ErrorBudget(Result):
 
 
 def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> list[int]:
-    """Columns of R_a that a command names; raises `DesignError` for names the stage has not.
+    """Return the columns of R_a for the names of a command; raises `DesignError` for unknown names.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -70,7 +70,7 @@ def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> li
     """
     known = kinematics.coordinates
     require(
-        Finding(f"command {name}", f"the stage's ideal motions are {', '.join(known) or 'none'}", suggest_nearest(name, known))
+        Finding(f"command {name}", f"unknown ideal motion (expected {', '.join(known) or 'none'})", suggest_nearest(name, known))
         for name in command
         if name not in known
     )
@@ -78,7 +78,9 @@ def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> li
 
 
 def command_strokes(kinematics: Kinematics, command: Mapping[str, Number], *, depth: int = 0) -> Array:
-    """Strokes (2^c, ..., n) [m] at the corners of a box of commands over c coordinates, a = R_a xi; `depth` least batch axes between.
+    """Compute strokes (2^c, ..., n) [m] at the corners of a box of commands over c coordinates, a = R_a xi.
+
+    `depth` is the least number of batch axes between.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

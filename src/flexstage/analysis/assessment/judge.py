@@ -1,4 +1,4 @@
-"""The requirements of a design file judged: each value is worked out only if a line asks for it."""
+"""Evaluation of the requirements of a design file: only required values are computed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from flexstage.analysis.assessment.measures import Measure, corner, stroke, value_or_bound
+from flexstage.analysis.assessment.measures import Measure, corner, safety_at_strokes, stroke, value_or_bound
 from flexstage.analysis.assessment.requirements import Requirement, Sense, Verdict, requirements
 from flexstage.analysis.bench import Bench
 from flexstage.analysis.workspace.stops import single_strokes
@@ -16,13 +16,10 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 def judge(mechanism: Mechanism, bench: Bench | None = None) -> tuple[Verdict, ...]:
-    """Judge every `[requirements]` line of a description by the lumped model; on the `bench` that has its results already, if there is one.
+    """Evaluate every `[requirements]` line of a description by the lumped model; reuse the results of `bench` if present.
 
-    Stiffness, frequencies, lost motion, strokes that make up for it, and drift are those of the loaded stage where its dead load is felt
-    (1 %).
-
-    What the stage cannot answer (a safety factor without yield stress) is a failed verdict with its reason. Raises `DesignError` for lines
-    that cannot be read.
+    Stiffness, frequencies, lost motion, corrected strokes and drift are for the loaded stage if its permanent load is significant (1 %). An
+    unknown value (a safety factor without yield stress) is a failed verdict with its reason. Raises `DesignError` for unreadable lines.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [bool(verdict.passed) for verdict in judge(double_triangle())]
@@ -34,9 +31,9 @@ def judge(mechanism: Mechanism, bench: Bench | None = None) -> tuple[Verdict, ..
 
 
 def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array | str, ...]:
-    """Values (...) in SI of measures by the lumped model, for one design or a batch; where a stage has none, the reason in words.
+    """Compute SI values (...) of measures by the lumped model, for one design or a batch; the reason if there is none.
 
-    What asks for all required strokes at once (corner, gauge.range) takes those of the description's `[requirements]` lines.
+    Measures of simultaneous required strokes (corner, gauge.range) use the strokes in the `[requirements]` lines.
 
     >>> from flexstage.analysis.assessment.requirements import measure
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -49,7 +46,7 @@ def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Ar
 
 
 def bench_of(mechanism: Mechanism) -> Bench:
-    """A bench for one design or a batch; the strokes that measures of all strokes at once take are those of the `[requirements]` lines.
+    """Create a bench for one design or a batch; measures of simultaneous strokes use the strokes in `[requirements]`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> bench_of(double_triangle()).command["x"]
@@ -63,7 +60,7 @@ def _required_strokes(lines: tuple[Requirement, ...]) -> dict[str, float]:
 
 
 def value_or_reason(bench: Bench, asked: Measure) -> Array | str:
-    """The value (...) of one measure, or the reason in words.
+    """Compute the value (...) of one measure; the reason if there is none.
 
     >>> from flexstage.analysis.assessment.requirements import measure
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -93,13 +90,13 @@ def _verdict(bench: Bench, line: Requirement) -> Verdict:
 
 
 def _large_doubt(bench: Bench, drawn: Verdict) -> str:
-    """Why a line about motion that linear models say is met is not known: what it asks for is no small motion; empty where it is."""
+    """Reason why a fulfilled line on motion is unknown: the motion exceeds small displacements; empty if it does not."""
     line = drawn.requirement
     if drawn.value is None or np.ndim(drawn.value) or not drawn.passed:
         return ""
     if line.kind is stroke and line.sense is Sense.AT_LEAST:
         asked: Mapping[str, float] = {line.name: line.limit}
-    elif line.kind is corner:
+    elif line.kind in (corner, safety_at_strokes):
         asked = bench.box()
     elif line.kind.over_strokes and bench.kinematics.actuated:
         single = single_strokes(bench.mechanism, bench.kinematics)
@@ -111,7 +108,7 @@ def _large_doubt(bench: Bench, drawn: Verdict) -> str:
 
 
 def _loaded_doubt(bench: Bench, drawn: Verdict) -> str:
-    """Why a line that the drawn stage meets may be missed by the loaded one: its weight softens it; empty where it is met either way."""
+    """Reason why the softened loaded stage may violate a line that the nominal stage fulfils; empty if it does not."""
     line = drawn.requirement
     power = line.kind.softening
     if not power or drawn.value is None or np.ndim(drawn.value) or not drawn.passed:
@@ -121,6 +118,6 @@ def _loaded_doubt(bench: Bench, drawn: Verdict) -> str:
     if loaded.passed:
         return ""
     return (
-        f"withheld: it is {float(drawn.value):.4g} {line.quantity.si} as drawn, but weight softens the stage (load factor {factor:.3g}): "
+        f"withheld: the nominal value is {float(drawn.value):.4g} {line.quantity.si},softened by weight (load factor {factor:.3g}): "
         f"loaded it may be {float(np.asarray(loaded.value)):.4g} {line.quantity.si}"
     )

@@ -1,4 +1,4 @@
-"""Measures, the numbers by which a stage is judged: a function each, which requirements, sweeps, optimisation and tolerances know."""
+"""Measures: numbers of a stage for requirements, sweeps, optimisation and tolerances; a function for each."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from flexstage.analysis.workspace.blocking import platform_lines
 from flexstage.analysis.workspace.force_workspace import bounds_along
 from flexstage.analysis.workspace.gauging import gauge_swing, half_ranges, pose_resolution
 from flexstage.analysis.workspace.stops import with_stops
+from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import utilisation
 from flexstage.base.finding import LowerBoundError, refuse, require
 from flexstage.base.lazy import Late
@@ -65,25 +66,25 @@ FINE_ROTATION = Quantity("rotation", ANGLE.si, "nrad", "50 nrad")
 
 
 class Extreme(Enum):
-    """Which of its pieces a measure is."""
+    """Least or largest of the pieces of a measure."""
 
     LEAST = "least"
     LARGEST = "largest"
 
     def of(self, values: Array) -> Array:
-        """The measure (...) from its pieces (..., m)."""
+        """Measure (...) from its pieces (..., m)."""
         return np.min(values, axis=-1) if self is Extreme.LEAST else np.max(values, axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
 class MeasureKind:
-    """A kind of measure: the `form` of its key, its `quantity`, that `about` an axis, and what works it out, in SI with all batch axes.
+    """Kind of measure: the `form` of its key, its `quantity`, the one `about` an axis, and the function for its SI value.
 
-    The first sentence of that function's docstring says what it means. `pointed`: it may be asked at a point. `extreme`: the function gives
-    pieces (..., m), of which the measure is the least or largest; an optimiser sees every actuator, hinge and stack then, not only the
-    worst one. `softening`: with which power of 1 - 1/factor it changes where the dead load softens it most. `over_strokes`: it is about all
-    strokes. `felt`: it rests on lost motion or drift, which the dead load changes. `analytic`: it may be differentiated by complex step.
-    `along`: it is about a path of the design, perhaps at a place on it.
+    The first sentence of that function's docstring is the meaning. `pointed`: a point may be specified. `extreme`: the function returns
+    pieces (..., m), and the measure is the least or largest; an optimiser uses all pieces (every actuator, hinge, stack). `softening`:
+    power of 1 - 1/factor of its change where the permanent load softens the measure most. `over_strokes`: it is for all strokes. `felt`: it
+    depends on lost motion or drift, which the permanent load changes. `analytic`: complex-step differentiation is valid. `along`: it is
+    along a path of the design, or at a point of the path.
     """
 
     form: str
@@ -100,17 +101,17 @@ class MeasureKind:
 
     @property
     def meaning(self) -> str:
-        """What it is, in a few words."""
+        """Short definition."""
         first = (inspect.getdoc(self.work) or "").partition(".\n")[0].rstrip(".")
         return first[:1].lower() + first[1:]
 
     def pieces(self, bench: Bench, asked: Measure) -> Array:
-        """Its pieces (..., m); of a smooth measure the one that it is."""
+        """Pieces (..., m); a smooth measure has one."""
         found = np.asarray(self.work(bench, asked))
         return found[..., None] if self.extreme is None else found
 
     def value(self, bench: Bench, asked: Measure) -> Array:
-        """The measure (...). Raises `DesignError` for what the stage does not have."""
+        """Value (...). Raises `DesignError` if the stage has none."""
         found = np.asarray(self.work(bench, asked))
         return found if self.extreme is None else self.extreme.of(found)
 
@@ -120,9 +121,9 @@ class MeasureKind:
 
 @dataclass(frozen=True)
 class Measure:
-    """A number that a stage has: its `key`, the `kind` with its `name` (an axis, actuator, gauge, path, number), the point it is taken at.
+    """Measure of a stage: its `key`, `kind`, `name` (an axis, actuator, gauge, path, number) and point.
 
-    `place` is the value of a path's drive that it is taken at; of the whole path the worst. `path` is that which it is the worst over.
+    `place` is the value of a path's drive; without it, the measure is the worst along the path. `path` is the path of a worst value.
     """
 
     key: str
@@ -136,15 +137,15 @@ class Measure:
 
 @partial(MeasureKind, "stroke.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, extreme=Extreme.LEAST, felt=True)
 def stroke(bench: Bench, asked: Measure) -> Array:
-    """Stroke both ways along one axis, lost motion made up by command.
+    """Symmetric stroke along one axis, lost motion corrected by command.
 
-    How far each actuator and stop lets the platform go, either way; where forces move it, how far each of their limits does, held for ever.
+    Limits are each actuator and stop in both directions; for force-driven stages the continuous limits of the forces.
     """
     if bench.forced:
         return bounds_along(bench.force_workspace(asked.point), asked.name)
     mapping, limits = bench.stopped(asked.point)
     if asked.name not in mapping.columns:
-        raise refuse(f"stroke.{asked.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(mapping.columns)}")
+        raise refuse(f"stroke.{asked.name}", "not an ideal motion of this stage", f"Use one of {', '.join(mapping.columns)}")
     gain = mapping.values[..., mapping.columns.index(asked.name)]
     able = np.abs(gain) > 1e-12 * np.max(np.abs(mapping.values), axis=(-2, -1), keepdims=False)[..., None]
     safe = np.where(able, gain, 1.0)
@@ -155,13 +156,13 @@ def stroke(bench: Bench, asked: Measure) -> Array:
 
 @partial(MeasureKind, "corner", RATIO, extreme=Extreme.LARGEST, felt=True)
 def corner(bench: Bench, _: Measure) -> Array:
-    """Share of the actuators' strokes, and of the gaps of stops, that all required strokes at once ask for."""
+    """Largest ratio of demand to available actuator stroke or stop gap, all required strokes at once."""
     return utilisation(*with_stops(bench.mechanism, bench.kinematics, bench.lost.correction, bench.limits), bench.box()).ratio
 
 
 @partial(MeasureKind, "frequency.<n>", FREQUENCY, softening=0.5)
 def frequency(bench: Bench, asked: Measure) -> Array:
-    """N-th natural frequency, any body."""
+    """N-th natural frequency of the stage."""
     return _nth(bench.modes.frequencies, asked)
 
 
@@ -174,19 +175,27 @@ def platform_frequency(bench: Bench, asked: Measure) -> Array:
 def _nth(frequencies: Array, asked: Measure) -> Array:
     count = frequencies.shape[-1]
     if int(asked.name) > count:
-        raise refuse(f"requirements.{asked.key}", f"there are {count} such modes", "Ask for a lower number")
+        raise refuse(f"requirements.{asked.key}", f"mode number too high (the stage has {count} such modes)", "Use a lower number")
     return frequencies[..., int(asked.name) - 1]
 
 
 @partial(MeasureKind, "safety", RATIO, extreme=Extreme.LEAST, over_strokes=True)
 def safety(bench: Bench, _: Measure) -> Array:
-    """Yield over peak stress in the worst hinge at the worst corner of the strokes, from no voltage."""
-    if bench.stress.unknown:
-        links = ", ".join(bench.stress.unknown[:3])
-        raise refuse(
-            "safety", f"the material of {links} states no limit of stress", 'Add for example yield_stress = "1360 MPa" to the material'
-        )
-    return bench.stress.safety
+    """Yield over peak stress in the worst hinge at the worst corner of the strokes, from zero voltage, or at peak current."""
+    return _known_safety(bench.stress)
+
+
+@partial(MeasureKind, "safety.at_strokes", RATIO, extreme=Extreme.LEAST)
+def safety_at_strokes(bench: Bench, _: Measure) -> Array:
+    """Yield over peak stress in the worst hinge at the worst corner of the required strokes."""
+    return _known_safety(bench.stress_at_strokes)
+
+
+def _known_safety(found: HingeStress) -> Array:
+    if found.unknown:
+        links = ", ".join(found.unknown[:3])
+        raise refuse("safety", f"the material of {links} has no stress limit", 'Add e.g. yield_stress = "1360 MPa" to the material')
+    return found.safety
 
 
 @partial(MeasureKind, "buckling", RATIO, over_strokes=True)
@@ -197,20 +206,20 @@ def buckling(bench: Bench, _: Measure) -> Array:
 
 @partial(MeasureKind, "stiffness.<axis>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
 def stiffness(bench: Bench, asked: Measure) -> Array:
-    """Stiffness of the platform against a load along one axis, the others giving way."""
+    """Stiffness of the platform along one axis, the others free."""
     index = COMPONENTS.index(asked.name)
     return 1.0 / _compliance(bench, asked)[..., index, index]
 
 
 @partial(MeasureKind, "stiffness.<direction>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
 def directed_stiffness(bench: Bench, asked: Measure) -> Array:
-    """Stiffness of the platform against a force along a direction, or with r a moment about it, all else giving way."""
+    """Stiffness of the platform along a direction, or with r about it, all else free."""
     along, start = direction_of(asked.name, asked.key), 3 * asked.name.startswith("r")
     return 1.0 / (along @ _compliance(bench, asked)[..., start : start + 3, start : start + 3] @ along)
 
 
 def direction_of(name: str, where: str = "direction") -> Array:
-    """The unit vector (3,) of a direction such as `(1,1,0)`, with `r` before it for a moment about it. Raises `DesignError` at `where`.
+    """Read the unit vector (3,) of a direction such as `(1,1,0)`, with `r` before it for a rotation. Raises `DesignError` at `where`.
 
     >>> direction_of("r(0,3,4)").tolist()
     [0.0, 0.6, 0.8]
@@ -220,15 +229,15 @@ def direction_of(name: str, where: str = "direction") -> Array:
     except ValueError:
         vector = np.zeros(0)
     if vector.shape != (3,) or not np.all(np.isfinite(vector)) or not np.any(vector) or not name.endswith(")"):
-        raise refuse(where, f'"{name}" is no direction', "Write three numbers, not all 0, without spaces, for example (1,1,0)")
+        raise refuse(where, f'invalid direction (got "{name}")', "Use three numbers, not all 0, without spaces, e.g. (1,1,0)")
     return vector / np.linalg.norm(vector)
 
 
 @partial(MeasureKind, "stiffness.least", STIFFNESS, pointed=True, softening=1.0)
 def least_stiffness(bench: Bench, asked: Measure) -> Array:
-    """Stiffness against a force in the direction that gives way most.
+    """Least stiffness of the platform over all directions of force.
 
-    Real directions, so that derivatives by complex step are those of a simple eigenvalue.
+    Real directions, so that complex-step derivatives are those of a simple eigenvalue.
     """
     block = _compliance(bench, asked)[..., :3, :3]
     worst = np.linalg.eigh(0.5 * np.real(block + np.swapaxes(block, -1, -2)))[1][..., :, -1]
@@ -241,97 +250,97 @@ def _compliance(bench: Bench, asked: Measure) -> Array:
 
 @partial(MeasureKind, "deflection.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, softening=-1.0)
 def deflection(bench: Bench, asked: Measure) -> Array:
-    """Motion under gravity and stated forces, strokes held."""
+    """Motion under gravity and specified forces, strokes fixed."""
     causes = bench.deflection(asked.point).by_cause
     return magnitude(np.sum(causes.values[..., causes.rows.index(f"{asked.point}.{asked.name}"), :], axis=-1))
 
 
 @partial(MeasureKind, "force.<axis>", FORCE, about=MOMENT)
 def force(bench: Bench, asked: Measure) -> Array:
-    """Blocking force of the platform along one axis.
+    """Blocked force of the platform along one axis.
 
-    Where forces move it: how far they do, held for ever, times its stiffness there.
+    For force-driven stages: the continuous travel times the stiffness.
     """
     if bench.forced:
         bounds = np.min(bounds_along(bench.force_workspace(PLATFORM), asked.name), axis=-1)
         return bounds * stiffness.work(bench, asked)
     lines = platform_lines(bench.kinematics.mapping, bench.model, bench.limits)
     if asked.name not in lines.coordinates:
-        raise refuse(f"force.{asked.name}", "is no ideal motion of this stage", f"Its ideal motions are {', '.join(lines.coordinates)}")
+        raise refuse(f"force.{asked.name}", "not an ideal motion of this stage", f"Use one of {', '.join(lines.coordinates)}")
     return lines.blocking[..., lines.coordinates.index(asked.name)]
 
 
 @partial(MeasureKind, "current.<axis>", CURRENT, extreme=Extreme.LARGEST)
 def current(bench: Bench, asked: Measure) -> Array:
-    """Largest current of a coil that holds the required stroke along one axis."""
+    """Largest coil current for holding the required stroke along one axis."""
     return _held(bench, asked)[0]
 
 
 @partial(MeasureKind, "voltage.<axis>", VOLTAGE, extreme=Extreme.LARGEST)
 def voltage(bench: Bench, asked: Measure) -> Array:
-    """Largest voltage of a coil at rest, R i, that holds the required stroke along one axis."""
+    """Largest static coil voltage, R i, for holding the required stroke along one axis."""
     currents, coils = _held(bench, asked)
     return currents * _stated(coils, "resistance")
 
 
 @partial(MeasureKind, "thrust.<axis>", FORCE, extreme=Extreme.LARGEST)
 def thrust(bench: Bench, asked: Measure) -> Array:
-    """Largest force of a coil that holds the required stroke along one axis."""
+    """Largest coil force for holding the required stroke along one axis."""
     currents, coils = _held(bench, asked)
     return currents * _stated(coils, "force_constant")
 
 
 @partial(MeasureKind, "power.<axis>", POWER)
 def power(bench: Bench, asked: Measure) -> Array:
-    """Heat of all coils, i^2 R, that holding the required stroke along one axis takes."""
+    """Heat of all coils, i^2 R, for holding the required stroke along one axis."""
     currents, coils = _held(bench, asked)
     return np.sum(currents**2 * _stated(coils, "resistance"), axis=-1)
 
 
 @partial(MeasureKind, "heating.<axis>", TEMPERATURE, extreme=Extreme.LARGEST)
 def heating(bench: Bench, asked: Measure) -> Array:
-    """Largest temperature rise of a coil that holds the required stroke along one axis for ever."""
+    """Largest temperature rise of a coil for holding the required stroke along one axis continuously."""
     currents, coils = _held(bench, asked)
     return currents**2 * _stated(coils, "resistance") * _stated(coils, "thermal_resistance")
 
 
 def _held(bench: Bench, asked: Measure) -> tuple[Array, dict[str, Coil]]:
-    """The currents (..., c) of all coils that hold the required stroke along an axis, and the coils."""
+    """Currents (..., c) of all coils that hold the required stroke along an axis, and the coils."""
     found = bench.force_workspace(PLATFORM)
     coils = {name: part for name in bench.assembly.thrusts if isinstance(part := bench.assembly.actuator(name), Coil)}
     if not coils or asked.name not in found.coordinates:
-        raise refuse(asked.key, "no coil moves this stage along it", f"Its ideal motions are {', '.join(found.coordinates)}")
+        raise refuse(asked.key, "no coil moves the stage along this axis", f"Use one of {', '.join(found.coordinates)}")
     if asked.name not in bench.command:
-        advice = f'Add for example "stroke.{asked.name}" = "at least 50 um"'
-        raise refuse(asked.key, "no stroke along this axis is required, so there is none to hold", advice)
+        advice = f'Add e.g. "stroke.{asked.name}" = "at least 50 um"'
+        raise refuse(asked.key, "required stroke along this axis missing", advice)
     rows = [found.per_motion.rows.index(name) for name in coils]
     return magnitude(found.per_motion.values[..., rows, found.coordinates.index(asked.name)] * bench.command[asked.name]), coils
 
 
 def _stated(coils: dict[str, Coil], field: str) -> Array:
-    """A number (..., c) of every coil, refused where one does not state it."""
+    """A number (..., c) of every coil; refuses missing ones."""
     values = {name: getattr(coil, field) for name, coil in coils.items()}
     missing = [name for name, value in values.items() if value is None]
     if missing:
-        raise refuse(missing[0], f"it states no {field.replace('_', ' ')}", f"Add {field} to its part")
+        raise refuse(missing[0], f"{field.replace('_', ' ')} missing", f"Add {field} to its part")
     return stack(list(values.values()))
 
 
 @partial(MeasureKind, "loss", RATIO, extreme=Extreme.LARGEST, felt=True)
 def loss(bench: Bench, _: Measure) -> Array:
-    """Largest share of its stroke an actuator loses."""
+    """Largest relative lost motion of an actuator."""
     return magnitude(np.diagonal(bench.lost.loss.values, axis1=-2, axis2=-1))
 
 
 @partial(MeasureKind, "loss.<actuator>", RATIO, felt=True)
 def own_loss(bench: Bench, asked: Measure) -> Array:
-    """Share of its stroke the actuator loses."""
+    """Relative lost motion of the actuator."""
     return loss.pieces(bench, asked)[..., bench.lost.loss.rows.index(asked.name)]
 
 
 @partial(MeasureKind, "crosstalk", RATIO, extreme=Extreme.LARGEST, felt=True)
 def crosstalk(bench: Bench, _: Measure) -> Array:
-    """Largest stroke one actuator appears to make when another does."""
+    """Largest apparent stroke of one actuator due to the stroke of another."""
     values = bench.lost.loss.values
     others = values[..., ~np.eye(values.shape[-1], dtype=bool)]
     return magnitude(others) if others.size else np.zeros((*values.shape[:-2], 1))
@@ -345,7 +354,7 @@ def map_error(bench: Bench, asked: Measure) -> Array:
 
 @partial(MeasureKind, "drift.<axis>", DRIFT, about=TILT_DRIFT, pointed=True, felt=True)
 def drift(bench: Bench, asked: Measure) -> Array:
-    """Motion per kelvin of uniform temperature, strokes held, the ground of the material of its links."""
+    """Motion per kelvin of uniform temperature, strokes fixed, with the ground's material."""
     return magnitude(bench.drift.motion.at(f"{asked.point}.{asked.name}", "uniform"))
 
 
@@ -354,7 +363,9 @@ def mass(bench: Bench, _: Measure) -> Array:
     """Mass of the platform without payload."""
     own = bench.assembly.bodies[PLATFORM].mass
     if own is None:
-        raise refuse("platform", "has neither solids nor a stated mass", "Give it a solid of a material with a density, or its mass")
+        raise refuse(
+            "platform", "the platform has neither solids nor a specified mass", "Add a solid of a material with a density, or its mass"
+        )
     return np.asarray(own.mass)
 
 
@@ -362,7 +373,7 @@ def mass(bench: Bench, _: Measure) -> Array:
 def total_mass(bench: Bench, _: Measure) -> Array:
     """Mass of all bodies, links and stacks without payload.
 
-    Links by their integrals over the profile: a rigid motion along has the mass of both ends and what is between them.
+    Links by their integrals over the profile, including end masses.
     """
     bodies = [body.mass.mass for body in bench.assembly.bodies.values() if body.mass is not None]
     ends = [link_mass(link.part, link.material) for link in bench.assembly.links.values()]
@@ -385,9 +396,9 @@ def height(bench: Bench, _: Measure) -> Array:
 
 @partial(MeasureKind, "opening", LENGTH, analytic=False)
 def opening(bench: Bench, _: Measure) -> Array:
-    """How far anything stands into the clear opening."""
+    """Largest intrusion into the clear aperture."""
     if bench.mechanism.opening is None:
-        raise refuse("opening", "the description has no clear opening", 'Add for example opening = { size = ["110 mm", "110 mm"] }')
+        raise refuse("opening", "clear aperture missing", 'Add e.g. opening = { size = ["110 mm", "110 mm"] }')
     depths = [item.depth for item in bench.clearance.intrusions]
     return np.max(np.stack(np.broadcast_arrays(*depths)), axis=0) if depths else np.asarray(0.0)
 
@@ -402,23 +413,23 @@ def resolution(bench: Bench, asked: Measure) -> Array:
 
 @partial(MeasureKind, "gauge.range", RATIO, extreme=Extreme.LARGEST)
 def gauge_range(bench: Bench, _: Measure) -> Array:
-    """Share of half the gauges' range that all required strokes at once ask for, worst gauge."""
+    """Largest gauge reading over half its range, all required strokes at once."""
     return gauge_swing(bench.kinematics, bench.box()) / half_ranges(bench.assembly)
 
 
 @partial(MeasureKind, "gauge.range.<gauge>", RATIO)
 def own_gauge_range(bench: Bench, asked: Measure) -> Array:
-    """Share of half the gauge's range that all required strokes at once ask for."""
+    """Gauge reading over half its range, all required strokes at once."""
     return gauge_range.pieces(bench, asked)[..., bench.kinematics.gauges.index(asked.name)]
 
 
 @partial(MeasureKind, "load", RATIO, extreme=Extreme.LARGEST, over_strokes=True)
 def load(bench: Bench, _: Measure) -> Array:
-    """Share of its maximum load, or of what may pull it, that the most loaded stack bears at the worst corner."""
+    """Largest ratio of stack load to its limit, in compression or tension, at the worst corner."""
     share, limits = bench.load_share, bench.limits.from_zero
     use = share.use(limits)
     if np.any(np.isnan(use)) or np.any(np.isnan(share.maximum)):
-        raise refuse("load", "not every stack states its maximum load", 'Add for example maximum_load = "5000 N" to the stack')
+        raise refuse("load", "maximum load of a stack missing", 'Add e.g. maximum_load = "5000 N" to the stack')
     if use.ndim == 1:
         require(each for each in share.tension_findings(limits) if "neither" in each.what)
     return use
@@ -426,7 +437,7 @@ def load(bench: Bench, _: Measure) -> Array:
 
 @partial(MeasureKind, "load.<actuator>", FORCE, over_strokes=True)
 def own_load(bench: Bench, asked: Measure) -> Array:
-    """Largest compression of the stack at the worst corner of the strokes, dead load included."""
+    """Largest compression of the stack at the worst corner of the strokes, with permanent load."""
     share = bench.load_share
     return share.range(bench.limits.from_zero)[1][..., share.actuators.index(asked.name)]
 
@@ -435,9 +446,9 @@ Work = Callable[[Bench, Measure], float]
 
 
 def _each_design(work: Work, together: Callable[[Sequence[Bench], Measure], None] | None = None) -> Callable[[Bench, Measure], Array]:
-    """The same of batches and of complex numbers: design by design, derivatives by central differences along the imaginary parts.
+    """Evaluate batches and complex numbers design by design; derivatives by central differences along the imaginary parts.
 
-    What `together` works out of many designs at once their benches have beforehand.
+    `together` prepares the benches of many designs in one run.
     """
 
     @wraps(work)
@@ -461,7 +472,7 @@ def _each_design(work: Work, together: Callable[[Sequence[Bench], Measure], None
 
 
 def value_or_bound(work: Callable[[Bench, Measure], Any], bench: Bench, asked: Measure) -> Any:
-    """The value of a measure, or its lower bound if no more is known."""
+    """Return the value of a measure, or its lower bound if only that is known."""
     try:
         return work(bench, asked)
     except LowerBoundError as error:
@@ -469,7 +480,7 @@ def value_or_bound(work: Callable[[Bench, Measure], Any], bench: Bench, asked: M
 
 
 def _shares(step: float) -> tuple[float, ...]:
-    """Which shares of imaginary parts are added to a design."""
+    """Shares of the imaginary parts added to a design."""
     return (0.0, step, -step) if step else (0.0,)
 
 
@@ -482,22 +493,22 @@ def _go_along(benches: Sequence[Bench], asked: Measure) -> None:
 
 
 def _column(bench: Bench, asked: Measure, name: str) -> Array:
-    """A column of a stroke: at the place that is asked for, or all of it. Refused where no equilibrium was found."""
+    """A column of a stroke, at the requested place or complete. Refuses missing equilibria."""
     found = bench.along(asked.name, asked.place)
     if name not in found.columns:
-        raise refuse(asked.key, f"{found.drive} is no coordinate, so nothing holds it", "Drive a coordinate, for example platform.y")
+        raise refuse(asked.key, f"{found.drive} is not a coordinate, and so has no holding force", "Drive a coordinate, e.g. platform.y")
     values = found.column(name)
     if np.any(np.isnan(values)):
         where = found.column(found.drive)[np.isnan(values)][0]
-        raise refuse(asked.key, f"at {found.drive} = {where:.4g} the stage has no equilibrium, or a free one that is not stable", _LESS)
+        raise refuse(asked.key, f"no stable equilibrium at {found.drive} = {where:.4g}", _LESS)
     return values
 
 
-_LESS = "Ask for less stroke, or ask flexstage buckle what gives way"
+_LESS = "Reduce the stroke, or run flexstage buckle to find the buckling mode"
 
 
 def _worst_along(name: str, column: str, quantity: Quantity, meaning: str, about: Quantity | None = None) -> MeasureKind:
-    """What a column of a stroke has of the worst, over all of a path or at one place on it: of stiffness and frequency the least."""
+    """Worst value of a stroke column along a path or at one point: least stiffness and frequency, else largest value."""
     worst: Callable[[Array], Any] = np.min if name in _LEAST else _largest
 
     @partial(_each_design, together=_go_along)
@@ -513,37 +524,37 @@ def _largest(values: Array) -> Any:
 
 
 _LEAST = {"stiffness", "frequency"}
-_MOVED = "Motion of the platform along that axis as it goes along a path, from where it rests; over all of it the largest."
-_FORCED = "Force that holds the drive of a path there, at large displacements; over all of it the largest."
+_MOVED = "Largest motion of the platform along that axis on a path, relative to its static equilibrium."
+_FORCED = "Largest holding force of the drive of a path, at large displacements."
 path_force = _worst_along("force", "force", FORCE, _FORCED, MOMENT)
-_STIFF = "Stiffness against the drive of a path, at large displacements; over all of it the least."
+_STIFF = "Least stiffness along the drive of a path, at large displacements."
 path_stiffness = _worst_along("stiffness", "stiffness", STIFFNESS, _STIFF, TWISTING)
 path_stress = _worst_along("stress", "stress", PRESSURE, "Largest stress of a flexure over a path, at large displacements.")
 path_strain = _worst_along("strain", "strain", RATIO, "Largest strain of a flexure over a path, at large displacements.")
-path_frequency = _worst_along("frequency", "f1", FREQUENCY, "Lowest natural frequency along a path, free under the force there.")
+path_frequency = _worst_along("frequency", "f1", FREQUENCY, "Lowest natural frequency along a path, drive free under its force.")
 
 
 @partial(MeasureKind, "buckling.factor", RATIO)
 @_each_design
 def buckling_factor(bench: Bench, _: Measure) -> float:
-    """How many times its own weight and payloads the stage bears, at large displacements."""
+    """Critical load factor of weight and payloads, at large displacements."""
     return _least_factor(bench, [cases.LoadCase(state.WEIGHT, cases.REST, {state.WEIGHT: 1.0})])
 
 
 @partial(MeasureKind, "<path>.buckling", RATIO, along=True)
 @_each_design
 def path_buckling(bench: Bench, asked: Measure) -> float:
-    """How many times its weight, and what loads it, the stage bears at the ends of a path, at large displacements; the least."""
+    """Least critical load factor of weight and other loads at the ends of a path, at large displacements."""
     places = None if asked.place is None else {"there": asked.place}
     return _least_factor(bench, cases.path_cases(bench.mechanism, asked.name, places))
 
 
 def _least_factor(bench: Bench, load_cases: Iterable[cases.LoadCase]) -> float:
-    """The least factor of load cases, infinite where nothing buckles. Raises `LowerBoundError` where the least is a lower bound."""
+    """Least factor of load cases, infinite without buckling. Raises `LowerBoundError` if the least is a lower bound."""
     least, bounded = np.inf, None
     for case in load_cases:
         try:
-            factor, error = cases.case_critical(bench.nonlinear, case, tolerance=1e-9).factor, None  # slopes are taken of it
+            factor, error = cases.case_critical(bench.nonlinear, case, tolerance=1e-9).factor, None  # for differentiation
         except critical_load.NoCriticalLoadError:
             continue
         except LowerBoundError as found:
@@ -581,13 +592,13 @@ def named_number(bench: Bench, asked: Measure) -> Array:
 
 
 def over(kind: MeasureKind) -> MeasureKind:
-    """The worst along a path of what small motions have: a frequency, a stiffness. Refused for what needs more than a model of those.
+    """Extend a measure of linear models (a frequency, a stiffness) to its worst value along a path. Refuses other measures.
 
     >>> over(frequency).form
     'frequency.<n> over <path>'
     """
     if kind.softening <= 0.0:
-        raise refuse(kind.form, "it is not known over a path", "Ask for a frequency or a stiffness over it")
+        raise refuse(kind.form, "unknown along a path", "Use a frequency or a stiffness over it")
 
     @_each_design
     def least(bench: Bench, asked: Measure) -> float:
@@ -603,8 +614,10 @@ def over(kind: MeasureKind) -> MeasureKind:
 def _require_frequencies(lowest: Array, path: str) -> None:
     loose = int(np.sum(np.isnan(lowest)))
     if loose:
-        what = f"at {loose} of its {lowest.size} points the free stage is not stable, and has no frequencies"
-        raise refuse(f"paths.{path}", what, f"Ask flexstage stroke --path {path} where; lighten what it holds, or lock what leaves")
+        what = f"the free stage is unstable at {loose} of {lowest.size} points, and so has no frequencies"
+        raise refuse(
+            f"paths.{path}", what, f"Run flexstage stroke --path {path} to find the points; reduce loads, or fix the unstable coordinate"
+        )
 
 
 _OVER = " over <path>"
@@ -614,11 +627,11 @@ _PATH_MOTIONS = tuple(
 MEASURES: Register[MeasureKind] = Register(
     "flexstage.measures", {each.form: each for each in (*globals().values(), *_PATH_MOTIONS) if isinstance(each, MeasureKind)}
 )
-"""Measures by the form of their keys, ours in the order they stand above: `[requirements]` lines and studies call them by it."""
+"""Measures by the form of their keys, in the order above: names in `[requirements]` lines and studies."""
 
 
 def measure_kind(form: str) -> MeasureKind:
-    """The kind of measure of that form. Raises `DesignError` where no installed package offers it.
+    """Return the kind of measure of a form. Raises `DesignError` if no installed package provides it.
 
     >>> measure_kind("mass").meaning
     'mass of the platform without payload'
@@ -627,5 +640,5 @@ def measure_kind(form: str) -> MeasureKind:
     if found is not None and form.endswith(_OVER):
         return over(found)
     if found is None:
-        raise refuse(form, "no installed package offers this measure", "Install the one that does")
+        raise refuse(form, "no installed package provides this measure", "Install the package that does")
     return found

@@ -1,4 +1,4 @@
-"""The `[requirements]` lines of a design file about measures, and the verdict on a value."""
+"""`[requirements]` lines of a design file, and verdicts on values."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from flexstage.analysis.assessment.measures import (
     over,
     path_buckling,
     safety,
+    safety_at_strokes,
 )
 from flexstage.analysis.loaded.course import drive_quantity
 from flexstage.base.finding import DesignError, Finding, refuse, suggest_nearest
@@ -38,7 +39,7 @@ _SLACK = 1e-9
 
 
 class Sense(Enum):
-    """Which side of the limit is good."""
+    """Sense of a limit."""
 
     AT_LEAST = "at least"
     AT_MOST = "at most"
@@ -46,7 +47,7 @@ class Sense(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Requirement(Measure):
-    """One line: a measure, on which side of the limit [SI] it is to be, and the line's own words."""
+    """Requirement line: a measure, the sense of its limit [SI], and the text of the line."""
 
     text: str
     sense: Sense
@@ -55,7 +56,7 @@ class Requirement(Measure):
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
-    """A requirement against the design's `value` (...) in SI; `None` with the `reason` where it could not be found out."""
+    """Verdict on a requirement for the design's `value` (...) in SI; `None` with the `reason` if unknown."""
 
     requirement: Requirement
     value: Array | None
@@ -63,9 +64,9 @@ class Verdict:
 
     @property
     def margin(self) -> Array:
-        """Distance to the limit on the good side over the limit (...): 0.1 is 10 % to spare, negative fails; NaN without a value.
+        """Relative margin (...) to the limit: 0.1 is 10 % reserve, negative fails; NaN without a value.
 
-        For a limit of zero the distance itself, in SI.
+        For a limit of zero, the absolute margin in SI.
         """
         if self.value is None:
             return np.asarray(np.nan)
@@ -75,12 +76,12 @@ class Verdict:
 
     @property
     def passed(self) -> Array:
-        """Whether the requirement is met (...); rounding to a billionth counts as met, a missing value as not."""
+        """Whether the requirement is met (...), within a relative rounding of 1e-9; a missing value is not."""
         return np.nan_to_num(self.margin, nan=-np.inf) >= -_SLACK
 
 
 def asked_factor(mechanism: Mechanism) -> float:
-    """The factor that a design asks for: the largest of its lines `buckling.factor` and `buckling`, else of `safety`; 1 where it has none.
+    """Return the required load factor: the largest of the lines `buckling.factor` and `buckling`, else of `safety`, else 1.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> asked_factor(parallelogram())
@@ -88,11 +89,11 @@ def asked_factor(mechanism: Mechanism) -> float:
     """
     lines = [line for line in requirements(mechanism) if line.sense is Sense.AT_LEAST]
     own = [line.limit for line in lines if line.kind in (buckling_factor, buckling, path_buckling)]
-    return max(own or [line.limit for line in lines if line.kind is safety], default=1.0)
+    return max(own or [line.limit for line in lines if line.kind in (safety, safety_at_strokes)], default=1.0)
 
 
 def known_keys(mechanism: Mechanism) -> tuple[str, ...]:
-    """Every key that may be required of this stage (frequencies up to the sixth; higher numbers are read too).
+    """Return every requirement key of this stage (frequencies up to the sixth; higher numbers are valid too).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [key for key in known_keys(double_triangle()) if key.startswith("loss")][:3]
@@ -126,7 +127,7 @@ def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
 
 
 def _names(mechanism: Mechanism) -> dict[str, tuple[str, ...]]:
-    """What may stand in the place of each placeholder."""
+    """Valid names for each placeholder."""
     assembly = expand(mechanism)
     return {
         "path": tuple(mechanism.paths),
@@ -162,7 +163,9 @@ def requirement(mechanism: Mechanism, key: str, text: str, where: str) -> Requir
 def _read(mechanism: Mechanism, where: str, key: str, text: str) -> Requirement:
     match = _LINE.fullmatch(text)
     if match is None:
-        raise refuse(where, f'found "{text}"', 'Write "at least" or "at most" and a value, for example "at least 50 um at chuck"')
+        raise refuse(
+            where, f'invalid requirement (got "{text}")', 'Use "at least" or "at most" and a value, e.g. "at least 50 um at chuck"'
+        )
     asked = _measure(mechanism, f"{key} at {match['point']}" if match["point"] else key, where)
     limit = parse(match["value"], asked.quantity, where=where)
     stated = {each.name: getattr(asked, each.name) for each in fields(asked) if each.name != "key"}
@@ -183,7 +186,7 @@ def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
 def _measure(mechanism: Mechanism, text: str, where: str) -> Measure:
     match = _MEASURE.fullmatch(text)
     if match is None:
-        raise refuse(where, f'found "{text}"', 'Write the name of a measure, for example "stroke.x at chuck"')
+        raise refuse(where, f'invalid measure (got "{text}")', 'Use the name of a measure, e.g. "stroke.x at chuck"')
     kind, name = _kind(match["key"], _names(mechanism), where)
     if kind.along:
         return _along(mechanism, (match["key"], kind, name), match["point"], where)
@@ -193,12 +196,12 @@ def _measure(mechanism: Mechanism, text: str, where: str) -> Measure:
     if match["path"] is None:
         return Measure(match["key"], kind, name, quantity, point)
     if match["path"] not in mechanism.paths:
-        raise refuse(where, f'there is no path "{match["path"]}"', suggest_nearest(match["path"], mechanism.paths))
+        raise refuse(where, f'unknown path "{match["path"]}"', suggest_nearest(match["path"], mechanism.paths))
     return Measure(f"{match['key']} over {match['path']}", over(kind), name, quantity, point, path=match["path"])
 
 
 def _along(mechanism: Mechanism, asked: tuple[str, MeasureKind, str], at: str | None, where: str) -> Measure:
-    """A measure along a path, perhaps at a value of its drive."""
+    """Measure along a path, or at a value of its drive."""
     key, kind, name = asked
     drive = drive_quantity(expand(mechanism), mechanism.paths[name].drive, f"paths.{name}.drive")
     place = None if at is None else parse(at, drive, where=where)
@@ -207,7 +210,7 @@ def _along(mechanism: Mechanism, asked: tuple[str, MeasureKind, str], at: str | 
 
 
 def _accepts_name(placeholder: str, name: str, where: str) -> bool:
-    """Whether a name that is in no list may stand in the place: a number, or a direction."""
+    """Whether an unlisted name is valid: a number or a direction."""
     if placeholder == "direction" and name.removeprefix("r").startswith("("):
         direction_of(name, where)
         return True
@@ -215,17 +218,17 @@ def _accepts_name(placeholder: str, name: str, where: str) -> bool:
 
 
 def _point_and_quantity(where: str, kind: MeasureKind, name: str, point: str | None, points: tuple[str, ...]) -> tuple[str, Quantity]:
-    """The point a measure is taken at, and its quantity: that about an axis for rotations."""
+    """Point of a measure, and its quantity: the rotational one about an axis."""
     if point and not kind.pointed:
-        raise refuse(where, f"is not asked at a point, found at {point}", f'Leave out "at {point}"')
+        raise refuse(where, f"the measure has no point (got at {point})", f'Remove "at {point}"')
     point = point or PLATFORM
     if point not in points:
-        raise refuse(where, f"found at {point}, and no point has this name", suggest_nearest(point, points))
+        raise refuse(where, f"unknown point (got at {point})", suggest_nearest(point, points))
     return point, kind.about if kind.about is not None and name.startswith("r") else kind.quantity
 
 
 def _kind(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tuple[MeasureKind, str]:
-    """The kind of measure that a key asks for, and the name in it."""
+    """Kind of measure of a key, and the name in it."""
     for form in MEASURES:
         stem, _, rest = form.partition("<")
         placeholder, _, tail = rest.partition(">")
@@ -236,5 +239,5 @@ def _kind(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tuple[M
         if fits and (name in names[placeholder] or _accepts_name(placeholder, name, where)):
             return measure_kind(form), name
     known = [spelt for form in MEASURES for spelt in _keys_of_form(form, names)]
-    advice = f"{suggest_nearest(key, known)}. A measure that another package offers is known where that package is installed"
-    raise refuse(where, f'there is no measure called "{key}"', advice)
+    advice = f"{suggest_nearest(key, known)}. Measures of other packages require that package"
+    raise refuse(where, f'unknown measure "{key}"', advice)

@@ -1,7 +1,7 @@
 """Exact sensitivities of frequencies and gains to every number of a description.
 
-Derivatives of K, M and the gains are taken by complex step through the models' own formulas, one batch axis a parameter; eigenvalue
-derivatives are analytic, d lambda = phi^T (dK - lambda dM) phi.
+Derivatives of K, M and the gains are by complex step through the models' formulas, one batch axis per parameter. Eigenvalue derivatives are
+analytic, d lambda = phi^T (dK - lambda dM) phi.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ class Sensitivities(Result):
     """Derivatives of modes and gains with respect to P parameters at one design.
 
     `frequency` (P, k) [Hz per SI unit of the parameter]: for the modes of a cluster it is the derivative of the cluster's mean. `clusters`
-    lists the groups of modes; `one_sided` gives per cluster the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi as frequency slopes,
-    each parameter alone (not to be added up over parameters). `gain` and `loss` (P, n) are those of each actuator; without actuators
-    (n = 0) where the strokes do not determine the platform. `missing` says what is not given, and why.
+    lists the groups of modes. `one_sided` has, per cluster, the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi as frequency slopes. They
+    are for single parameters (not additive over parameters). `gain` and `loss` (P, n) are those of each actuator; n = 0 if the strokes do
+    not determine the platform. `missing` has the reasons for absent results.
     """
 
     parameters: tuple[str, ...]
@@ -62,7 +62,7 @@ class Sensitivities(Result):
 
     @property
     def frequency_slopes(self) -> Annotated[Matrix, VIEW]:
-        """Change of each frequency per unit of each parameter; of the modes of a cluster, that of their mean."""
+        """Change of each frequency per unit of each parameter; for a cluster of modes, of their mean."""
         return self._slopes(self.frequency, self._modes, "Hz")
 
     @property
@@ -99,12 +99,11 @@ class Sensitivities(Result):
 def sensitivities(
     mechanism: Mechanism, parameters: tuple[str, ...] | None = None, *, modes: int = 12, cluster: float = 1e-6
 ) -> Sensitivities:
-    """Derivatives of the lowest `modes` frequencies and of all gains with respect to the addressed numbers (default: every one).
+    """Compute derivatives of the lowest `modes` frequencies and of all gains with respect to addressed numbers (default: all).
 
-    Modes closer than `cluster` (relative gap) are repeated: for them only the derivative of the mean is smooth, and the last of them are
-    listed, too. Where the strokes do not
-    determine the platform there are no gains: `missing` says so. Raises `DesignError` for unknown addresses and for those of anything
-    but a single number that the description states.
+    Modes closer than `cluster` (relative gap) are repeated: only the derivative of their mean is smooth, and a cluster is listed
+    completely. Gains require strokes that determine the platform; else `missing` has the reason. Raises `DesignError` for unknown addresses
+    and for addresses of anything but a single number in the description.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = sensitivities(double_triangle(), ("materials.steel.density",), modes=6)
@@ -145,11 +144,11 @@ def sensitivities(
 
 
 def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Finding]:
-    """Those addresses that are not a single number the description states.
+    """Return errors for addresses that are not a single number in the description.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [str(each) for each in not_numbers(double_triangle(), ("bodies.platform.mass",))]
-    ['bodies.platform.mass: the description does not state it. State it, or choose another number.']
+    ['bodies.platform.mass: not specified in the description. Specify it, or choose another number.']
     """
     for name in names:
         place = locate(mechanism, name)
@@ -157,17 +156,17 @@ def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findin
             inner = [each for each in addresses(mechanism) if each.startswith(f"{place.address}.")]
             yield Finding(
                 name,
-                "this is not a single number",
-                f"Address one of its numbers. {suggest_nearest(name, inner)}" if inner else "Address a number",
+                "not a single number",
+                f"Use one of its numbers. {suggest_nearest(name, inner)}" if inner else "Use the address of a number",
             )
         elif get(mechanism, name) is None:
-            yield Finding(name, "the description does not state it", "State it, or choose another number")
+            yield Finding(name, "not specified in the description", "Specify it, or choose another number")
 
 
 def override_level(mechanism: Mechanism, name: str) -> int:
-    """What an address departs from: 0 nothing, 1 a part as all copies of a unit have it, 2 that as a single copy has it.
+    """Return the override level of an address: 0 none, 1 a part in all instances of a unit, 2 in a single instance.
 
-    Above that named numbers, each after those it is worked out of: they write what formulas work out of them.
+    Higher levels are named numbers, each after those it depends on, as formulas compute other numbers from them.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [override_level(double_triangle(), f"{place}.thickness") for place in ("parts.neck", "horizontal/front", "B1/front")]
@@ -179,9 +178,9 @@ def override_level(mechanism: Mechanism, name: str) -> int:
 
 
 def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:
-    """Positions of parameters that can be stepped together.
+    """Yield indices of parameters that can be stepped together.
 
-    An override hides the number it departs from, and a named number is hidden by what is worked out of it: each level goes alone.
+    An override hides the number that it replaces, and a result of a formula hides its named numbers: each level is stepped separately.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(steppable(double_triangle(), ("parts.neck.thickness", "horizontal/front.thickness", "materials.steel.young")))
@@ -195,13 +194,13 @@ def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int
 
 
 def step_parameters(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
-    """The description with one batch axis: design k has a tiny imaginary step in parameter k.
+    """Return the description with one batch axis: design k has a small imaginary step in parameter k.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> step_parameters(double_triangle(), ("parts.neck.thickness",)).parts["neck"].thickness.real.round(9).tolist()
     [0.00154]
     """
-    result = replace(mechanism, requirements={}, tags={})  # every step would look for its tag among all of them
+    result = replace(mechanism, requirements={}, tags={})  # avoids a search for tags at every step
     for number, name in enumerate(names):
         values = np.full(len(names), get(mechanism, name), dtype=complex)
         values[number] += 1j * _STEP
@@ -210,7 +209,7 @@ def step_parameters(mechanism: Mechanism, names: tuple[str, ...]) -> Mechanism:
 
 
 def _piece(batch: Mechanism, count: int, solved: Eigen, groups: list[list[int]], *, gains: bool) -> tuple[list[Array], Array]:
-    """Per cluster the slopes of lambda (p, c), and the derivative of every actuator's loss (p, n); n = 0 without `gains`."""
+    """Slopes of lambda (p, c) by cluster, and the derivative of every actuator's loss (p, n); n = 0 without `gains`."""
     model = lumped(batch)
     slopes = [_slopes(model, solved, group, count) for group in groups]
     if not gains:
@@ -228,7 +227,7 @@ def _slopes(model: LinearModel, solved: Eigen, group: list[int], count: int) -> 
 
 
 def project(contributions: Contributions, shapes: Array) -> Array:
-    """Phi^T dA Phi (p, k, k) of a stepped description's matrix, given as contributions and not formed, for shapes (n, k).
+    """Compute Phi^T dA Phi (p, k, k) for shapes (n, k) from the contributions of a stepped matrix.
 
     >>> from flexstage.models.linear.model import Contribution
     >>> one = np.ones((1, 1))
@@ -243,7 +242,7 @@ def project(contributions: Contributions, shapes: Array) -> Array:
 
 
 def slope(values: Array) -> Array:
-    """Derivatives in the values of a stepped description.
+    """Return derivatives from the values of a stepped description.
 
     >>> slope(np.array([1.0 + 2e-20j])).round(9).tolist()
     [2.0]

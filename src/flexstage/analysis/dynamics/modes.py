@@ -1,4 +1,4 @@
-"""Modes: frequencies, shapes, names, and which of them are the platform's."""
+"""Natural modes: frequencies, shapes, names, and the selection of platform modes."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ _NUMBERED = re.compile(r"([^\d/]+)(0|[1-9]\d*)(|/.*| \(link\))")
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """One mode: its share of kinetic energy in the platform, and whether it is the `platform`'s own or a `local` one among these.
+    """One mode: the platform's kinetic-energy fraction, and whether it is a `platform` mode or a `local` one near these.
 
-    `compliance_share` is its share of the platform's static compliance along its own motion of the platform, `energy_share` the share of
-    kinetic energy of every body and link from one per cent, largest first.
+    `compliance_share` is its share of the platform's static compliance along the mode's platform motion. `energy_share` is the
+    kinetic-energy fraction of every body and link from one per cent, largest first.
     """
 
     TABLE: ClassVar[Layout] = Layout("Modes", "number frequency name platform_share compliance_share plane role")
@@ -54,24 +54,24 @@ class Mode:
 
     @property
     def plane(self) -> Annotated[str, INNER]:
-        """Whether it is in the plane."""
+        """In-plane or out-of-plane motion."""
         return "in plane" if self.in_plane else "out of plane"
 
     @property
     def role(self) -> Annotated[str, INNER, Heading(mark=_ROLES.__getitem__)]:
-        """Whose mode it is."""
+        """Platform mode or local mode."""
         return "platform" if self.platform else "local, near" if self.local else "local"
 
 
 class Modes(Result):
-    """Undamped modes of a stage, ascending.
+    """Undamped natural modes of a stage, ascending.
 
-    `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist; `share` (..., k)
-    kinetic energy of the platform body over the total, `compliance_share` (..., k) that of the platform's static compliance; `bodies` names
-    the rows of `energies` (..., b, k), the share of every body and link. `chosen` (..., k) are the modes of the platform frequencies.
-    `names`, `in_plane` and `platform` (indices of the chosen modes) are those of the first design. A mode in which several bodies
-    have equal shares is named after all of them, and so is each of the modes that repeat. `limit` only says how many are listed.
-    Of a large stage only the lowest modes are worked out, `partial`; the platform's are those among them.
+    `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist. `share` (..., k)
+    is the kinetic-energy fraction of the platform body, `compliance_share` (..., k) the fraction of its static compliance. `bodies` names
+    the rows of `energies` (..., b, k), the fraction of every body and link. `chosen` (..., k) are the modes of the platform frequencies.
+    `names`, `in_plane` and `platform` (indices of the chosen modes) are those of the first design. A mode with equal fractions of several
+    bodies is named after all of them; repeated modes likewise. `limit` determines only the number of listed modes. A large stage has only
+    the lowest modes, `partial`, including those of the platform among them.
     """
 
     frequencies: Array
@@ -92,7 +92,7 @@ class Modes(Result):
 
     @property
     def modes(self) -> Annotated[tuple[Mode, ...], VIEW]:
-        """The listed modes one by one, ascending, of the first design."""
+        """Listed modes of the first design, ascending."""
         return tuple(map(self.mode, range(self.listed)))
 
     def mode(self, index: int) -> Mode:
@@ -106,44 +106,44 @@ class Modes(Result):
 
     @property
     def listed(self) -> Annotated[int, VIEW]:
-        """How many modes are listed: those below the limit, at least 24, and up to the last one of the platform or beside its own."""
+        """Number of listed modes: those below the limit, at least 24, and up to the last platform mode or local mode near it."""
         below = int(np.sum(first_design(self.frequencies, 1) < self.limit)) if np.isfinite(self.limit) else 0
         last = max((*self.local, *self.platform), default=-1) + 1
         return min(len(self.names), max(below, last, _LISTED))
 
     @property
     def computed(self) -> Annotated[int, VIEW]:
-        """How many modes were worked out: all, but of a large stage."""
+        """Number of computed modes: all, except for a large stage."""
         return len(self.names)
 
     def dominant_bodies(self, index: int) -> tuple[str, float]:
-        """The body or link with the most kinetic energy in a mode of the first design, or all that have as much, and their share."""
+        """Body or link with the largest kinetic-energy fraction in a mode of the first design (all equal ones), and the fraction."""
         shares = first_design(self.energies, 2)[:, index]
         most = np.flatnonzero(shares >= np.max(shares) - _EQUAL)
         return _set([self.bodies[place] for place in most]), float(np.sum(shares[most]))
 
     @property
     def twists(self) -> Annotated[Matrix, VIEW]:
-        """The platform's twist in each listed mode, mass-normalised."""
+        """Mass-normalised platform twist in each listed mode."""
         columns = tuple(str(number + 1) for number in range(self.listed))
         units = tuple((f"{unit}/kg^0.5",) * self.listed for unit in TWIST_UNITS)
         return Matrix(self.platform_shapes[..., : self.listed], COMPONENTS, columns, units)
 
     @property
     def platform_frequencies(self) -> Array:
-        """Platform frequencies (..., 6) [Hz], ascending, design by design; NaN where a design has fewer than others."""
+        """Platform frequencies (..., 6) [Hz], ascending, by design; NaN for a design with fewer."""
         ordered = np.sort(np.where(self.chosen, self.frequencies, np.nan), axis=-1)
         return ordered[..., : int(np.max(np.sum(self.chosen, axis=-1), initial=0))]
 
     @property
     def highest(self) -> float:
-        """The highest platform frequency of the first design below the limit, or its first one [Hz]."""
+        """Highest platform frequency of the first design below the limit, or its first one [Hz]."""
         frequencies = first_design(self.platform_frequencies, 1)
         return float(max(frequencies[frequencies < self.limit], default=frequencies[0]))
 
     @property
     def local(self) -> Annotated[tuple[int, ...], VIEW]:
-        """Modes that are not the platform's, below 1.5 times its highest one."""
+        """Local modes below 1.5 times the highest platform mode."""
         if not self.platform:
             return ()
         highest = first_design(self.platform_frequencies, 1)[-1]
@@ -155,12 +155,13 @@ class Modes(Result):
 
 @check_arguments
 def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
-    """Modes of the undamped model (Eq. 28 of Shin & Moon).
+    """Compute the undamped natural modes of a model (Eq. 28 of Shin & Moon).
 
-    The platform's modes are those at which one more direction of the platform has a tenth of its static compliance
-    (`models.batch.choice`). Modes closer than `cluster` (relative) are one cluster, within which the basis is turned so that shapes follow
-    the platform's axes, and those that leave the platform at rest the coordinates that move most. Modes below `limit` [Hz] are listed.
-    Small motions. Of a large stage (`LinearModel.is_sparse`, above 900 freedoms) only some 30 modes, the lowest, are worked out.
+    At each platform mode, one more direction of the platform reaches a tenth of its static compliance (`models.batch.choice`). Modes closer
+    than `cluster` (relative) form a cluster. Its basis is rotated so that shapes align with the platform's axes, and those without platform
+    motion with the coordinates that move most. Modes below `limit` [Hz] are listed.
+
+    Small motions. A large stage (`LinearModel.is_sparse`, above 900 degrees of freedom) has only the lowest 30 modes or so.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -176,9 +177,13 @@ def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEAT
     bodies, energies, components = _energies(model, solved)
     share = energies[..., bodies.index(_PLATFORM), :] if _PLATFORM in bodies else np.zeros_like(frequencies)
     platform_shapes = platform @ solved.shapes
-    parts = participation(compliance_root(model, platform), platform_shapes, solved.values)
-    flat = (solved.values.reshape(-1, solved.values.shape[-1]), parts.reshape(-1, *parts.shape[-2:]))
-    chosen = choose(*flat, Choice(cluster=cluster)).mask.reshape(frequencies.shape)
+    still = solved.values == 0.0
+    elastic = np.where(still, np.inf, solved.values)
+    parts = participation(compliance_root(model, platform), platform_shapes, elastic)
+    flat = (elastic.reshape(-1, solved.values.shape[-1]), parts.reshape(-1, *parts.shape[-2:]))
+    floating = still & np.any(np.abs(platform_shapes) > 0.0, axis=-2)
+    count = Choice().count - int(np.sum(floating))
+    chosen = floating | choose(*flat, Choice(count, cluster)).mask.reshape(frequencies.shape)
     own = first_design(chosen, 1)
     together = _together(bodies, first_design(energies, 2), components, list(zip(groups, moving, strict=True)), own)
     names, in_plane = _name_modes(bodies, *together, own)
@@ -187,7 +192,7 @@ def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEAT
         shapes=solved.shapes,
         platform_shapes=platform_shapes,
         share=share,
-        compliance_share=np.sum(parts**2, axis=-2),
+        compliance_share=np.where(floating, 1.0, np.sum(parts**2, axis=-2)),
         chosen=chosen,
         bodies=bodies,
         energies=energies,
@@ -196,7 +201,8 @@ def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEAT
         platform=tuple(np.flatnonzero(own).tolist()),
         limit=limit,
         coordinates=model.coordinates,
-        provenance=model.provenance + (f", the lowest {len(names)} modes of {len(model.coordinates):,} freedoms" if partial else ""),
+        provenance=model.provenance
+        + (f", the lowest {len(names)} modes of {len(model.coordinates):,} degrees of freedom" if partial else ""),
         partial=partial,
     )
 
@@ -211,24 +217,25 @@ def clusters(values: Array, gap: float) -> list[list[int]]:
 
 
 def repeated_groups(values: Array, gap: float = _REPEATED) -> list[list[int]]:
-    """Groups of ascending eigenvalues omega^2 whose frequencies agree within `gap`, or as well as rounding lets one tell.
+    """Group ascending eigenvalues omega^2 whose frequencies agree within `gap`, or within rounding.
 
-    Solved by 1/lambda, an eigenvalue is known to eps times its ratio to the least one, times what rounding grows by.
+    Solved by 1/lambda, an eigenvalue has a relative error of eps times its ratio to the least one, times a rounding factor.
 
     >>> repeated_groups(np.array([1.0, 1.0 + 1e-9, 2.0]))
     [[0, 1], [2]]
     """
-    return _split(values, (2.0 * gap + _ROUNDING * values / values[:1]) * values)
+    least = values[values > 0.0][:1] if np.any(values == 0.0) else values[:1]
+    return _split(values, (2.0 * gap + _ROUNDING * values / least) * values if len(least) else gap * values)
 
 
 def _split(values: Array, slack: Array) -> list[list[int]]:
-    """Groups of ascending values, each no further above the one before than its slack."""
+    """Groups of ascending values with gaps of at most their slack."""
     starts = 1 + np.flatnonzero(~(np.diff(values) <= slack[1:]))
     return [each.tolist() for each in np.split(np.arange(len(values)), starts)] if len(values) else []
 
 
 def average(values: Array, groups: list[list[int]]) -> Array:
-    """Every value (k,) as the mean of its group's.
+    """Replace every value (k,) by the mean of its group.
 
     >>> average(np.array([1.0, 3.0, 5.0]), [[0, 1], [2]]).tolist()
     [2.0, 2.0, 5.0]
@@ -237,10 +244,10 @@ def average(values: Array, groups: list[list[int]]) -> Array:
 
 
 def _align(platform: Array, solved: Eigen, groups: list[list[int]], weights: Array) -> tuple[Eigen, list[int]]:
-    """Turn the basis of repeated modes so that their platform shapes separate along the axes; and how many of each group move the platform.
+    """Rotate the basis of repeated modes to platform axes; also return the number of modes of each group that move the platform.
 
-    Of each group (of the first design) as many shapes as it has motions of the platform come first, along x, y, ...; the others leave the
-    platform at rest and follow the coordinates that move most.
+    In each group (of the first design), shapes with platform motion come first, along x, y, ...; shapes without it follow the coordinates
+    that move most.
     """
     shapes, moving = np.array(solved.shapes), list[int]()
     own = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])[:, None]
@@ -265,7 +272,7 @@ def _align(platform: Array, solved: Eigen, groups: list[list[int]], weights: Arr
 
 
 def _leading(rows: Array, least: float, basis: Array) -> Array:
-    """Numbers of the rows (n, k) that span them within `basis` (k, m): each the longest one left, while its square is above `least`."""
+    """Indices of the rows (n, k) that span them within `basis` (k, m), longest remaining first, with squares above `least`."""
     left, found = rows @ basis, list[int]()
     while len(found) < basis.shape[1]:
         squares = np.sum(left**2, axis=1)
@@ -291,7 +298,7 @@ def _energies(model: LinearModel, solved: Eigen) -> tuple[tuple[str, ...], Array
 
 
 def _by_component(products: Array) -> Array:
-    """Sums (6, k) over the twists in the rows; energy within an elastic body belongs to no component."""
+    """Sums (6, k) over the twists in the rows; without energy within elastic bodies."""
     rows, count = products.shape
     return products.reshape(-1, 6, count).sum(axis=0) if rows in {6, 12} else np.zeros((6, count))
 
@@ -299,9 +306,9 @@ def _by_component(products: Array) -> Array:
 def _together(
     bodies: tuple[str, ...], energies: Array, components: Array, groups: list[tuple[list[int], int]], chosen: Array
 ) -> tuple[Array, Array]:
-    """Energy shares (b, k) and their components (b, 6, k) as means over modes that repeat, which no choice of their basis changes.
+    """Energy shares (b, k) and components (b, 6, k) as means over repeated modes, independent of their basis.
 
-    Of each group, so many of its first modes move the platform: where they are the platform's own, their components stay apart.
+    The first modes of each group move the platform: components of platform modes stay separate.
     """
     energies, components = energies.copy(), components.copy()
     for group, count in (each for each in groups if len(each[0]) > 1):
@@ -318,7 +325,7 @@ def _together(
 
 
 def _main(bodies: tuple[str, ...], energies: Array, chosen: Array | np.bool_) -> Array:
-    """Which body modes (k) are named after: the platform in its `chosen` ones, and where it has half of the largest share (b, k)."""
+    """Main body of modes (k): the platform for `chosen` ones, and if it has half of the largest share (b, k)."""
     main = index_of_largest(energies.T, _EQUAL)
     if _PLATFORM not in bodies:
         return main
@@ -328,7 +335,7 @@ def _main(bodies: tuple[str, ...], energies: Array, chosen: Array | np.bool_) ->
 
 
 def _name_modes(bodies: tuple[str, ...], energies: Array, components: Array, chosen: Array) -> tuple[tuple[str, ...], tuple[bool, ...]]:
-    """Names of modes by the component that carries most of their main body's energy, and whether that motion is in plane."""
+    """Names of modes by the component with most energy of their main body, and whether this motion is in plane."""
     main = _main(bodies, energies, chosen)
     parts = components[main, :, np.arange(len(main))]
     in_plane = np.sum(parts[:, _IN_PLANE], axis=1) > (0.5 + _EQUAL) * np.sum(parts, axis=1)
@@ -342,12 +349,12 @@ def _name_modes(bodies: tuple[str, ...], energies: Array, components: Array, cho
 
 
 def _equal(bodies: tuple[str, ...], shares: Array) -> list[str]:
-    """The bodies with the largest share, in their order."""
+    """Bodies with the largest share, in their order."""
     return [bodies[place] for place in np.flatnonzero(shares >= np.max(shares) - _EQUAL) if bodies[place] != _PLATFORM]
 
 
 def _set(names: list[str]) -> str:
-    """Names in one text, copies in a row as the description writes them: `B1-B3/tip`."""
+    """Names in one text, consecutive instances as a range: `B1-B3/tip`."""
     parts = [_NUMBERED.fullmatch(name) for name in names]
     copies: dict[tuple[str, ...], list[int]] = {}
     for name, found in zip(names, parts, strict=True):
@@ -365,7 +372,9 @@ def _range(key: tuple[str, ...], numbers: list[int]) -> list[str]:
 
 
 def modal_assurance(first: Array, second: Array, weight: Array | None = None) -> Matrix:
-    """Modal assurance criterion |a^T W b|^2 / (a^T W a)(b^T W b) of shapes (n, k) and (n, m); W (n, n) defaults to the unit matrix.
+    """Compute the modal assurance criterion (MAC) |a^T W b|^2 / (a^T W a)(b^T W b) of shapes (n, k) and (n, m).
+
+    W (n, n) defaults to the unit matrix.
 
     Allemang & Brown 1982. Shapes that mix translations and rotations need a weight (the inertia matrix).
 

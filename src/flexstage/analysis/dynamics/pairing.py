@@ -1,4 +1,4 @@
-"""Pairing of two models' modes by their shapes at all motions that both models give."""
+"""Pairing of two models' modes by modal assurance of all common motions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.base.number import Array, first_design
 from flexstage.models.linear.model import LinearModel
 
 RELIABLE = 0.8
-"""The modal assurance below which two modes are not the same one."""
+"""Modal assurance below which two modes do not match."""
 
 _CLOSE = 0.01
 _LENGTH = 0.1
@@ -23,7 +23,7 @@ _UNSEEN = 1e-9
 
 @dataclass(frozen=True)
 class Pair:
-    """The mode of another model that a mode is paired with: its index, its frequency [Hz], the share 0 to 1 of the motion they share."""
+    """Paired mode of another model: its index, frequency [Hz] and modal assurance (0 to 1)."""
 
     index: int
     frequency: float
@@ -31,26 +31,25 @@ class Pair:
 
     @property
     def reliable(self) -> bool:
-        """Whether they are alike enough to be compared as one mode."""
+        """Whether the modal assurance is sufficient for a comparison."""
         return self.assurance >= RELIABLE
 
 
 @dataclass(frozen=True, eq=False)
 class Moving:
-    """The modes of a model, and the model that they are of."""
+    """Modes and their model."""
 
     modes: Modes
     model: LinearModel
 
 
 def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
-    """For each platform mode, by index, the mode of another model with the most similar motion of all bodies, points and gauges.
+    """Pair each platform mode, by index, with the most similar mode of another model.
 
-    Modal assurance (Allemang and Brown 1982) in kinetic energy: the outputs that are motions and that both models have, turns times the
-    platform's radius of gyration, give the coordinates of the model that has fewer of them (least squares), and its inertia weighs these.
-    The share is of each mode's whole kinetic energy: what moves inside bodies and links where no output sees it is not alike. A partner
-    may be any mode of the other, local ones too. Modes closer than 1 % are compared as a subspace: within it every basis is as good, and
-    the lower goes to the lower. A pair below `RELIABLE` is the best there is, and no match.
+    Modal assurance (Allemang and Brown 1982) weighted by kinetic energy. The common motion outputs determine the coordinates of the smaller
+    model by least squares, weighted by its inertia. Rotations are multiplied by the platform's radius of gyration. The share is of each
+    mode's total kinetic energy, including motion without an output. Any mode of the other model may be a partner, also local ones. Modes
+    closer than 1 % are compared as a subspace, in ascending order. A pair below `RELIABLE` is the best one, but not a match.
 
     >>> from flexstage.analysis.dynamics.modes import modes
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -78,21 +77,21 @@ def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
 
 
 def _with_close(members: Iterable[int], frequencies: Array) -> set[int]:
-    """Modes together with those that are less than 1 % from them."""
+    """Modes with those closer than 1 %."""
     return {int(index) for member in members for index in np.flatnonzero(np.abs(frequencies / frequencies[member] - 1.0) <= _CLOSE)}
 
 
 def _shared_energy(own: Array, other: Array) -> Array:
-    """How much of the kinetic energy of modes (r, n) one motion within those (r, k) of another model shares.
+    """Shared kinetic energy of modes (r, n) with the subspace of modes (r, k) of another model.
 
-    Mode by mode the energy is 1, what no output sees included; where the models' masses differ, no more than 1 is counted.
+    The energy of each mode is 1, including motion without an output; the share is at most 1 if the models' masses differ.
     """
     most = max(1.0, float(np.linalg.norm(other, 2))) if other.size else 1.0
     return np.sum((other.T @ own) ** 2, axis=0) / (most**2 * np.maximum(np.sum(own**2, axis=0), 1.0))
 
 
 def _alike(own: Moving, other: Moving) -> tuple[Array, Array]:
-    """Both models' modes (r, n) in the coordinates of the smaller model, so that the sum of squares is twice the kinetic energy seen."""
+    """Both models' modes (r, n) in coordinates of the smaller model; the sum of squares is twice the observed kinetic energy."""
     names = {channel.name for channel in other.model.outputs}
     common = tuple(channel.name for channel in own.model.outputs if channel.name in names and channel.unit in _MOTIONS)
     small = min(own, other, key=lambda each: len(each.model.coordinates)).model
@@ -109,13 +108,13 @@ def _rows(model: LinearModel, names: tuple[str, ...]) -> Array:
 
 
 def _root(inertia: Array) -> Array:
-    """A square root of the inertia, coordinates without mass included."""
+    """Square root of the inertia, including massless coordinates."""
     values, vectors = np.linalg.eigh(inertia)
     return np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
 
 
 def gyration(model: LinearModel) -> float:
-    """The platform's radius of gyration [m], what makes lengths of angles; 0.1 m where the model has no rigid platform."""
+    """Return the platform's radius of gyration [m], which scales angles to lengths; 0.1 m without a rigid platform."""
     item = model.inertia.get("platform")
     if item is None or item.law.shape[-2:] != (6, 6):
         return _LENGTH

@@ -1,4 +1,4 @@
-"""Random response: spectral densities of inputs to spectral densities and rms values of outputs."""
+"""Random response: power spectral densities and rms values of outputs due to random inputs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _PANELS_PER_DECADE = 6
 
 
 class Rate(Enum):
-    """What a spectrum is the density of: the input itself, its first or its second rate (floor velocity, floor acceleration)."""
+    """Quantity of a spectrum: the input, its velocity or its acceleration (e.g. of the floor)."""
 
     VALUE = 0
     VELOCITY = 1
@@ -38,10 +38,10 @@ class Rate(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Spectrum(CheckedFields):
-    """A one-sided power spectral density of an input.
+    """One-sided power spectral density of an input.
 
-    `density` in (unit of the input, with `rate` its rate)^2/Hz: one number (white), or a table (f,) over `frequencies` (f,) in Hz; between
-    the points straight in log-log, zero outside. Floor acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
+    `density` in (unit of the input, with `rate` its rate)^2/Hz: one number (white), or a table (f,) over `frequencies` (f,) in Hz. A table
+    is log-log interpolated and zero outside. Floor acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
     """
 
     density: float | Array
@@ -49,7 +49,7 @@ class Spectrum(CheckedFields):
     rate: Rate = Rate.VALUE
 
     def at(self, frequencies: Array) -> Array:
-        """Density of the input itself at frequencies (f,) > 0 in Hz.
+        """Return the density of the input at frequencies (f,) > 0 in Hz.
 
         >>> Spectrum(np.array([1.0, 100.0]), np.array([1.0, 10.0])).at(np.array([10.0**0.5, 20.0])).round(9).tolist()
         [10.0, 0.0]
@@ -63,10 +63,10 @@ class Spectrum(CheckedFields):
 
 
 class RandomResponse(Result):
-    """One-sided densities (..., f, p) of outputs [unit^2/Hz] and their rms values (..., p) [unit] over the band, with each input's share.
+    """One-sided densities (..., f, p) [unit^2/Hz] and rms values (..., p) [unit] of outputs, with the share of each input.
 
-    `shares` (..., p, m) are the mean squares from each input (inputs are uncorrelated, so they add up to rms^2). `method` states how the
-    integral was taken.
+    `shares` (..., p, m) are the mean squares from each input (uncorrelated inputs: their sum is rms^2). `method` is the method of
+    integration.
     """
 
     frequencies: Annotated[Array, FREQUENCY, Called("frequency")]
@@ -81,17 +81,17 @@ class RandomResponse(Result):
 
     @property
     def responding(self) -> Annotated[tuple[str, ...], VIEW, Called("outputs")]:
-        """Names of the outputs."""
+        """Output names."""
         return tuple(channel.name for channel in self.outputs)
 
     @property
     def disturbing(self) -> Annotated[tuple[str, ...], VIEW, Called("inputs")]:
-        """Names of the inputs."""
+        """Input names."""
         return tuple(channel.name for channel in self.inputs)
 
     @property
     def units(self) -> Annotated[tuple[str, ...], VIEW, Axes("responding")]:
-        """Unit of each output's rms value; its mean squares are in its square, its density in that per hertz."""
+        """Unit of each output's rms value; mean squares have its square, densities its square per hertz."""
         return tuple(channel.unit for channel in self.outputs)
 
 
@@ -104,12 +104,12 @@ def random_response(
     *,
     damping: Damping | None = None,
 ) -> RandomResponse:
-    """Densities S_yy = sum_j |H_ij|^2 S_j and rms = (integral of S_yy over `band`)^(1/2), inputs uncorrelated.
+    """Compute densities S_yy = sum_j |H_ij|^2 S_j and rms = (integral of S_yy over `band`)^(1/2), inputs uncorrelated.
 
     `spectra` maps input names (as for `response`; groups not allowed, `ground.z` is floor motion) to one-sided densities; `band` (low,
-    high) in Hz, low > 0. Integrated by Gauss's rule, 8 nodes a panel; panels end at multiples of each resonance's half width, at the
-    tables' points and six a decade, so that the rule resolves every peak (tested against the Lyapunov equation to 1e-8). Raises
-    `DesignError` for unknown names, an empty band, or densities that are not positive.
+    high) in Hz, low > 0. Gauss-Legendre integration, 8 nodes per panel. Panels end at multiples of each resonance's half width, at the
+    tables' points and six times a decade. The rule thus resolves every peak (tested against the Lyapunov equation to 1e-8). Raises
+    `DesignError` for unknown names, an empty band, or non-positive densities.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -131,15 +131,17 @@ def random_response(
 
 
 def spectrum_findings(spectra: Mapping[str, Spectrum], band: tuple[float, float]) -> list[Finding]:
-    """What is wrong with spectra and the band to integrate them over.
+    """Return the errors in spectra and the integration band.
 
     >>> [finding.where for finding in spectrum_findings({"ground.z": Spectrum(-1.0)}, (10.0, 1.0))]
     ['band', 'ground.z']
     """
     low, high = band
-    found = [] if 0.0 < low < high < np.inf else [Finding("band", f"{low:g} Hz to {high:g} Hz is no band", "Give 0 < low < high in Hz")]
+    found = (
+        [] if 0.0 < low < high < np.inf else [Finding("band", f"invalid band (got {low:g} Hz to {high:g} Hz)", "Use 0 < low < high in Hz")]
+    )
     if not spectra:
-        found.append(Finding("spectra", "no input has a spectrum", "Give at least one, e.g. {'ground.z': Spectrum(1e-18)}"))
+        found.append(Finding("spectra", "no input has a spectrum", "Add at least one, e.g. {'ground.z': Spectrum(1e-18)}"))
     for name, spectrum in spectra.items():
         found += _table_findings(name, np.asarray(spectrum.density), spectrum.frequencies)
     return found
@@ -147,14 +149,14 @@ def spectrum_findings(spectra: Mapping[str, Spectrum], band: tuple[float, float]
 
 def _table_findings(name: str, density: Array, frequencies: Array | None) -> list[Finding]:
     wrong = not np.all(np.isfinite(density)) or np.any(density < 0.0) or (frequencies is not None and np.any(density == 0.0))
-    found = [Finding(name, "its density is negative or not finite, or zero in a table", "Mend the entries")] if wrong else []
+    found = [Finding(name, "its density is negative or not finite, or zero in a table", "Correct the entries")] if wrong else []
     if frequencies is not None and (density.shape != frequencies.shape or np.any(np.diff(frequencies) <= 0.0) or frequencies[0] <= 0.0):
-        found.append(Finding(name, "its frequencies do not ascend from above 0, or are not as many as the densities", "Mend the table"))
+        found.append(Finding(name, "its frequencies do not ascend from above 0, or are not as many as the densities", "Correct the table"))
     return found
 
 
 def _panels(model: LinearModel, law: Damping, spectra: Mapping[str, Spectrum], band: tuple[float, float]) -> Array:
-    """Ends of the panels (k,) in Hz, for all designs of a batch."""
+    """Ends of the panels (k,) [Hz], for all designs of a batch."""
     solved = eigen(model)
     natural = np.sqrt(solved.values) / (2.0 * np.pi)
     rows = (part.reshape(-1, natural.shape[-1]) for part in np.broadcast_arrays(natural, modal_ratios(model, solved, law)))
@@ -167,14 +169,14 @@ def _panels(model: LinearModel, law: Damping, spectra: Mapping[str, Spectrum], b
 
 
 def _around(natural: Array, ratios: Array) -> Array:
-    """Ends of panels around the resonances of one design; modes that repeat are one, at their mean."""
+    """Ends of panels around the resonances of one design; repeated modes at their mean."""
     groups = repeated_groups(natural**2)
     width = np.maximum(average(ratios, groups), 1e-9)
     return (average(natural, groups)[:, None] * (1.0 + width[:, None] * _OFFSETS)).ravel()
 
 
 def quadrature(ends: Array) -> tuple[Array, Array]:
-    """Nodes and weights of Gauss's rule, 8 nodes on every panel between `ends` (k,).
+    """Return nodes and weights of Gauss-Legendre quadrature, 8 nodes on every panel between `ends` (k,).
 
     >>> nodes, weights = quadrature(np.array([0.0, 1.0, 3.0]))
     >>> round(float(weights @ nodes**2), 12), round(3.0**3 / 3.0, 12)

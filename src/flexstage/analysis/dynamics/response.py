@@ -1,4 +1,4 @@
-"""Frequency responses of a stage: any named input to any named output, and the transmissibility of its ground."""
+"""Frequency responses of a stage between named inputs and outputs, and its transmissibility."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.port import ports
 
 _MODES_SHOWN = 12
+_WITHOUT_RESONANCES = (1.0, 1000.0)
+"""Band [Hz] of a rigid body that only forces drive."""
 _ANGLES = np.linspace(-1.45, 1.45, 25)
 
 
@@ -30,12 +32,12 @@ def response(
     *,
     damping: Damping | None = None,
 ) -> Response:
-    """Frequency response H (..., f, p, m) of named outputs over named inputs.
+    """Compute the frequency response H (..., f, p, m) of named outputs to named inputs.
 
     Names are channels (`platform.x`, gauge `S1`, stroke `B1`, `chuck.fz`), wrench components on any body (`B4/lever.fz`), the ground's
     motion (`ground.x` ... `ground.rz`, absolute displacement) or groups (`platform`, `ground`: six components). `frequencies` (f,) in Hz;
-    absent: `default_frequencies`. `damping` replaces the law the design states. Raises `DesignError` for unknown names and where no
-    damping is stated. Structural damping costs one solve a frequency, the other laws one eigenvalue problem in all.
+    default: `default_frequencies`. `damping` replaces the damping law of the design. Raises `DesignError` for unknown names and unspecified
+    damping. Structural damping requires one solution per frequency, other laws a single eigenvalue problem.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -53,10 +55,10 @@ def response(
 def transmissibility(
     model: LinearModel, outputs: str | Iterable[str] = (PLATFORM,), frequencies: Array | None = None, *, damping: Damping | None = None
 ) -> Response:
-    """Absolute motion of outputs over absolute motion of the ground, both at the platform's reference point: (..., f, p, 6).
+    """Compute the transmissibility (..., f, p, 6): absolute motion of outputs over ground motion, at the platform's reference.
 
-    T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b: damping acts on motion relative to the ground, and T of the platform's twist
-    tends to the unit matrix at low frequency. Gauges and stress resultants feel relative motion only and tend to zero.
+    T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b. Damping acts on motion relative to the ground. T of the platform's twist tends
+    to the unit matrix at low frequency. Gauges and stress resultants depend on relative motion only and tend to zero.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -68,10 +70,10 @@ def transmissibility(
 
 
 def default_frequencies(model: LinearModel, band: tuple[float, float] | None = None, *, damping: Damping | None = None) -> Array:
-    """A frequency grid (f,) in Hz: 40 points a decade, and 25 across every resonance f_r (1 + zeta_r tan theta), |theta| < 83 degrees.
+    """Return a frequency grid (f,) in Hz: 40 points a decade, 25 across every resonance f_r (1 + zeta_r tan theta), |theta| < 83 degrees.
 
-    `band` absent: from f_1/50 to twice the twelfth natural frequency. Resonances are those of the first design of a batch; of modes that
-    repeat, the mean.
+    Default `band`: from f_1/50 to twice the twelfth natural frequency. Resonances are those of the first design of a batch; repeated modes
+    at their mean.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -82,10 +84,13 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
     solved = eigen(model)
     natural = np.sqrt(first_design(solved.values, 1)) / (2.0 * np.pi)
     if not natural.size:
-        raise refuse("stage", "the model has no mass, so it has no resonances to choose frequencies by", "Pass the frequencies")
+        raise refuse("stage", "the model has no mass, and so no resonances for a frequency grid", "Specify the frequencies")
     ratios = modal_ratios(model, solved, damping_law(model, damping))
     groups = repeated_groups(first_design(solved.values, 1))
     natural, width = average(natural, groups), np.maximum(average(first_design(ratios, 1), groups), 1e-6)
+    natural, width = natural[natural > 0.0], width[natural > 0.0]
+    if band is None and not natural.size:
+        band = _WITHOUT_RESONANCES
     low, high = band if band is not None else (natural[0] / 50.0, 2.0 * natural[min(_MODES_SHOWN, len(natural)) - 1])
     around = (natural[:, None] * (1.0 + width[:, None] * np.tan(_ANGLES))).ravel()
     coarse = np.geomspace(low, high, 1 + max(2, round(40.0 * float(np.log10(high / low)))))
@@ -96,5 +101,9 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
 def _check(frequencies: Array) -> Array:
     grid = np.asarray(frequencies, dtype=float)
     if grid.ndim != 1 or not np.all(np.isfinite(grid)) or np.any(grid < 0.0):
-        raise refuse("frequencies", f"expected one row of finite, non-negative numbers in Hz, got shape {grid.shape}", "Mend the list")
+        raise refuse(
+            "frequencies",
+            f"expected one row of finite, non-negative numbers in Hz, got shape {grid.shape}",
+            "Correct the list",
+        )
     return grid

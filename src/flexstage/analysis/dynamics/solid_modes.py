@@ -1,4 +1,4 @@
-"""Modes by finite elements, as a comparison takes them: whoever computes them."""
+"""Finite-element modes for comparisons, independent of the solver."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from flexstage.models.linear.model import LinearModel
 
 @dataclass(frozen=True, eq=False)
 class FeaModes:
-    """Modes of a stage as a solid, its reduced model, and the relative errors estimated of its platform's frequencies, in their order.
+    """Finite-element modes of a stage, its reduced model, and estimated relative errors of the platform frequencies.
 
-    `errors` is empty where nothing coarser was at hand to estimate them from, and `None` for a mode that the coarser result has not.
+    `errors` is empty without a coarser mesh, and `None` for a mode missing from the coarser result.
     """
 
     modes: Modes

@@ -1,4 +1,4 @@
-"""Deflection of the platform under dead load: own weight, payloads and stated forces, strokes held."""
+"""Deflection of the platform under permanent load: own weight, payloads and specified forces, strokes fixed."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
 class Deflection(Result):
-    """Twist (..., 6, causes) of the platform's reference, or of a named point, by cause: own weight, each payload, each stated force.
+    """Twist (..., 6, causes) of the platform's reference, or of a named point, by cause: own weight, each payload, each specified force.
 
-    Under a controlled stage the gauges see it and the strokes take it back; in open loop it is Eq. 11's load term.
+    In closed loop the gauges measure it and the strokes compensate it; in open loop it is the load term of Eq. 11.
     """
 
     point: str
@@ -27,13 +27,13 @@ class Deflection(Result):
 
     @property
     def total(self) -> Array:
-        """Twist (..., 6) under everything at once."""
+        """Twist (..., 6) under all loads."""
         return np.sum(self.by_cause.values, axis=-1)
 
 
 @check_arguments
 def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> Deflection:
-    """Deflection at a point of the platform under gravity and stated forces: q = K^-1 f, strokes held, small displacements.
+    """Compute the deflection of a platform point under gravity and specified forces: q = K^-1 f, strokes fixed, small displacements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -1,7 +1,7 @@
-"""Drift: what uniform and linear changes of temperature move, per kelvin.
+"""Thermal drift: motion due to uniform and linear temperature changes, per kelvin.
 
-Every body and part would grow freely with the field T(r); a linear field leaves a free body unstressed, with the displacement
-u = alpha [T r + (g . r) r - g r^2 / 2] and the rotation alpha g x r at r from its reference. What does not fit is imposed on the links.
+Every body and part expands freely with the field T(r). A linear field causes no stress in a free body. The displacement is u = alpha [T r +
+(g . r) r - g r^2 / 2] and the rotation alpha g x r at r from its reference. Incompatible expansion is imposed on the links.
 """
 
 from __future__ import annotations
@@ -39,10 +39,9 @@ _FITS = 1e-7
 class Drift(Result):
     """Motion and forces per unit of a temperature field: uniform [per K], linear along x, y and z [per K/m].
 
-    `motion` (platform and named points, six components each), `gauges` the readings, `forces` (six an elastic link). `ground` is the
-    material the ground was taken to be of (`None`: it does not grow) and from where that is known, `datum` (..., 3) [m] the point of the
-    ground that stays and where gradients are zero, `taken` each body's material. `bodies` are the twists (..., 6, 4) of all bodies at
-    their references.
+    `motion` is at the platform and named points (six components each), `gauges` the readings, `forces` six per elastic link. `ground` is
+    the assumed material of the ground (`None`: no expansion) and its source. `datum` (..., 3) [m] is the fixed point of the ground, where
+    gradients are zero. `taken` is each body's material, `bodies` the twists (..., 6, 4) of all bodies at their references.
     """
 
     motion: Matrix
@@ -55,34 +54,34 @@ class Drift(Result):
     bodies: Annotated[Mapping[str, Array], INNER] = field(default_factory=dict[str, Array])
 
     def of(self, point: str = PLATFORM) -> Matrix:
-        """The six rows of one point."""
+        """Six rows of one point."""
         return self.motion.part(tuple(f"{point}.{name}" for name in COMPONENTS), FIELDS)
 
 
 _ABOUT = cross_matrix(np.eye(3))
-"""By axis, what makes the cross product of its unit vector with another one."""
+"""Cross-product matrices of the unit vectors, by axis."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Thermal:
-    """Expansion of everything in the four fields, counted from a datum."""
+    """Expansion of bodies and parts in the four fields, relative to a datum."""
 
     assembly: Assembly
     expansion: Expansion
     datum: Array
 
     def growth(self, body: str, point: Array) -> Array:
-        """Growth twist (..., 6, 4) of a body at a point, from its reference, in stage axes."""
+        """Expansion twist (..., 6, 4) of a body at a point, from its reference, in stage axes."""
         reference = self.datum if body == GROUND else self.assembly.bodies[body].reference
         return np.asarray(self.expansion.bodies[body])[..., None, None] * _growth(point - reference, reference - self.datum)
 
     def misfit(self, link: PlacedLink) -> Array:
-        """Deformation (..., 6, 4) of a link, in its frame, if no body moved."""
+        """Deformation (..., 6, 4) of a link, in its frame, for bodies at rest."""
         first, second = (self.growth(body, link.frame.position) + self._half(link, end) for end, body in enumerate(link.joins))
         return np.swapaxes(spatial_rotation(link.frame.rotation), -1, -2) @ (second - first)
 
     def _half(self, link: PlacedLink, end: int) -> Array:
-        """What the part's half next to a body grows more than that body would: seen at the part's centre from that end."""
+        """Expansion of the half of a part next to a body, minus that of the body, at the part's centre."""
         if link.name not in self.expansion.parts:
             return np.zeros((6, 4))
         own, length = self.expansion.parts[link.name]
@@ -93,13 +92,14 @@ class _Thermal:
 
 @check_arguments
 def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None, datum: Vector = (0.0, 0.0, 0.0)) -> Drift:
-    """Thermal drift of a stage: free growth of all bodies and parts, elastically redistributed by the model's links, strokes held.
+    """Compute the thermal drift of a stage: free expansion of bodies and parts, redistributed elastically by the links, strokes fixed.
 
-    `ground` names the ground's material (absent: as `ground_of` finds it in the description; `none`: it does not grow). Motions are counted
-    from the ground's `datum`. A stage of one material, its ground included, scales without stress. Raises `DesignError` naming what states
-    no expansion, where the ground's material is not known, where locked freedoms cannot follow the growth, and for a model whose stiffness
-    is not that of links: mapped, or about a state with the flexures' inner modes. About a state link by link
-    (`linearise(state, inner=False)`) growth is that of the drawn stage, and what it meets the stiffness of the loaded one.
+    `ground` names the ground's material (default: from `ground_of`; `none`: no expansion). Motions are relative to the ground's `datum`. A
+    stage of one material, including the ground, expands without stress. For a model about a state link by link (`linearise(state,
+    inner=False)`), expansion is that of the nominal stage and stiffness that of the loaded one.
+
+    Raises `DesignError` for missing expansion coefficients, an unknown ground material, or locked degrees of freedom that block expansion.
+    It also refuses models with other stiffness than that of links: mapped models, or states with internal modes of flexures.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -115,8 +115,8 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     if LOADED in model.stiffness:
         strains[LOADED] = _stacked(fitted, model.stiffness[LOADED])
     if other := _unlinked(model, strains):
-        what = f"growth is taken up by links, and the model has the stiffness of {other[0]}, which is none"
-        raise refuse("drift", what, "Take the lumped model")
+        what = f"drift requires stiffness of links only (got the stiffness of {other[0]})"
+        raise refuse("drift", what, "Use the lumped model")
     whole = {name: _without_modes(strains[name], part.law.shape[-1] - strains[name].shape[-2]) for name, part in model.stiffness.items()}
     motion = model.follow(whole)
     twists = {body: moved + fitted.twists.get(body, 0.0) for body, moved in _twists(thermal.assembly, model, motion).items()}
@@ -135,7 +135,7 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
 
 
 def _unlinked(model: LinearModel, strains: Mapping[str, Array]) -> list[str]:
-    """What has a stiffness and is no link; about a state, links whose deformation is not that of their two ends alone."""
+    """Stiffness terms other than links; about a state, links with internal deformation."""
     about = LOADED in model.stiffness
     return [
         name for name, part in model.stiffness.items() if name not in strains or (about and part.law.shape[-1] != strains[name].shape[-2])
@@ -143,18 +143,18 @@ def _unlinked(model: LinearModel, strains: Mapping[str, Array]) -> list[str]:
 
 
 def _stacked(fitted: _Fitted, part: Contribution) -> Array:
-    """The motions of all bodies that follow the growth (n, 4), as the load turns with them."""
+    """Motions (n, 4) of all bodies that follow the expansion and rotate the load."""
     twists = list(fitted.twists.values())
     return np.concatenate(_broadcast(twists), axis=-2) if twists else np.zeros((part.law.shape[-1], 4))
 
 
 def _without_modes(strain: Array, inner: int) -> Array:
-    """The misfit (..., 6, k) of a link of that many inner modes, which do not grow."""
+    """Misfit (..., 6, k) of a link with internal modes, which do not expand."""
     return np.concatenate([strain, np.zeros((*strain.shape[:-2], inner, strain.shape[-1]))], axis=-2) if inner else strain
 
 
 def _growth(arm: Array, origin: Array) -> Array:
-    """Free growth (..., 6, 4) over `arm` from a point at `origin` from the datum, for a unit coefficient and the four fields."""
+    """Free expansion (..., 6, 4) over `arm` from a point at `origin` from the datum, for a unit coefficient and the four fields."""
     arm, origin = np.broadcast_arrays(arm, origin)
     square = np.sum(arm * arm, axis=-1)
     columns = [np.concatenate([arm, np.zeros_like(arm)], axis=-1)]
@@ -167,14 +167,14 @@ def _growth(arm: Array, origin: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _Fitted:
-    """Body motions that let locked freedoms follow the growth, and the link deformations they cause."""
+    """Body motions for which locked degrees of freedom follow the expansion, and the resulting link deformations."""
 
     twists: Mapping[str, Array]
     strains: Mapping[str, Array]
 
 
 def _fit_misfits(assembly: Assembly, misfits: Mapping[str, Array]) -> _Fitted:
-    """Locked freedoms leave no room for misfits: find body motions of least norm that close them."""
+    """Least-norm body motions that close the misfits of locked degrees of freedom."""
     bound = {
         name: law(link.part, link.material).locked for name, link in assembly.links.items() if isinstance(link.part, (Joint, Restricted))
     }
@@ -190,8 +190,8 @@ def _fit_misfits(assembly: Assembly, misfits: Mapping[str, Array]) -> _Fitted:
     if left > _FITS * np.max(np.abs(gaps)):
         raise refuse(
             "drift",
-            f"locked freedoms cannot follow the growth: {float(left):.3g} m per K is left between them",
-            "Give the restricted parts elasticity in the directions that grow",
+            f"locked degrees of freedom block thermal expansion (residual {float(left):.3g} m/K)",
+            "Add elasticity to the restricted parts in the directions of expansion",
         )
     return _Fitted(
         {body: motion[..., order.columns(body), :] for body in order.bodies}, {name: item @ motion for name, item in operators.items()}
@@ -199,7 +199,7 @@ def _fit_misfits(assembly: Assembly, misfits: Mapping[str, Array]) -> _Fitted:
 
 
 def _twists(assembly: Assembly, model: LinearModel, motion: Array) -> dict[str, Array]:
-    """The twist (..., 6, 4) of every body."""
+    """Twist (..., 6, 4) of every body."""
     places = {body: model.output_index(tuple(f"{body}.{name}" for name in COMPONENTS)) for body in assembly.bodies}
     if model.is_sparse:
         outputs = model.output @ motion
@@ -223,7 +223,7 @@ def _gauges(thermal: _Thermal, twists: Mapping[str, Array]) -> Matrix:
 
 
 def _reading(thermal: _Thermal, twists: Mapping[str, Array], sight: Sight) -> Array:
-    """What a sight adds to a reading (..., 4): material of the body against material of the base."""
+    """Contribution of a line of sight to a reading (..., 4): expansion of the body relative to the base."""
     ends = [_material_motion(thermal, twists, body, at.position) for body, at in ((sight.body, sight.frame), (sight.base, sight.foot))]
     rows = slice(0, 3) if sight.component < 3 else slice(3, 6)
     direction = np.asarray(sight.weight)[..., None] * sight.frame.rotation[..., :, sight.component % 3]

@@ -1,4 +1,4 @@
-"""A stage as an actuator of another one: what stands between its ground and its platform, statically condensed."""
+"""Static condensation of a stage into an amplified actuator of another stage."""
 
 from __future__ import annotations
 
@@ -20,13 +20,14 @@ from flexstage.spatial.frame import COMPONENTS
 
 @check_arguments
 def amplified(mechanism: Mechanism) -> Amplified:
-    """The stage as one part: its ground is the first face, its platform the second.
+    """Condense a stage into one part: its ground is the first face, its platform the second.
 
-    Of the lumped model: compliance of the platform at its reference point with the stroke held, and its motion at the full stroke. The
-    part's centre is that reference point, its axes those of the stage, so a link of it stands with `along` the stage's x and `bends` its z.
-    Volts, bias and capacitance are those of the one actuator inside; of the mass of all bodies and links half counts at each face. Exact in
-    statics, without inner modes: valid well below the first of them with both faces held. Loads and preload of the stack inside are not
-    passed on. Raises `DesignError` for a stage with none or several actuators.
+    From the lumped model: compliance of the platform at its reference point with the stroke fixed, and its motion at full stroke. The
+    part's centre is that reference point, with the stage's axes: a link has `along` in the stage's x and `bends` in its z. Voltages, bias
+    and capacitance are those of the single actuator. Half of the mass of all bodies and links is at each face.
+
+    Exact in statics, without internal modes: valid well below the first internal mode with both faces fixed. Loads and preload of the inner
+    stack are ignored. Raises `DesignError` for a stage without exactly one actuator.
 
     >>> from flexstage.cases.registry import case
     >>> part = amplified(case("bridge"))
@@ -37,7 +38,7 @@ def amplified(mechanism: Mechanism) -> Amplified:
     own = assembly.actuator(next(iter(assembly.actuators))) if len(assembly.actuators) == 1 else None
     if not isinstance(own, StrokeActuator):
         found = ", ".join(assembly.actuators) or "none"
-        raise refuse("actuators", f"the stage has {found}; one that strokes is expected", "Take a stage of one stack")
+        raise refuse("actuators", f"wrong number of actuators (got {found}, expected one stroke actuator)", "Use a stage with one stack")
     twist = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
     moved = static_gain(model, twist, model.strokes).values[..., 0] * np.asarray(own.stroke)[..., None]
     charged = own if isinstance(own, ChargedActuator) else None
@@ -66,6 +67,6 @@ def _number(value: Array) -> Number:
 
 
 def _rows(matrix: Array) -> tuple[tuple[Number, ...], ...]:
-    """A symmetric matrix as rows of numbers, made exactly so."""
+    """Rows of numbers of a matrix, symmetrised."""
     even = 0.5 * (matrix + np.swapaxes(matrix, -1, -2))
     return tuple(tuple(_number(stack(even[..., row, column])) for column in range(6)) for row in range(6))

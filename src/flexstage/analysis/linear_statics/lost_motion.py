@@ -1,4 +1,4 @@
-"""Lost motion: what elasticity takes from the ideal motion, its budget by part, and the gains that correct it."""
+"""Lost motion: deviation of elastic from ideal motion, its budget by part, and the correction gains."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from flexstage.spatial.frame import COMPONENTS, MOTION
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
 INTERNAL = "internal stress"
 LOADED = "geometric"
-"""What the load takes as it turns with the stage and bends it, in the budget of a loaded or displaced stage."""
+"""Budget share of the geometric stiffness of a loaded or displaced stage."""
 
 
 class Shares(dict[str, Array]):
-    """Shares (...) of one whole by name."""
+    """Shares (...) of a total by name."""
 
     def __str__(self) -> str:
-        """The first design's shares, largest first, four digits; what rounding left (below 1e-9 of the largest) is not shown.
+        """The first design's shares, largest first, four digits, without rounding (below 1e-9 of the largest).
 
         >>> print(Shares({"foot.rz": np.array(0.01), "pzt.x": np.array(1e-17), "pivot.rz": np.array(0.25)}))
         pivot.rz  0.25
@@ -46,7 +46,7 @@ class Shares(dict[str, Array]):
 
 @dataclass(frozen=True, eq=False)
 class ActuatorLoss:
-    """An actuator's own `gain` (1 is ideal) and `loss`; `budget` its shares by link and axis, which add up to it, and by link alone."""
+    """Transmission `gain` of an actuator (1: ideal) and its `loss`; `budget` has the shares of the loss by link and axis."""
 
     gain: Annotated[Array, RATIO]
     loss: Annotated[Array, RATIO]
@@ -65,9 +65,10 @@ class ActuatorLoss:
 class LostMotion(Result):
     """Lost motion of a stage with n strokes and f ideal motions.
 
-    `gain` T = dx/da elastic (..., 6, n); `transfer` R_a V^+ T (..., n, n), its diagonal the gain of each actuator; `loss` Lambda = I -
-    transfer; `parasitic` the part of T outside the ideal motions; `budget` every link's and axis' share of each entry of Lambda (they
-    add up to it); `correction` the gains a = (R_a V^+ T)^-1 R_a xi; `energy` the strain energy by part per squared unit stroke.
+    `gain` is T = dx/da elastic (..., 6, n). `transfer` is R_a V^+ T (..., n, n), with the transmission of each actuator on its diagonal,
+    and `loss` is Lambda = I - transfer. `parasitic` is the part of T outside the ideal motions. `budget` has every link's and axis' share
+    of each entry of Lambda (with sum Lambda). `correction` has the gains a = (R_a V^+ T)^-1 R_a xi. `energy` is the strain energy by part
+    per squared unit stroke.
     """
 
     gain: Matrix
@@ -82,25 +83,27 @@ class LostMotion(Result):
 
     @property
     def actuators(self) -> Annotated[Mapping[str, ActuatorLoss], VIEW]:
-        """What each actuator loses itself."""
+        """Diagonal loss of each actuator."""
         return {name: ActuatorLoss(self.transfer.at(name, name), self.loss.at(name, name), self.of(name)) for name in self.loss.rows}
 
     def of(self, actuator: str) -> Shares:
-        """Budget of an actuator's own loss by part: shares that add up to the loss."""
+        """Budget of an actuator's diagonal loss by part: shares with the loss as sum."""
         index = self.loss.rows.index(actuator)
         return Shares({name: share.values[..., index, index] for name, share in self.budget.items()})
 
 
 @check_arguments
 def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
-    """Compare an elastic model with the ideal kinematics of the same stage.
+    """Compute lost motion from an elastic model and the ideal kinematics of the same stage.
 
-    Lambda = I - R_a V^+ T. Its budget is exact for any graph: let f_e^(i) be link e's force under the platform wrench (R_a V^+)^T e_i with
-    all strokes zero, gamma_e^(j) its deformation in the ideal motion of stroke j; by virtual work and reciprocity Lambda_ij = sum_e f_e^(i)
-    . gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin & Moon). Small
-    motions. Of a model about a displaced state the ideal motion is still that of the drawn position; its budget, which needs a model link
-    by link (`linearise(state, inner=False)`), has one more share, `geometric`: the load's turning and what it bends. Raises `DesignError`
-    where the strokes do not determine the platform.
+    Lambda = I - R_a V^+ T. Its budget is exact for any graph. Here f_e^(i) is link e's force under the platform wrench (R_a V^+)^T e_i with
+    zero strokes, and gamma_e^(j) its deformation in the ideal motion of stroke j. By virtual work and reciprocity, Lambda_ij = sum_e
+    f_e^(i) . gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin & Moon).
+    Small motions.
+
+    For a model about a displaced state, the ideal motion is that of the nominal position. Its budget requires a model link by link
+    (`linearise(state, inner=False)`) and has one more share, `geometric`: geometric stiffness. Raises `DesignError` if the strokes do not
+    determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -129,7 +132,7 @@ def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
 
 
 def _least(transfer: Array, kinematics: Kinematics) -> Array:
-    """Correction for redundant strokes: the commands of R_a's range whose elastic motion is the wanted one."""
+    """Correction for redundant strokes: commands in the range of R_a with the required elastic motion."""
     inner = kinematics.inverse @ transfer @ kinematics.actuation
     return kinematics.actuation @ np.linalg.inv(inner)
 
@@ -140,7 +143,7 @@ def _stroke_units(kinematics: Kinematics) -> tuple[tuple[str, ...], ...]:
 
 
 def _budget(kinematics: Kinematics, model: LinearModel, sense: Array, loss: Array) -> dict[str, Matrix]:
-    """Link forces under the platform wrenches times the links' ideal deformations, axis by axis; none where flexures have inner modes."""
+    """Link forces under the platform wrenches times the links' ideal deformations, axis by axis; none for flexures with internal modes."""
     names = kinematics.actuators
     rows = model.output_index(_PLATFORM_TWIST)
     loads = np.swapaxes(model.output[..., rows, :], -1, -2) @ np.swapaxes(sense, -1, -2)
@@ -166,7 +169,7 @@ def _product(force: Array, motion: Array, axis: int) -> Array:
 
 
 def _internal(kinematics: Kinematics, model: LinearModel, sense: Array, strains: Mapping[str, Array]) -> Array:
-    """What redundant strokes lose because single strokes are no ideal motion: the misfit and the work of the other actuators."""
+    """Loss of redundant strokes by constraint misfit: the misfit and the work of the other actuators."""
     names = kinematics.actuators
     feasible = kinematics.actuation @ kinematics.inverse
     columns = model.input_index(names)
@@ -178,7 +181,7 @@ def _internal(kinematics: Kinematics, model: LinearModel, sense: Array, strains:
 
 
 def _energy(kinematics: Kinematics, model: LinearModel) -> Matrix:
-    """Strain energy in each part when one actuator strokes by a unit and nothing else acts [J/m^2]."""
+    """Strain energy in each part for a unit stroke of one actuator without other loads [J/m^2]."""
     columns = model.input_index(kinematics.actuators)
     motion = input_motion(model, columns)
     selector = np.zeros((len(model.inputs), len(columns)))

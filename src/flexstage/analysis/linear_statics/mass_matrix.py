@@ -1,4 +1,4 @@
-"""Mass of the platform as it is seen at a point: the rigid body alone, and the whole stage statically condensed to it."""
+"""Effective mass of the platform at a point: of the rigid body, and of the whole stage (static condensation)."""
 
 from __future__ import annotations
 
@@ -22,16 +22,17 @@ from flexstage.models.linear.static import displacement
 from flexstage.spatial.frame import COMPONENTS, FORCES, transport
 
 _UNITS = (("kg",) * 3 + ("kg m",) * 3,) * 3 + (("kg m",) * 3 + ("kg m^2",) * 3,) * 3
-_MASSLESS = "the body of this point states no mass"
+_MASSLESS = "the body of this point has no specified mass"
 
 
 class MassMatrix(Result):
-    """Mass at a point, with which a twist rate v there has the kinetic energy v^T M v / 2, about the axes of the stage.
+    """Mass matrix at a point in the stage's axes: a twist rate v has the kinetic energy v^T M v / 2.
 
-    `rigid` (..., 6, 6) is the `body` of the point with its payloads, alone. `reduced` (..., 6, 6) is the whole stage as felt there: all
-    other masses follow as they do when the point is moved slowly, strokes held (static condensation, Guyan, AIAA J. 3, 380, 1965). With
-    the stiffness at the same point it gives natural frequencies that are never below those of the whole model, and close to them as long
-    as nothing else resonates near. `reasons` say why a mass is not known, where it is not.
+    `rigid` (..., 6, 6) is of the isolated `body` of the point with its payloads. `reduced` (..., 6, 6) is of the whole stage: all other
+    masses follow quasi-statically, strokes fixed (static condensation, Guyan, AIAA J. 3, 380, 1965). With the stiffness at the same point,
+    natural
+    frequencies are never below those of the whole model. They are close to them without nearby local modes. `reasons` explain
+    unknown masses.
     """
 
     point: str
@@ -44,12 +45,11 @@ class MassMatrix(Result):
 
 @check_arguments
 def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> MassMatrix:
-    """Mass (..., 6, 6) of the platform, or of another body, at its reference point or a named point [kg, kg m, kg m^2].
+    """Compute the mass matrix (..., 6, 6) of the platform or another body at its reference or a named point [kg, kg m, kg m^2].
 
-    M_rigid = X^T M X with X the transport of twists from the point to the body's reference; M_reduced = S^T M S with the static shapes
-    S = K^-1 C^T (C K^-1 C^T)^-1 of the whole model under unit twists of the point, strokes held. Small motions, idle motions left out.
-    `reduced` is None where the model leaves the point fewer than six freedoms or its body an idle motion, `rigid` where the body states
-    no mass.
+    M_rigid = X^T M X with X the transport of twists from the point to the body's reference. M_reduced = S^T M S with the static shapes S =
+    K^-1 C^T (C K^-1 C^T)^-1 for unit twists of the point, strokes fixed. Small motions, without free internal modes. `reduced` is None for
+    a point with fewer than six degrees of freedom, or a free internal mode of its body. `rigid` is None for a body without mass.
 
     >>> import flexstage as fs
     >>> stage = fs.case("double-triangle")
@@ -60,7 +60,7 @@ def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFO
     assembly = expand(mechanism)
     places = twist_places(assembly)
     if point not in places:
-        raise refuse(point, "no point of this name is in the description", suggest_nearest(point, places))
+        raise refuse(point, "unknown point", suggest_nearest(point, places))
     place = places[point]
     placed = assembly.bodies.get(place.body)
     own = None if placed is None else moving_inertia(mechanism, placed)
@@ -76,11 +76,16 @@ def mass_matrix(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFO
 
 
 def _static_shapes(model: LinearModel, point: str) -> Array:
-    """Coordinates (..., n, 6) per unit twist of a point that moves slowly. Refused where the model locks it or leaves it an idle motion."""
+    """Static coordinates (..., n, 6) per unit twist of a point. Refuses locked points and free internal modes."""
     found = statics(model, load_point=point, read_point=point)
     require(Finding(point, reason, "Use the lumped model") for name, reason in found.reasons.items() if name == "stiffness")
     rows = model.output[..., model.output_index(found.compliance.rows), :]
-    return displacement(model, np.swapaxes(rows, -1, -2)) @ found.stiffness.values
+    shapes = displacement(model, np.swapaxes(rows, -1, -2)) @ found.stiffness.values
+    if model.floating is None:
+        return shapes
+    axes = np.isinf(np.diag(found.compliance.values))  # without stiffness: the floating motions that make up the twist
+    missing = (np.eye(len(rows)) - rows @ shapes)[axes]
+    return shapes + model.floating @ np.linalg.solve(rows[axes] @ model.floating, missing)
 
 
 def _congruent(matrix: Array, motions: Array) -> Array:

@@ -1,4 +1,4 @@
-"""What a simpler theory omits: the cost of every freedom of a part that it locks or frees."""
+"""Model error of a simpler theory: effect of every degree of freedom of a part that it locks or frees."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ Restrictions = Mapping[str, tuple[Freedoms, Freedoms]]
 
 @dataclass(frozen=True)
 class Omitted:
-    """A response in the simple and in the full theory, and what each omitted freedom costs.
+    """Responses of a simple and the full theory, and the effect of each omitted degree of freedom.
 
-    `changes` says how each freedom (`lever_notch.x`) changes the simple response when it alone gets its elasticity back.
-    `interaction` = full - simple - sum of changes: what only the freedoms' combinations explain.
+    `changes` is the change of the simple response if one degree of freedom (`lever_notch.x`) regains its elasticity.
+    `interaction` = full - simple - sum of changes: the effect of combinations.
     """
 
     output: str
@@ -35,7 +35,7 @@ class Omitted:
 
     @property
     def interaction(self) -> Annotated[float, RATIO]:
-        """The part of the difference that single freedoms do not explain."""
+        """Part of the difference not explained by single degrees of freedom."""
         return self.full - self.simple - sum(self.changes.values())
 
     @property
@@ -47,8 +47,8 @@ class Omitted:
 def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
     """Compare the static response of an output to an input, `channel` = (output, input), between restricted and full parts.
 
-    Each freedom that `simple` locks or frees (by part, or by link: `vertical/pivot`) is given its elasticity back alone, the others staying
-    as they are. One design.
+    Each degree of freedom that `simple` locks or frees (by part, or by link: `vertical/pivot`) regains its elasticity individually. One
+    design.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.cases.double_triangle import EQUATION_3
@@ -72,7 +72,7 @@ def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]
 
 
 def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
-    """What Eq. 3 of Shin & Moon knows of a lever unit, by link: the axial springs, and the rotation of the pivot between lever and ground.
+    """Return the terms of Eq. 3 of Shin & Moon for a lever unit, by link: axial springs, and the rotation of the ground pivot.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [freedom.value for freedom in lever_theory(double_triangle(), "vertical")["vertical/pivot"][0]]
@@ -91,7 +91,7 @@ def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
 
 
 def _part(simplified: Mechanism, name: str) -> str:
-    """The restricted part of a part's name or a link's address."""
+    """Restricted part for a part's name or a link's address."""
     unit, _, link = name.rpartition("/")
     return drawn_units(simplified)[unit].links[link].part if "/" in name else name
 

@@ -17,19 +17,19 @@ from flexstage.base.units.quantity import ANGLE, LENGTH, ROTATIONAL_STIFFNESS, S
 from flexstage.models.linear.kinematics import Kinematics
 from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement
-from flexstage.models.linear.undetermined import require_unmoved
+from flexstage.models.linear.undetermined import floats, require_unmoved
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _SINGULAR = 1e-11
 _ALIKE = 1e-9
-_LOCKED = "this model locks freedoms of the platform: its stiffness is infinite along them"
+_LOCKED = "the model locks degrees of freedom of the platform: infinite stiffness along them"
 
 
 @dataclass(frozen=True, eq=False)
 class DirectionalStiffness:
-    """A symmetric in-plane stiffness tensor (..., 2, 2) [N/m] with its principal values and the angle of the stiffest direction [rad].
+    """Symmetric in-plane stiffness tensor (..., 2, 2) [N/m] with principal values and the angle of the stiffest direction [rad].
 
-    The angle is counted from x towards y, in [0, pi); NaN where all directions are alike to 1e-9.
+    The angle is from x towards y, in [0, pi); NaN for an isotropic tensor (to 1e-9).
     """
 
     TABLE: ClassVar[Layout] = Layout("Principal stiffnesses in the plane", "stiffest softest angle spread", head="other DOFs")
@@ -40,22 +40,24 @@ class DirectionalStiffness:
 
     @property
     def stiffest(self) -> Annotated[Array, INNER, STIFFNESS]:
-        """The larger principal stiffness (...) [N/m]."""
+        """Larger principal stiffness (...) [N/m]."""
         return self.principal[..., 0]
 
     @property
     def softest(self) -> Annotated[Array, INNER, STIFFNESS]:
-        """The smaller principal stiffness (...) [N/m]."""
+        """Smaller principal stiffness (...) [N/m]."""
         return self.principal[..., 1]
 
     @property
     def spread(self) -> Annotated[Array, INNER, SHARE, Heading(digits=3)]:
-        """Their difference, of the larger one (...)."""
+        """Relative difference of the principal stiffnesses (...)."""
         return 1.0 - self.softest / self.stiffest
 
     def along(self, angle: Number) -> Array:
         """Stiffness along directions at `angle` [rad] from x: force over displacement in the same direction, 1 / (n^T K^-1 n)."""
         direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        if not self.tensor.values.any(axis=-1).all():  # an axis without stiffness
+            return np.zeros(direction.shape[:-1])
         compliance = np.linalg.inv(self.tensor.values)
         return 1.0 / np.einsum("...i,...ij,...j->...", direction, compliance, direction)
 
@@ -63,9 +65,9 @@ class DirectionalStiffness:
 class Statics(Result):
     """Static behaviour of the platform at a point.
 
-    `compliance` (..., 6, 6) from a wrench at `load_point` to the twist at `read_point`; `stiffness` its inverse; `held` the in-plane tensor
-    with all other freedoms held, `free` the one with all others free (what a push test measures); `centre` (..., 3) the centre of stiffness
-    relative to the load point [m].
+    `compliance` (..., 6, 6) is from a wrench at `load_point` to the twist at `read_point`, `stiffness` its inverse. `held` is the in-plane
+    tensor with all other degrees of freedom fixed, `free` with all others free (as in a push test). `centre` (..., 3) is the centre of
+    stiffness relative to the load point [m].
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a result of statics", "fs.statics(fs.lumped(stage))")
@@ -80,17 +82,18 @@ class Statics(Result):
 
     @property
     def reasons(self) -> Mapping[str, str]:
-        """Why there is no stiffness, where there is none."""
+        """Reasons for a missing stiffness."""
         locked = (("stiffness", "held", "centre"), self.stiffness), (("free",), self.free.tensor)
         return {name: _LOCKED for names, matrix in locked if np.isnan(matrix.values).any() for name in names}
 
 
 @check_arguments
 def statics(model: LinearModel, *, load_point: str = "platform", read_point: str = "platform") -> Statics:
-    """Platform compliance and stiffness with load and read-out points chosen by name (`platform` is its reference point).
+    """Compute platform compliance and stiffness at named load and read-out points (`platform`: its reference point).
 
-    C = C_read K^-1 C_load^T, strokes held. Small displacements. Where the model leaves the platform fewer than six freedoms (the mapped
-    model of a guide), the stiffness is infinite along the others: then it and the tensors that need it are NaN (first design decides).
+    C = C_read K^-1 C_load^T, strokes fixed. Small displacements. If the model leaves the platform fewer than six degrees of freedom (the
+    mapped model of a guide), the stiffness is infinite along the others. The stiffness and tensors derived from it are then NaN (by the
+    first design). Along an axis without stiffness the compliance is infinite.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -100,9 +103,14 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
     read = tuple(f"{read_point}.{name}" for name in COMPONENTS)
     load = tuple(f"{load_point}.{name}" for name in COMPONENTS)
     wrench = tuple(f"{load_point}.{name}" for name in FORCES)
-    require_unmoved(model, wrench)
+    floating = floats(model, wrench)
+    if model.floating is None or sum(floating) != model.floating.shape[-1] or load_point != read_point:
+        require_unmoved(model, wrench)
     force = np.swapaxes(model.output[..., model.output_index(load), :], -1, -2)
     values = model.seen(model.output_index(read), displacement(model, force))
+    if any(floating):
+        values[floating, :], values[:, floating] = 0.0, 0.0
+        values[floating, floating] = np.inf
     inverse = _inverse(values)
     return Statics(
         load_point,
@@ -111,16 +119,16 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
         Matrix(inverse, wrench, read, ratio_units(WRENCH_UNITS, TWIST_UNITS)),
         held=directional(inverse[..., :2, :2]),
         free=directional(_inverse(values[..., :2, :2])),
-        centre=centre_of_stiffness(inverse),
+        centre=np.full(3, np.nan) if any(floating) else centre_of_stiffness(inverse),
         provenance=model.provenance,
     )
 
 
 class FreedomStiffness(Result):
-    """Stiffness along and about each axis at a point [N/m, N m/rad], strokes held: with the other freedoms free, and with them held.
+    """Stiffness of each degree of freedom at a point [N/m, N m/rad], strokes fixed: with the others free, and with them fixed.
 
-    `motions` are the coordinates of the ideal motions that the stage leaves its platform, `constraints` what its links hold. Free is what
-    a push test at the point measures; it includes that an ideal motion moves the point along another axis too.
+    `motions` are the coordinates of the platform's ideal motions, `constraints` those constrained by its links. The free stiffness is the
+    result of a push test at the point; it includes coupling of an ideal motion into other axes.
     """
 
     point: str
@@ -130,16 +138,16 @@ class FreedomStiffness(Result):
 
     @property
     def reasons(self) -> Mapping[str, str]:
-        """Why entries are null, where there are any."""
+        """Reasons for null entries."""
         return {name: _LOCKED for name in ("motions", "constraints") if np.isnan(getattr(self, name).values).any()}
 
 
 @check_arguments
 def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffness | None:
-    """Stiffness by freedom of a stage that leaves its platform fewer than six ideal motions: those left, then those that links hold.
+    """Compute stiffness by degree of freedom for fewer than six ideal motions: along ideal motions, and along constraints.
 
-    The statics are those at a point of the platform. 1 / C_ii with the other freedoms free, K_ii with them held; NaN where the model locks
-    a freedom. None for six ideal motions, of which links hold none, and where the statics are read at another point than is loaded.
+    The statics are at a point of the platform. 1 / C_ii with the other degrees of freedom free, K_ii with them fixed; NaN for a locked one.
+    Returns None for six ideal motions, or for different read-out and load points.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -156,7 +164,7 @@ def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffnes
 
 
 def by_freedom(values: Array, names: tuple[str, ...]) -> Matrix:
-    """Stiffness (..., n, 2) of named freedoms as a table: with the others free, and with them held.
+    """Return a table of stiffness (..., n, 2) by named degree of freedom: with the others free, and with them fixed.
 
     >>> by_freedom(np.ones((2, 2)), ("z", "rx")).unit
     (('N/m', 'N/m'), ('N m/rad', 'N m/rad'))
@@ -166,7 +174,7 @@ def by_freedom(values: Array, names: tuple[str, ...]) -> Matrix:
 
 
 def _pushed(found: Statics) -> Array:
-    """1 / C_ii (..., 6), NaN along what a model with locked freedoms locks."""
+    """1 / C_ii (..., 6), NaN along locked degrees of freedom."""
     along = np.diagonal(found.compliance.values, axis1=-2, axis2=-1)
     if not np.isnan(found.stiffness.values).any():
         return 1.0 / along
@@ -176,9 +184,13 @@ def _pushed(found: Statics) -> Array:
 
 
 def _inverse(compliance: Array) -> Array:
-    """The stiffness, NaN where a compliance of lower rank has none."""
+    """Inverse of a compliance; NaN for a rank-deficient one."""
     first = np.real(first_design(compliance, 2))
     diagonal = np.diag(first)
+    if np.any(loose := np.isinf(diagonal)):
+        result = np.zeros(compliance.shape)
+        result[np.ix_(~loose, ~loose)] = _inverse(compliance[np.ix_(~loose, ~loose)])
+        return result
     scale = np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
     if np.linalg.matrix_rank(first / scale / scale[:, None], tol=_SINGULAR) < len(first):
         return np.full(compliance.shape, np.nan)
@@ -186,7 +198,7 @@ def _inverse(compliance: Array) -> Array:
 
 
 def directional(tensor: Array) -> DirectionalStiffness:
-    """Principal values and axes of an in-plane stiffness tensor (..., 2, 2) [N/m], largest first.
+    """Compute principal values and axes of an in-plane stiffness tensor (..., 2, 2) [N/m], largest first.
 
     >>> directional(np.diag([1.0, 4.0])).principal.tolist()
     [4.0, 1.0]
@@ -203,9 +215,10 @@ def directional(tensor: Array) -> DirectionalStiffness:
 
 
 def centre_of_stiffness(stiffness: Array) -> Array:
-    """Point (..., 3) relative to the reference at which forces and rotations uncouple best: the antisymmetric part of K_tt^-1 K_tr.
+    """Compute the centre of stiffness (..., 3) relative to the reference: the antisymmetric part of K_tt^-1 K_tr.
 
-    With a fully uncoupled centre c, K_tr = -K_tt [c]x (Loncaric 1987 calls the symmetric remainder zero at the centre of stiffness).
+    Forces and rotations uncouple best there. With a fully uncoupled centre c, K_tr = -K_tt [c]x (Loncaric 1987 calls the symmetric
+    remainder zero at the centre of stiffness).
 
     >>> from flexstage.spatial.frame import transport
     >>> carry = transport(np.array([0.0, 0.0, -0.025]))

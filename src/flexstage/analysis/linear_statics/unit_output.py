@@ -1,4 +1,4 @@
-"""One unit alone and its output: what is said of it by whichever model."""
+"""Output properties of an isolated unit, for any model."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from flexstage.base.units.quantity import RATIO, STIFFNESS
 
 @dataclass(frozen=True, eq=False)
 class UnitOutput:
-    """The output of one unit alone, in its own frame.
+    """Output properties of one isolated unit, in its own frame.
 
-    `unit` is its name and `copy` the placed one that was taken; `direction` (3,) is that of its output; `stiffness` 6x6 at the output,
-    strokes held. With the output guided along the direction: `gain` output per stroke, and `ideal_gain` without elasticity.
+    `unit` is its name, `copy` the analysed instance, `direction` (3,) that of its output, `stiffness` 6x6 at the output, strokes fixed.
+    With the output guided along the direction, `gain` is output per stroke, and `ideal_gain` the value without elasticity.
     """
 
     unit: str
@@ -32,7 +32,7 @@ class UnitOutput:
 
     @cached_property
     def axial(self) -> Annotated[float, STIFFNESS, Heading("axial stiffness")]:
-        """Stiffness along the direction, all else held [N/m]: n^T K n.
+        """Stiffness along the direction, all else fixed [N/m]: n^T K n.
 
         >>> values = np.diag([10.0, 2.0, 3.0, 1.0, 1.0, 1.0])
         >>> stiffness = Matrix(values, tuple("abcdef"), tuple("abcdef"), "N/m")
@@ -44,19 +44,19 @@ class UnitOutput:
 
     @cached_property
     def lateral(self) -> Annotated[tuple[float, float], STIFFNESS]:
-        """Stiffness across the direction, all else held [N/m], softest and stiffest: eigenvalues of K in the plane across."""
+        """Stiffness across the direction, all else fixed [N/m], softest and stiffest: eigenvalues of K in the plane across."""
         across = np.linalg.svd(self.direction[None, :])[2][1:]
         softest, stiffest = np.linalg.eigvalsh(across @ self._translations @ across.T)
         return float(softest), float(stiffest)
 
     @property
     def softest_lateral(self) -> Annotated[float, INNER, STIFFNESS, Heading("softest lateral", varying=True)]:
-        """The smaller stiffness across the direction [N/m]."""
+        """Smaller stiffness across the direction [N/m]."""
         return self.lateral[0]
 
     @property
     def stiffest_lateral(self) -> Annotated[float, INNER, STIFFNESS, Heading("stiffest lateral", varying=True)]:
-        """The larger stiffness across the direction [N/m]."""
+        """Larger stiffness across the direction [N/m]."""
         return self.lateral[1]
 
     @property
@@ -65,7 +65,7 @@ class UnitOutput:
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """What models are compared by, SI."""
+        """Values for the comparison of models [SI]."""
         return {
             "axial stiffness": self.axial,
             "softest lateral stiffness": self.lateral[0],

@@ -1,4 +1,4 @@
-"""Each distinct unit alone: its stiffness at the output, its gain and loss, and what simpler theories omit."""
+"""Analysis of each isolated unit: output stiffness, gain, loss, and errors of simpler theories."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ _FORCES = ("platform.fx", "platform.fy", "platform.fz")
 
 @dataclass(frozen=True, eq=False)
 class UnitResult(UnitOutput):
-    """One unit alone by the lumped model.
+    """Properties of one isolated unit by the lumped model.
 
     With its output guided along the direction: `loss` and `load_compliance` [m/N]. `series` is its stiffness in actuator coordinates for
-    the mapped model (`None` where that model refuses). For a lever unit, `lever` are its springs and `omitted` says what Eq. 3
-    leaves out of its gain, freedom by freedom.
+    the mapped model (`None` if that model refuses). For a lever unit, `lever` are its springs and `omitted` the error of Eq. 3 in its gain,
+    by degree of freedom.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -52,10 +52,10 @@ class UnitResult(UnitOutput):
 
 
 def units(mechanism: Mechanism, *, omissions: bool = True) -> dict[str, UnitResult]:
-    """Analyse the first copy of every placed unit that drives its output by exactly one actuator, alone. One design.
+    """Analyse the first instance of every isolated unit with exactly one actuator at its output. One design.
 
-    A unit that needs the rest of the stage to work (a carriage that its neighbours guide) is left out. `omissions`: also work out what the
-    theory of levers omits, most of the work.
+    A unit that requires the rest of the stage (a carriage guided by its neighbours) is omitted. `omissions`: also compute the errors of
+    lever theory, most of the computing time.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(units(double_triangle())["horizontal"].axial / 1e6, 2)  # N/um
@@ -68,7 +68,7 @@ def units(mechanism: Mechanism, *, omissions: bool = True) -> dict[str, UnitResu
 
 
 def driven_units(mechanism: Mechanism) -> dict[str, tuple[str, Array]]:
-    """The first copy of every unit that drives its output by exactly one actuator, alone, and the direction (3,) of the output, by unit.
+    """Return by unit the first instance with exactly one actuator at its output, and the output's direction (3,).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> {unit: copy for unit, (copy, _) in driven_units(double_triangle()).items()}
@@ -86,7 +86,7 @@ def driven_units(mechanism: Mechanism) -> dict[str, tuple[str, Array]]:
                     pushed["xyz".index(name)] = value
             reach = np.linalg.norm(pushed)
             if not 0.0 < reach < np.inf:
-                continue  # it turns the platform, and pushes it nowhere
+                continue  # it rotates the platform without translation
             direction = frame.rotation.T @ pushed / reach
             if ideal(isolate(mechanism, copy, guide=as_vector(direction))).actuated:
                 first[unit] = copy, direction
@@ -94,7 +94,7 @@ def driven_units(mechanism: Mechanism) -> dict[str, tuple[str, Array]]:
 
 
 def as_vector(direction: Array) -> Vector:
-    """A direction (3,) as descriptions hold it.
+    """Return a direction (3,) as a tuple of numbers.
 
     >>> as_vector(np.array([0.0, 0.0, 1.0]))
     (0.0, 0.0, 1.0)
@@ -103,7 +103,7 @@ def as_vector(direction: Array) -> Vector:
 
 
 def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array, *, omissions: bool = True) -> UnitResult:
-    """Analyse one copy of a unit alone, whose output moves along a direction (3,), with what the theory of levers omits. One design.
+    """Analyse one isolated instance of a unit with output along a direction (3,), with the errors of lever theory. One design.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(unit_alone(double_triangle(), "B4", "vertical", np.array([0.0, 0.0, 1.0])).gain, 1)
@@ -133,7 +133,7 @@ def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array, *, 
 
 @SESSION.keep(8)
 def _omitted(guided: Mechanism, unit: str, output: str, actuator: str) -> Omitted:
-    """Most of the work on a unit, kept: designs that differ elsewhere have the same one."""
+    """Errors of lever theory, cached by unit."""
     return omitted(guided, lever_theory(guided, unit), (output, actuator))
 
 

@@ -1,1 +1,1 @@
-"""Stages under load and away from the drawn position: stability, strokes, load cases."""
+"""Stages under load and away from the nominal position: stability, strokes, load cases."""

@@ -1,4 +1,4 @@
-"""The paths that a design states, in numbers: from where the stage rests, along a drive, under what stays."""
+"""Load paths of a design in SI numbers: from the static equilibrium, along a drive, under constant loads."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ _SWITCH = {"on": 1.0, "off": 0.0}
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """A path in numbers: `drive` goes over `values` (k,) [SI] from where the stage rests under `loads` and its `weight` (0: without it).
+    """Load path: `drive` takes the `values` (k,) [SI], relative to the static equilibrium under `loads` and `weight` (0: without).
 
-    `locked` coordinates stay where it rests.
+    `locked` coordinates are fixed at their static equilibrium values.
     """
 
     drive: str
@@ -49,30 +49,30 @@ class Course:
     weight: float
 
     def rest(self, model: nonlinear.Nonlinear) -> equilibrium.State:
-        """Where the stage rests. Raises `DesignError` where it does not."""
+        """Static equilibrium. Raises `DesignError` if none is found."""
         return _resting(equilibrium.equilibrium(model, self.loads, weight=self.weight))
 
     def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State) -> paths.LoadPath:
-        """Equilibria along it."""
+        """Equilibria along the path."""
         wanted, hold = self._wanted(model, rest, None)
         found = paths.load_path(model, self.drive, wanted, loads=self.loads, hold=hold, weight=self.weight)
         _require_continuation(found.state)
         return found
 
     def _wanted(self, model: nonlinear.Nonlinear, rest: equilibrium.State, values: Array | None) -> tuple[Array, dict[str, float]]:
-        """Values of the drive, counted from where it is drawn, and what stays locked where."""
+        """Values of the drive relative to the nominal position, and of the fixed coordinates."""
         wanted = self.values if values is None else values
         driven = self.drive in {channel.name for channel in model.inputs}
         start = 0.0 if driven else float(operating_point.coordinate(rest, self.drive))
         return start + wanted, {name: float(operating_point.coordinate(rest, name)) for name in self.locked}
 
     def points(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Points:
-        """The points of its stroke, of which single columns may be asked."""
+        """Points of the path, for the computation of single columns."""
         (found,) = self.points_of_designs((model,), values)
         return found
 
     def points_of_designs(self, models: Sequence[nonlinear.Nonlinear], values: Array | None = None) -> list[strokes.Points]:
-        """The same of several designs of one structure, in one run."""
+        """Points of several designs of one structure, in one run."""
         rests = [_resting(each) for each in equilibrium.equilibria(models, self.loads, weight=self.weight)]
         asked = [self._wanted(model, rest, values) for model, rest in zip(models, rests, strict=True)]
         wanted, hold = [each for each, _ in asked], [each for _, each in asked]
@@ -92,14 +92,14 @@ def _resting(found: equilibrium.State) -> equilibrium.State:
 
 
 def _require_continuation(found: equilibrium.State) -> None:
-    """Refuse states of which the first that does not continue the stage at rest says why."""
+    """Refuse states that do not continue the static equilibrium, with the reason of the first."""
     beyond = np.flatnonzero(found.status > Status.SINGULAR)
     if beyond.size:
         equilibrium.require_equilibrium(found.case(int(beyond[0])))
 
 
 def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:
-    """What a drive is measured in. Raises `DesignError` at `where` for what is neither a coordinate nor a load of the stage.
+    """Return the physical quantity of a drive. Raises `DesignError` at `where` if it is neither a coordinate nor a load.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> drive_quantity(expand(parallelogram()), "platform.rz", "here").noun
@@ -112,12 +112,12 @@ def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:
     places = [*assembly.bodies, *wrench_places(assembly)]
     if owner not in places or component not in COMPONENTS:
         known = [*units, *(f"{place}.{each}" for place in places for each in COMPONENTS)]
-        raise refuse(where, f'"{drive}" is neither a coordinate nor a load of this stage', suggest_nearest(drive, known))
+        raise refuse(where, f'unknown drive (got "{drive}", expected a coordinate or a load of this stage)', suggest_nearest(drive, known))
     return ANGLE if component.startswith("r") else LENGTH
 
 
 def course(mechanism: Mechanism, name: str) -> Course:
-    """Read a path of `[paths]`. Raises `DesignError` with all that is wrong with it.
+    """Read a load path of `[paths]`. Raises `DesignError` with all errors of the path.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -132,7 +132,7 @@ def course(mechanism: Mechanism, name: str) -> Course:
     quantity = drive_quantity(assembly, stated.drive, f"{where}.drive")
     low, high = (parse(text, quantity, where=f"{where}.to") for text in stated.to)
     if low == high:
-        raise refuse(f"{where}.to", f"it goes from {stated.to[0]} to {stated.to[1]}: a drive that does nothing", "Name two places")
+        raise refuse(f"{where}.to", f"start and end are equal (got {stated.to[0]} and {stated.to[1]})", "Use two different values")
     loads, locked, weight = dict[str, float](), list[str](), 1.0
     for key, text in stated.hold.items():
         at = f"{where}.hold.{key}"
@@ -149,7 +149,7 @@ def course(mechanism: Mechanism, name: str) -> Course:
 
 
 def _load(assembly: Assembly, key: str, where: str) -> str:
-    """The load that a coordinate names, or a load by its own name."""
+    """Load conjugate to a coordinate; a load's own name unchanged."""
     owner, _, component = key.rpartition(".")
     if component in COMPONENTS:
         return f"{owner}.{FORCES[COMPONENTS.index(component)]}"
@@ -159,23 +159,23 @@ def _load(assembly: Assembly, key: str, where: str) -> str:
 
 def _findings(stated: StrokePath, where: str) -> Iterator[Finding]:
     if stated.points < 2:
-        yield Finding(f"{where}.points", f"{stated.points} points are no path", "Give two or more")
+        yield Finding(f"{where}.points", f"too few points (got {stated.points}, expected 2 or more)", "Use e.g. points = 11")
     switch = stated.hold.get("gravity")
     if switch is not None and switch not in _SWITCH:
-        yield Finding(f"{where}.hold.gravity", f'found "{switch}"', 'Write "on" or "off"')
+        yield Finding(f"{where}.hold.gravity", f'unknown value (got "{switch}", expected "on" or "off")', 'Use "on" or "off"')
 
 
 def _contradictions(stated: StrokePath, loads: dict[str, float], locked: list[str], where: str) -> Iterator[Finding]:
     owner, _, component = stated.drive.rpartition(".")
     own = f"{owner}.{FORCES[COMPONENTS.index(component)]}" if component in COMPONENTS else stated.drive
     if own in loads:
-        yield Finding(f"{where}.hold", f"{own} stays, and it is what drives {stated.drive}", "Leave out one of the two")
+        yield Finding(f"{where}.hold", f"{own} is constant, and it drives {stated.drive}", "Remove one of the two")
     if stated.drive in locked:
-        yield Finding(f"{where}.hold.{stated.drive}", "what is driven cannot stay locked", "Leave it out")
+        yield Finding(f"{where}.hold.{stated.drive}", "the drive cannot be a fixed coordinate", "Remove it")
 
 
 def path_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """What is wrong with the paths of a design.
+    """Return the errors in the load paths of a design.
 
     >>> list(path_findings(Mechanism("stage")))
     []

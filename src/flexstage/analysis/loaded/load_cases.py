@@ -1,4 +1,4 @@
-"""Load cases and stroke ends of a design: by how much what loads the stage may grow there until something gives way."""
+"""Critical load factors of load cases and stroke ends of a design."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.analysis.loaded.course import course
 from flexstage.analysis.loaded.operating_point import Conditions
-from flexstage.analysis.loaded.stability import give_way
+from flexstage.analysis.loaded.stability import buckling_clause
 from flexstage.analysis.loaded.standing import drawn, load_factors
 from flexstage.analysis.workspace.force_workspace import input_limits
 from flexstage.base.arguments import CheckedFields, check_arguments
@@ -37,19 +37,19 @@ from flexstage.spatial.frame import COMPONENTS, FORCES
 
 REST = "at rest"
 ENOUGH = 1e-4
-"""How closely a factor is printed."""
+"""Relative tolerance of a load factor."""
 _MOST = 1e12
-"""Up to how many times a load is followed."""
+"""Largest load factor of a load path."""
 _ENDS = 8
-"""Actuators whose ends are looked at one by one; of more only the worst corner."""
+"""Largest number of actuators with a load case at each stroke end; beyond it, only the worst corner."""
 
 
 @dataclass(frozen=True, eq=False)
 class LoadCase(CheckedFields):
-    """A load that `grows` (loads by name, weight and stated forces among them), and where the stage stands.
+    """Load case: the load that `grows` (loads by name, including weight and specified forces) at an operating point.
 
-    `stays` are loads that do not grow. Coordinates and strokes in `at` are brought there, counted from rest, and kept there: the stage
-    counts as free under the force that this takes, but for coordinates that are `locked`. `gravity` says whether there is weight.
+    `stays` are constant loads. Coordinates and strokes in `at` are displacements from the static equilibrium. The stage is free under the
+    force that displaces a coordinate, unless the coordinate is `locked`. `gravity` is the share of weight.
     """
 
     load: str
@@ -62,22 +62,22 @@ class LoadCase(CheckedFields):
 
     @property
     def shares(self) -> tuple[float, float]:
-        """The shares of weight and of stated forces that do not grow."""
+        """Constant shares of weight and of specified forces."""
         return (0.0 if WEIGHT in self.grows else self.gravity, 0.0 if STATED in self.grows else 1.0)
 
     @property
     def whole(self) -> dict[str, float]:
-        """All loads but the stage's own."""
+        """Loads other than the stage's own."""
         grown = {name: value for name, value in self.grows.items() if name not in {WEIGHT, STATED}}
         return {name: self.stays.get(name, 0.0) + grown.get(name, 0.0) for name in {**self.stays, **grown}}
 
 
 @dataclass(frozen=True, eq=False)
 class CaseFactor:
-    """How many times its `load` the stage bears at a `place`, all else staying, of which `kind` the end is, and the `buckling_mode`.
+    """Critical load factor of a `load` at an operating point `place`, with the `kind` of end and the `buckling_mode`.
 
-    `factor` is infinite where nothing gives way up to the largest factor, NaN where it is not known; `why` gives the reason. `bound` is the
-    factor up to which the stage is stable, NaN where that is not known.
+    `factor` is infinite if the stage is stable up to the largest factor, NaN if unknown; `why` is the reason. `bound` is the factor up to
+    which the stage is stable, NaN if unknown.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -91,13 +91,13 @@ class CaseFactor:
     factor: Annotated[float, RATIO, Heading("load factor", digits=5)]
     kind: str
     buckling_mode: str
-    why: Annotated[str, Heading("not followed because")]
+    why: Annotated[str, Heading("reason")]
     bound: Annotated[float, RATIO, Heading("stable up to", digits=5)] = np.nan
     found: Annotated[Critical | None, INNER] = None
 
 
 class CaseFactors(Result):
-    """Every load case and stroke end of a design, `cases`, and what the least factor of them is asked to be, `demand`."""
+    """Critical load factors of all load cases and stroke ends, `cases`, and the required least factor, `demand`."""
 
     cases: tuple[CaseFactor, ...]
     demand: Annotated[float, RATIO]
@@ -105,19 +105,19 @@ class CaseFactors(Result):
 
     @property
     def least(self) -> CaseFactor | None:
-        """The case that bears least; None where nothing gives way."""
+        """Case with the least critical factor; None if none buckles."""
         known = [case for case in self.cases if np.isfinite(case.factor)]
         return min(known, key=lambda case: case.factor, default=None)
 
     @property
     def least_bound(self) -> CaseFactor | None:
-        """The case whose path ends first without a vanishing stiffness; None where all are followed."""
+        """Case whose load path ends first without buckling; None if all paths are complete."""
         unknown = [case for case in self.cases if np.isnan(case.factor) and case.bound > 0.0]
         return min(unknown, key=lambda case: case.bound, default=None)
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Cases that bear less than they have, or less than is asked."""
+        """Warnings for cases with a factor below 1 or below the required one."""
         return tuple(self._doubts())
 
     def _doubts(self) -> Iterator[Finding]:
@@ -125,14 +125,16 @@ class CaseFactors(Result):
         short = [case for case in self.cases if case.factor < bound]
         if short:
             least = min(short, key=lambda case: case.factor)
-            asked = f" ({self.demand:g} is asked for)" if self.demand > 1.0 else ""
-            others = f"; {len(short) - 1} more of {len(self.cases)} load cases bear less than {bound:g} times theirs" if short[1:] else ""
-            what = f"it bears {least.factor:.4g} times {least.load}{asked}, where {give_way(least.buckling_mode)}{others}"
-            yield Finding(least.place, what, "Ask for less stroke, lighten the load, or make what it presses on stiffer")
+            asked = f"(expected {self.demand:g} or more)" if self.demand > 1.0 else ""
+            others = f"; {len(short) - 1} more of {len(self.cases)} load cases have a factor below {bound:g}" if short[1:] else ""
+            what = f"critical load factor of {least.load} {least.factor:.4g}{asked}: {buckling_clause(least.buckling_mode)}{others}"
+            yield Finding(least.place, what, "Reduce stroke or load, or stiffen the parts that carry the load")
         for case in self.cases:
             if np.isnan(case.factor) and not case.bound >= bound:
                 yield Finding(
-                    case.place, f"how many times {case.load} it bears is not known: {case.why}", "Ask flexstage stroke how far it goes"
+                    case.place,
+                    f"critical load factor of {case.load} unknown: {case.why}",
+                    "Run flexstage stroke to find the largest displacement",
                 )
 
 
@@ -140,12 +142,13 @@ class CaseFactors(Result):
 def buckling_factors(
     mechanism: Mechanism, cases: Sequence[LoadCase] | None = None, *, temperature: float = 0.0, most: float = _MOST, demand: float = 1.0
 ) -> CaseFactors:
-    """The critical factor of every load case and stroke end of a design, at large displacements.
+    """Compute the critical load factor of every load case and stroke end of a design, at large displacements.
 
-    Loads are the weight with its payloads, and stated forces with preloads; of a path in `[paths]` those that its `hold` states too. They
-    grow one at a time, all else stays: at rest; at both ends of every path; of a design without paths at both ends of every actuator, where
-    there are at most eight, and at the corner of the strokes that is worst by linearised buckling. A coordinate is brought there by a dead
-    force that stays, as `--at` has it; a stroke is kept. A load is followed up to `most` times.
+    Loads are the weight with payloads, and specified forces with preloads; for a path in `[paths]` also the loads in its `hold`. One load
+    grows at a time; all others are constant. Operating points: the static equilibrium, and both ends of every path. A design without paths
+    uses both ends of every actuator (at most eight), and the worst corner of the strokes by linearised buckling.
+
+    A permanent constant-direction force displaces a coordinate, as for `--at`; a stroke is fixed. Load factors end at `most`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [case.place for case in buckling_factors(parallelogram(), most=2.0).cases]
@@ -157,7 +160,7 @@ def buckling_factors(
 
 
 def load_cases(mechanism: Mechanism) -> tuple[LoadCase, ...]:
-    """The load cases and stroke ends of a design, as `buckling_factors` has them.
+    """Return the load cases and stroke ends of a design, as in `buckling_factors`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [(case.load, case.place) for case in load_cases(parallelogram())][:2]
@@ -176,7 +179,7 @@ def _own(mechanism: Mechanism) -> Iterator[str]:
 
 
 def path_cases(mechanism: Mechanism, name: str, places: Mapping[str, float] | None = None) -> Iterator[LoadCase]:
-    """The load cases of one path: at both ends, or at `places` of its drive [SI] by what they are called.
+    """Return the load cases of one path: at both ends, or at named `places` of its drive [SI].
 
     >>> from flexstage.cases.registry import case
     >>> [each.place for each in path_cases(case("long-travel-xy"), "x")]
@@ -194,7 +197,7 @@ def path_cases(mechanism: Mechanism, name: str, places: Mapping[str, float] | No
 
 
 def _coordinate(load: str) -> str:
-    """The coordinate that a force or moment works on.
+    """Coordinate conjugate to a force or moment.
 
     >>> _coordinate("platform.fx")
     'platform.x'
@@ -204,7 +207,7 @@ def _coordinate(load: str) -> str:
 
 
 def _stroke_cases(mechanism: Mechanism) -> Iterator[LoadCase]:
-    """Both ends of every actuator, and the worst corner of all by linearised buckling; none where limits are not stated."""
+    """Load cases at both ends of every actuator, and at the worst corner of all strokes; none without specified limits."""
     own, model = list(_own(mechanism)), drawn(mechanism)
     if not own or not model.actuators:
         return
@@ -242,9 +245,9 @@ def _factor(model: Nonlinear, case: LoadCase, most: float) -> CaseFactor:
 
 
 def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tolerance: float = ENOUGH) -> Critical:
-    """The factor on what grows in a load case, from where the stage stands there; below 1 it is looked for from no load on.
+    """Compute the critical factor of a load case from its operating point; a factor below 1 from zero load.
 
-    Raises `DesignError` where the stage has no equilibrium there, and as `critical_load` does.
+    Raises `DesignError` if the stage has no equilibrium there, and as `critical_load` does.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -271,12 +274,12 @@ def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tole
 
 
 def _brought(point: Conditions) -> tuple[State | None, dict[str, float]]:
-    """The stage where a case has it under all of its load, if it is stable there, and the coordinates that keep it there."""
+    """Stable equilibrium of a case under its full load, and the coordinates fixed there."""
     if not point.at and not point.fixed:
         return None, {}
     there, hold = point.reach(1.0), point.held(1.0)
     if not bool(there.converged):
-        raise refuse("stage", "no equilibrium was found there", "Ask for less")
+        raise refuse("stage", "no equilibrium found", "Reduce the displacement or load")
     if not point.at or int(unstable_motions(there, locked=point.fixed)):
         return None, hold
     require_continuation(point.reach(0.0), there)
@@ -284,7 +287,7 @@ def _brought(point: Conditions) -> tuple[State | None, dict[str, float]]:
 
 
 def _moving(found: Critical) -> tuple[str, ...]:
-    """The bodies that move most as the stage gives way, at most three."""
+    """Bodies with the largest motion in the buckling mode, at most three."""
     sizes = np.sqrt(np.sum(found.shape[:, :3] ** 2, axis=-1))
     most = [found.bodies[place] for place in np.argsort(-sizes, kind="stable") if sizes[place] > 0.5 * np.max(sizes)]
     return tuple(most[:3])

@@ -1,4 +1,4 @@
-"""The loaded stage: by how much weight, payloads, preloads, forces and bent flexures change it, and small motions about it where felt."""
+"""Effect of permanent load (weight, payloads, preloads, forces, bent flexures) on a stage, and its linearised loaded model."""
 
 from __future__ import annotations
 
@@ -34,21 +34,21 @@ else:
     linearise = Late("flexstage.models.nonlinear.linearise")
     nonlinear = Late("flexstage.models.nonlinear.stage")
 
-_BENT = "what bends flexures that are not straight when free"
+_BENT = "flexures that are not straight when free"
 _WARM = "its temperatures"
 FELT = 0.01
-"""Change of a stiffness or a frequency from which results are those of the loaded stage."""
+"""Relative change of a stiffness or frequency above which results are for the loaded stage."""
 _MODES = 6
 
 
 @dataclass(frozen=True, eq=False)
 class LoadEffect:
-    """By how much its dead load (weight, payloads, preloads, stated forces; what is bent or warm) changes a stage.
+    """Effect of the permanent load (weight, payloads, preloads, specified forces, bent or warm flexures) on a stage.
 
-    `change` is the largest relative change of the platform's stiffness along an axis or of one of the first frequencies, and `figure` which
-    it is; where `figure` is empty it is a bound of any stiffness, from linearised buckling. `model` is small motions about the loaded state
-    where the change is felt (1 % or more), else None; `links` the same link by link, for lost motion and drift, and `state` that state.
-    `why` says why it could not be worked out.
+    `change` is the largest relative change of the platform stiffness along an axis or of one of the first frequencies, and `figure` its
+    name. If `figure` is empty, `change` bounds any stiffness, from linearised buckling. `model` is the model linearised about the loaded
+    state if the change is significant (1 % or more), else None. `links` is that model link by link, for lost motion and drift; `state` is
+    the loaded state. `why` is the reason if the change is unknown.
     """
 
     change: Annotated[float, RATIO]
@@ -60,12 +60,12 @@ class LoadEffect:
 
     @cached_property
     def links(self) -> LinearModel | None:
-        """Small motions about the loaded state link by link: flexures follow their ends as at rest."""
+        """Model linearised about the loaded state link by link: flexures follow their ends quasi-statically."""
         return None if self.model is None or self.state is None else linearise.linearise(self.state, inner=False)
 
     @property
     def text(self) -> str:
-        """What is said of it, empty of stages without dead load.
+        """Sentence on the effect; empty for stages without permanent load.
 
         >>> LoadEffect(0.004, "frequency 1", "", None).text
         'Weight, payloads and forces change stiffness and frequencies by up to 0.4 % (frequency 1): results are of the unloaded stage.'
@@ -74,10 +74,10 @@ class LoadEffect:
         if self.model is not None:
             return (
                 f"{cause} change {self.figure} by {100.0 * self.change:+.3g} %: stiffness, modes, responses, lost motion, drift, "
-                "error budget, loops and their requirements are those of the loaded stage, at large displacements; all else is as drawn."
+                "error budget, loops and their requirements are for the loaded stage, at large displacements; other results are nominal."
             )
         if self.why and not self.change:
-            return f"By how much {self.cause} change the stage is not known, as {self.why}; results are of the unloaded stage."
+            return f"The effect of {self.cause} on the stage is unknown, as {self.why}; results are of the unloaded stage."
         if self.why:
             return f"{cause} may change a stiffness by up to {size}; results are of the unloaded stage, as {self.why}."
         if self.figure:
@@ -93,11 +93,11 @@ class LoadEffect:
 
 @SESSION.keep(2)
 def load_effect(mechanism: Mechanism) -> LoadEffect | None:
-    """How a stage changes under its dead load; `None` of a batch of designs and of stages whose load factor is not known.
+    """Compute the effect of the permanent load on a stage; `None` for a batch of designs or an unknown load factor.
 
-    Linearised buckling bounds the change of every stiffness by 1 / load factor. Only where that is 1 % or more the change is worked out, in
-    the drawn position first, and where it is felt at large displacements. Flexures that are not straight when free have no such bound: they
-    are taken at large displacements at once. Raises `DesignError` where the stage has no elastic model.
+    Linearised buckling bounds the relative change of every stiffness by 1 / load factor. If this bound is 1 % or more, the change is
+    computed in the nominal position, and if significant, at large displacements. Flexures that are not straight when free have no such
+    bound: their stages are computed at large displacements. Raises `DesignError` if the stage has no elastic model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> load_effect(parallelogram()).model is None
@@ -113,7 +113,9 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
         return LoadEffect(bound, "", "", None)
     still = standing(mechanism)
     if is_large(mechanism, still):
-        return LoadEffect(bound, "", f"its {len(still.coordinates):,} freedoms are too many for that of the loaded one", None, cause=cause)
+        return LoadEffect(
+            bound, "", f"the model has too many degrees of freedom for a loaded state ({len(still.coordinates):,})", None, cause=cause
+        )
     near = _compare(still, prestress(mechanism, still))
     if abs(near.change) < FELT and not bent:
         return near
@@ -124,7 +126,7 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
 
 
 def felt_links(mechanism: Mechanism) -> LinearModel:
-    """The lumped model link by link; where the dead load is felt, small motions about the loaded stage.
+    """Return the lumped model link by link, linearised about the loaded state if the permanent load is significant.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> "geometric" in felt_links(parallelogram()).stiffness
@@ -140,7 +142,7 @@ def _bound(found: Stability) -> float:
 
 
 def _is_bent(part: Part) -> bool:
-    """Whether a part is not straight when it is free."""
+    """Whether a part is curved when free."""
     return bool(getattr(part, "is_bent", False))
 
 
@@ -149,7 +151,7 @@ def _is_warm(mechanism: Mechanism) -> bool:
 
 
 def _straight(mechanism: Mechanism) -> Mechanism:
-    """The stage as it was made, with all its flexures straight when free."""
+    """The stage with all flexures straight when free."""
     parts = {name: getattr(part, "straight", part) for name, part in mechanism.parts.items()}
     changed = any(map(_is_bent, mechanism.parts.values())) or _is_warm(mechanism)
     return replace(mechanism, parts=parts, temperatures={}) if changed else mechanism
@@ -160,13 +162,13 @@ def _felt(mechanism: Mechanism) -> LoadEffect:
     unloaded = equilibrium.equilibrium(nonlinear.nonlinear(_straight(mechanism)), weight=0.0, stated=0.0)
     equilibrium.require_equilibrium(state)
     if int(critical_load.unstable_motions(state)):
-        raise refuse("stage", "under its weight and loads no stable equilibrium was found", "Ask flexstage buckle how much it bears")
+        raise refuse("stage", "no stable equilibrium found under weight and loads", "Run flexstage buckle to find the critical load")
     found = _compare(linearise.linearise(unloaded), linearise.linearise(state))
     return replace(found, state=state if found.model is not None else None)
 
 
 def _compare(still: LinearModel, about: LinearModel) -> LoadEffect:
-    """The largest change from the unloaded model to the loaded one."""
+    """Largest relative change from the unloaded to the loaded model."""
     before, after = dict(_figures(still)), dict(_figures(about))
     changes = {name: after[name] / before[name] - 1.0 for name in before if name in after and before[name] > 0.0}
     largest = max(changes, key=lambda name: round(abs(changes[name]), 9))
@@ -175,7 +177,7 @@ def _compare(still: LinearModel, about: LinearModel) -> LoadEffect:
 
 
 def _figures(model: LinearModel) -> Iterator[tuple[str, float]]:
-    """Stiffness along the platform's axes, everything else giving way, and the first frequencies."""
+    """Platform stiffness along each axis, all other motions free, and the first frequencies."""
     compliance: Array = np.diagonal(statics(model).compliance.values)
     yield from ((f"the stiffness along {name}", 1.0 / float(each)) for name, each in zip(COMPONENTS, compliance, strict=True) if each > 0.0)
     frequencies = np.sqrt(eigen(model).values[:_MODES]) / (2.0 * np.pi)

@@ -1,4 +1,4 @@
-"""Over-constrained stages made with a misalignment: the internal loads that it leaves, and the one at which the stage gives way."""
+"""Misalignment of over-constrained stages: internal loads, and the critical misalignment at which the stage buckles."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ from flexstage.models.nonlinear.state import SolverOptions
 from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, TWIST_UNITS, WRENCH, WRENCH_UNITS
 
 _MOST = 0.1
-"""The largest misalignment looked at [rad, or over the flexures' length]."""
+"""Largest misalignment computed [rad, or relative to the flexures' length]."""
 _FREQUENCIES = 3
 _HELD = tuple(f"{SEAT}.{name}" for name in COMPONENTS)
 
 
 class Misaligned(Result):
-    """A stage whose `copy` stands misaligned on the ground along one of its own axes (x, y, z) or about it (rx, ry, rz).
+    """Result for an instance `copy`, misaligned on the ground along (x, y, z) or about (rx, ry, rz) an axis of its frame.
 
-    `along` has a row a size of the misalignment: the load that forces the copy there, the first frequencies, the largest stress and strain
-    of a flexure, in how many ways the stage leaves (0: it stays); `state` is where it stands then. `loads` are the wrenches in all flexures
-    at the last size, on each end in the frame of its start. `critical` is the size at which the first stiffness vanishes [rad, m], NaN
-    where none does. `followed` is the size up to which the stage is known to be stable: `critical`, 0.1 rad or 0.1 of the longest flexure,
-    or where the path ends. Stable states beyond `critical` do not continue the stage without a misalignment: they have no numbers.
+    `along` has a row for each misalignment, with the load that forces the instance there and the first frequencies. Further columns are the
+    largest stress and strain of a flexure, and the number of unstable modes (0: stable). `state` has the equilibria. `loads` are the
+    wrenches in all flexures at the largest misalignment, on each end in the frame of its start. `critical` is the misalignment at which the
+    first stiffness vanishes [rad, m]; NaN if none does. `followed` is the largest misalignment known to be stable: `critical`, 0.1 rad, 0.1
+    of the longest flexure, or the end of the path. Stable states beyond `critical` belong to another branch: they have no numbers.
     """
 
     copy: str
@@ -56,16 +56,16 @@ class Misaligned(Result):
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """What is beyond the theory at these sizes."""
+        """Strains beyond the limits of the theory."""
         return tuple(strain_warnings(self.strained))
 
 
 class Misalignments(Result):
-    """The misalignment of each copy at which the stage gives way, by axis of its own frame; null where no stiffness vanishes.
+    """Critical misalignment of each instance, by axis of its own frame; null if no stiffness vanishes.
 
-    `followed` is that up to which the stage is known to be stable, as in `Misaligned`. `load` is what forces the copy to `size` [rad, m],
-    `stress` the largest of a flexure then [Pa]; null where no equilibrium was found. `worst` is the copy and axis of the least `followed`,
-    or where all bear as much of the largest stress, from none to there, or to `size`; None where no copy joins the ground.
+    `followed` is the misalignment up to which the stage is known to be stable, as in `Misaligned`. `load` forces the instance to `size`
+    [rad, m], `stress` is the largest of a flexure [Pa]; null if no equilibrium was found. `worst` is the result for the instance and axis
+    with the least `followed`; if all are equal, with the largest stress. It is None if no instance joins the ground.
     """
 
     critical: Matrix
@@ -77,17 +77,17 @@ class Misalignments(Result):
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """What is beyond the theory in the worst of them."""
+        """Strains beyond the limits of the theory in the worst case."""
         return () if self.worst is None else self.worst.warnings
 
 
 @check_arguments
 def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points: int = 11) -> Misaligned:
-    """Force a copy of a unit, or a single link, into a misaligned seat on the ground, at large displacements and under its weight.
+    """Compute internal loads of an instance or link forced into a misaligned seat on the ground, at large displacements, with weight.
 
-    The seat, on which the copy's links join the ground, is moved by `size` [m, rad] along or about an axis of the copy's own frame, about
-    its origin (of a link: its middle), in `points` from none. What is not over-constrained follows freely. Raises `DesignError` for names
-    that the stage does not have, and for what does not join the ground.
+    The seat joins the instance's links to the ground. It moves by `size` [m, rad] along or about an axis of the instance's frame, in
+    `points` steps from zero. The centre of rotation is the frame's origin (of a link: its middle). Motions that are not over-constrained
+    stay free. Raises `DesignError` for unknown names and for instances that do not join the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> found = misalign(parallelogram(), "left", "ry", 1e-3, points=3)
@@ -115,9 +115,9 @@ def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points:
 
 
 def misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:], *, size: float = 1e-3) -> Misalignments:
-    """What every copy (or link) that joins the ground bears, misaligned alone along or about `axes` of its own frame.
+    """Compute the critical misalignment of every instance (or link) on the ground, one at a time, by `axes` of its own frame.
 
-    Axes are rotations or translations, not both, as all have one `size` [rad, m]. Raises `DesignError` as `misalign` does.
+    Axes are either rotations or translations, as all have one `size` [rad, m]. Raises `DesignError` as `misalign` does.
     """
     rows = seated(mechanism)
     forced = [_forced(mechanism, copy, axis) for copy in rows for axis in axes]
@@ -136,14 +136,14 @@ def misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:], 
 
 
 def _at_size(forced: _Forced, size: float) -> tuple[float, float]:
-    """The load that forces a copy to a size, and the largest stress then."""
+    """Load that forces an instance to a misalignment, and the largest stress."""
     state = forced.at(np.array([size]))
     stress = np.max(strains(state).stress, axis=-1, initial=0.0)
     return float((state.reactions @ forced.direction)[0]), float(stress[0]) if bool(state.converged[0]) else np.nan
 
 
 def seated(mechanism: Mechanism) -> tuple[str, ...]:
-    """Copies of units, and single links, that join the ground.
+    """Return the unit instances and single links that join the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> seated(parallelogram())
@@ -157,25 +157,25 @@ def seated(mechanism: Mechanism) -> tuple[str, ...]:
 
 @dataclass(frozen=True, eq=False)
 class _Forced:
-    """A stage on a seat that is held, `direction` (6,) its motion per size along or about an axis of the copy."""
+    """Stage on a fixed seat; `direction` (6,) is the seat's motion per unit of misalignment."""
 
     model: Nonlinear
     direction: Array
     axis: str
 
     def hold(self, size: Array | float) -> dict[str, Array]:
-        """Values of the seat's coordinates at sizes of the misalignment."""
+        """Values of the seat's coordinates for given misalignments."""
         return {name: size * part for name, part in zip(_HELD, self.direction, strict=True)}
 
     def at(self, sizes: Array) -> State:
-        """Equilibria at sizes (k,), those that continue the stage without a misalignment."""
+        """Equilibria for misalignments (k,) that continue the aligned stage."""
         begin = equilibrium(self.model, hold=self.hold(np.array(0.0)))
         require_equilibrium(begin)
         found = equilibrium(self.model, hold=self.hold(sizes), options=SolverOptions(arcs=0))
         return continue_along(begin, found, sizes)
 
     def limits(self, sign: float) -> tuple[float, float]:
-        """The critical size to one side, NaN without one, and that up to which the stage is known to be stable."""
+        """Critical misalignment in one direction (NaN: none), and the largest one known to be stable."""
         most = _MOST * (self.model.size if np.any(self.direction[:3]) else 1.0)
         gain, none = ({name: float(value) for name, value in self.hold(size).items()} for size in (sign, 0.0))
         try:
@@ -189,12 +189,12 @@ class _Forced:
 
 def _forced(mechanism: Mechanism, copy: str, axis: str) -> _Forced:
     if axis not in COMPONENTS:
-        raise refuse(axis, "it is no axis", suggest_nearest(axis, COMPONENTS))
+        raise refuse(axis, "unknown axis", suggest_nearest(axis, COMPONENTS))
     assembly = expand(mechanism)
     frames = {name: frame for name, _, frame in copies(mechanism)}
     links = _links_of(assembly, copy) if copy in frames else [copy]
     if copy not in frames and copy not in assembly.links:
-        raise refuse(copy, "it is neither a copy of a unit nor a link", suggest_nearest(copy, seated(mechanism)))
+        raise refuse(copy, "unknown instance or link", suggest_nearest(copy, seated(mechanism)))
     frame = frames.get(copy) or assembly.links[copy].frame
     place = COMPONENTS.index(axis)
     along = np.asarray(frame.rotation)[:, place % 3]

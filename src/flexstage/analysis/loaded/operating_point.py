@@ -1,4 +1,4 @@
-"""Operating points: equilibria of a stage that is displaced, loaded, fixed or heated, and small motions about them."""
+"""Operating points: equilibria of a displaced, loaded, fixed or heated stage, and the models linearised about them."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH, WRENCH_UNITS
 
 _STILL = 1e-12
-"""Motion over the flexures' length, and in radians, that counts as none."""
+"""Motion that counts as zero [rad, or relative to the flexures' length]."""
 _SHARES = np.linspace(0.0, 1.0, 17)[1:-1]
-"""Where between rest and what is asked an equilibrium is looked for when there is none."""
+"""Shares of the requested displacement at which an equilibrium is sought if there is none at 1."""
 
 
 class OperatingPoint(Result):
-    """Operating point: `sag` is where its weight, loads and heat bring it from its drawn, unloaded position, `moved` how far from there.
+    """Operating point: `sag` is the static deflection under weight, loads and heat, `moved` the displacement from there.
 
-    Both have a row a place (the platform and named points), columns displacement and rotation vector; None where it is brought nowhere.
-    `held` tells of every coordinate that was brought somewhere or is locked: its value counted from the sagged position and the force that
-    holds it there. `rest` and `state` are the two equilibria, `linear` small motions about the second.
+    Both have a row for each point (the platform and named points), columns displacement and rotation vector; `moved` is None without
+    displacement. `held` lists every displaced or fixed coordinate: its value relative to the static equilibrium, and the force that holds
+    it. `rest` and `state` are the two equilibria; `linear` is the model linearised about the second.
     """
 
     sag: Matrix
@@ -52,12 +52,12 @@ class OperatingPoint(Result):
 
     @cached_property
     def links(self) -> LinearModel:
-        """The same small motions link by link: flexures follow their ends as at rest, as lost motion asks for."""
+        """Linearised model link by link, for lost motion: flexures follow their ends quasi-statically."""
         return linearise(self.state, locked=self.locked, inner=False)
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """What is beyond the theory there, and drives that do nothing."""
+        """Strains beyond the limits of the theory, and drives without effect."""
         return (*self.doubts, *strain_warnings(strains(self.state)), *left_out(self.state))
 
 
@@ -70,13 +70,15 @@ def operating_point(
     fixed: Sequence[str] = (),
     temperature: float = 0.0,
 ) -> OperatingPoint:
-    """Solve the operating point of a stage at large displacements, and linearise about it.
+    """Compute the operating point of a stage at large displacements, and linearise about it.
 
-    The stage first sags under its weight, payloads, preloads and stated forces, under `loads` (as in `equilibrium`) and `temperature` (a
-    uniform change [K]). From there `at` brings coordinates (`platform.y` [m], `platform.rz` [rad], a component of the rotation vector) by
-    the dead force that holds them, which then stays while the coordinate is released; strokes in `at` (of a stack, by its name) are kept.
-    Coordinates in `fixed` are fixed: where the stage sags to, or where `at` brings them. Raises `DesignError` for unknown names, for what
-    contradicts itself, where no equilibrium is found (it says how far there is one), and where the released stage does not stay.
+    First, the static equilibrium is solved under weight, payloads, preloads and specified forces, `loads` (as in `equilibrium`) and
+    `temperature` (a uniform change [K]). Relative to it, `at` displaces coordinates (`platform.y` [m], `platform.rz` [rad], a component of
+    the rotation vector) by a constant-direction force. This force then remains while the coordinate is released; strokes in `at` (of a
+    stack, by its name) are fixed. Coordinates in `fixed` are fixed at their equilibrium value, or at the value in `at`.
+
+    Raises `DesignError` for unknown names, contradictory conditions, a missing equilibrium (with the largest share that has one), and
+    for a released stage that is unstable.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> found = operating_point(parallelogram(), {"platform.x": 1e-4})
@@ -109,7 +111,7 @@ def operating_point(
 
 
 def require_consistent(model: Nonlinear, at: Mapping[str, float], loads: Mapping[str, float], hold: Sequence[str]) -> None:
-    """Refuse places, loads and locks that contradict one another, with all that is wrong.
+    """Refuse contradictory displacements, loads and fixed coordinates, with all errors.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> require_consistent(nonlinear(parallelogram()), {"platform.x": 1e-4}, {"platform.fy": 1.0}, [])
@@ -119,7 +121,7 @@ def require_consistent(model: Nonlinear, at: Mapping[str, float], loads: Mapping
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """Definition of an operating point: constant `loads`, motions and strokes `at` from rest, `fixed` coordinates, share of weight."""
+    """Definition of an operating point: constant `loads`, displacements and strokes `at`, `fixed` coordinates, share of weight."""
 
     model: Nonlinear
     loads: Mapping[str, float]
@@ -136,27 +138,27 @@ class Conditions:
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Displaced coordinates, then those that are fixed alone."""
+        """Displaced coordinates, then the other fixed ones."""
         return tuple(dict.fromkeys([*(name for name in self.at if name not in self.driven), *self.fixed]))
 
     @cached_property
     def driven(self) -> dict[str, float]:
-        """Strokes and forces among what is displaced."""
+        """Strokes and forces in `at`."""
         inputs = {channel.name for channel in self.model.inputs}
         return {name: value for name, value in self.at.items() if name in inputs}
 
     def held(self, share: float | Array) -> dict[str, Any]:
-        """Displaced and fixed coordinates at a share of the way from rest."""
+        """Values of displaced and fixed coordinates at a share of the displacement."""
         return {name: coordinate(self.rest, name) + share * self.at.get(name, 0.0) for name in self.coordinates}
 
     def reach(self, share: float | Array) -> State:
-        """Equilibria at shares of the way from rest."""
+        """Equilibria at shares of the displacement."""
         given = {name: self.loads.get(name, 0.0) + share * value for name, value in self.driven.items()}
         return equilibrium(self.model, {**self.loads, **given}, hold=self.held(share), weight=self.weight, start=self.rest)
 
 
 def coordinate(state: State, name: str) -> Array:
-    """The value (...) of a coordinate, as `equilibrium` holds it [m, rad].
+    """Return the value (...) of a coordinate, as fixed by `equilibrium` [m, rad].
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> round(float(coordinate(equilibrium(nonlinear(parallelogram()), hold={"platform.x": 1e-4}), "platform.x")), 12)
@@ -164,24 +166,24 @@ def coordinate(state: State, name: str) -> Array:
     """
     owner, _, component = name.rpartition(".")
     if component not in COMPONENTS:
-        raise refuse(name, "it is no coordinate of this stage", "Write for example platform.y")
+        raise refuse(name, "it is no coordinate of this stage", "Use e.g. platform.y")
     return state.twist(owner)[..., COMPONENTS.index(component)]
 
 
 def _contradictions(asked: Conditions) -> Iterator[Finding]:
     for name in asked.driven:
         if name in asked.loads:
-            yield Finding(name, "it is both a load that stays and what is driven", "Leave out one of the two")
+            yield Finding(name, "it is both a constant load and a drive", "Remove one of the two")
     for name in asked.coordinates:
         owner, _, component = name.rpartition(".")
         load = f"{owner}.{FORCES[COMPONENTS.index(component)]}" if component in COMPONENTS else ""
         if name in asked.at and (load in asked.loads or load in asked.at):
-            what = f"the force that brings it there is what is looked for, and {load} states it"
-            yield Finding(name, what, f"Leave out {load}, or {name}")
+            what = f"its force is a result, but {load} specifies it"
+            yield Finding(name, what, f"Remove {load}, or {name}")
     bodies = [asked.model.assembly.points[owner][0] if owner in asked.model.assembly.points else owner for owner in _owners(asked)]
     for body in dict.fromkeys(bodies):
         if bodies.count(body) > 6:
-            yield Finding(body, f"{bodies.count(body)} of its coordinates are held, and it has six", "Hold fewer")
+            yield Finding(body, f"too many coordinates fixed (got {bodies.count(body)}, expected 6 at most)", "Fix fewer")
 
 
 def _owners(asked: Conditions) -> list[str]:
@@ -189,39 +191,46 @@ def _owners(asked: Conditions) -> list[str]:
 
 
 def _how_far(asked: Conditions) -> tuple[str, str]:
-    """What is said where there is no equilibrium: how far there is one, and what it takes."""
+    """Message for a missing equilibrium, with the largest share of the displacement that has one."""
     tried = asked.reach(_SHARES)
     count = int(np.argmin(np.append(tried.converged, False)))
     if not count:
-        return "no equilibrium was found, not even a sixteenth of the way", "Look whether what is held contradicts itself"
+        return "no equilibrium found, not even at 1/16 of the displacement", "Check the fixed coordinates for a contradiction"
     share, most = _SHARES[count - 1], float(np.max(strains(tried).largest[count - 1], initial=0.0))
     units = [WRENCH.unit(name.rpartition(".")[2]) for name in asked.coordinates]
     force = ", ".join(f"{each:.4g} {unit}" for each, unit in zip(tried.reactions[count - 1], units, strict=True))
     reached = ", ".join(f"{name} = {share * value:.4g}" for name, value in asked.at.items())
-    what = f"no equilibrium was found there, but {share:.0%} of the way ({reached}) there is one"
-    return f"{what}{f', held by {force}' if force else ''}, its largest strain {most:.2%}", "Ask for no more than that"
+    what = f"no equilibrium found; the last one is at {share:.0%} of the displacement ({reached})"
+    return (
+        f"{what}{f', held by a force of {force}' if force else ''}, with a largest strain of {most:.2%}",
+        "Use a displacement below that value",
+    )
 
 
 def _require_stable(asked: Conditions, state: State) -> None:
-    """Refuse a place that the stage leaves once what brought it there is released."""
+    """Refuse an operating point that is unstable after release."""
     count = int(unstable_motions(state, locked=asked.fixed))
     if count > 0:
         most = float(np.max(strains(state).largest, initial=0.0))
-        ways = f"{count} way{'s' if count > 1 else ''}"
+        ways = f"{count} unstable mode{'s' if count > 1 else ''}"
         loose = [name for name in asked.coordinates if name not in asked.fixed]
-        under = "under the force that brings it there the released stage" if loose else "under its weight and loads, or strokes, the stage"
-        what = f"{under} leaves in {ways}; its largest strain is {most:.2%}{_stable_until(asked)}"
-        lock = f"Fix it: --fixed {loose[0]}, or ask" if loose else "Ask"
-        raise refuse(", ".join(loose) or PLATFORM, what, f"{lock} flexstage buckle what gives way")
+        under = (
+            "the released stage is unstable under the force that displaces it"
+            if loose
+            else "the stage is unstable under its weight, loads or strokes"
+        )
+        what = f"{under} ({ways}, largest strain {most:.2%}){_stable_until(asked)}"
+        lock = f"Fix it: --fixed {loose[0]}, or run" if loose else "Run"
+        raise refuse(", ".join(loose) or PLATFORM, what, f"{lock} flexstage buckle to find the buckling mode")
 
 
 def _stable_until(asked: Conditions) -> str:
-    """Up to which sixteenth of what is asked, loads and strokes and places, the stage stays."""
+    """Largest share, in sixteenths, of loads and displacements at which the stage is stable."""
     rest = equilibrium(asked.model, {name: _SHARES * value for name, value in asked.loads.items()})
     states = asked.reach(_SHARES) if asked.at else rest
     stays = unstable_motions(states, locked=asked.fixed) == 0
     count = int(np.argmin(np.append(stays, False)))
-    return f"; up to {_SHARES[count - 1]:.0%} of the way it stays" if count else ""
+    return f"; it is stable up to {_SHARES[count - 1]:.0%} of the loads and displacements" if count else ""
 
 
 def _held(asked: Conditions, state: State) -> Matrix | None:
@@ -234,11 +243,11 @@ def _held(asked: Conditions, state: State) -> Matrix | None:
 
 
 def _idle(asked: Conditions, state: State) -> Iterator[Finding]:
-    """Drives and loads that do nothing."""
+    """Drives and loads without effect."""
     for name, value in {**asked.loads, **asked.driven}.items():
         if value == 0.0 and name not in asked.coordinates:
-            yield Finding(name, "it is zero, and does nothing", "Give it a size, or leave it out")
+            yield Finding(name, "zero has no effect", "Use another value, or remove it")
     moved = np.abs(state.pose.position - asked.rest.pose.position) / asked.model.size
     turned = np.abs(state.pose.turn - asked.rest.pose.turn)
     if any(asked.driven.values()) and max(np.max(moved), np.max(turned)) < _STILL:
-        yield Finding(", ".join(asked.driven), "it moves nothing", "Look what its ends are joined to")
+        yield Finding(", ".join(asked.driven), "no effect on the stage", "Check the connections of its ends")

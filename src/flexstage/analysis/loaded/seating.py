@@ -1,4 +1,4 @@
-"""Seating: whether balls stay in their seats under weight, payloads and forces, strokes at rest: lift-off, slip and the onset of yield."""
+"""Seating of balls under weight, payloads and forces, strokes zero: lift-off, slip and the onset of yield."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from flexstage.parts.material import Material
 from flexstage.spatial.frame import FORCES
 
 _ONSET = 1.6
-"""Greatest pressure over the yield stress at which a sphere begins to yield below its surface (Johnson 1985, chapter 6, nu = 0.3)."""
+"""Ratio of greatest pressure to yield stress at which a sphere begins to yield below its surface (Johnson 1985, chapter 6, nu = 0.3)."""
 _RANK = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Seating:
-    """What the contacts of a ball carry, on their worst wall.
+    """Contact loads of a ball in its seat, at the worst contact.
 
-    `left` (...) is the least normal force over that of the preload: at zero the ball lifts off. `slip` is the tangential force over what
-    friction holds, NaN where no friction is stated. `pressure` [Pa] is the greatest, `crush` its share of the onset of yield in the softer
-    of both materials, NaN where neither states a yield stress.
+    `left` (...) is the ratio of the least normal force to the preload: at zero the ball lifts off. `slip` is the ratio of tangential force
+    to the friction limit, NaN without specified friction. `pressure` [Pa] is the greatest, `crush` its ratio to the onset of yield in the
+    softer material, NaN if neither has a yield stress.
     """
 
     left: Array
@@ -40,10 +40,11 @@ class Seating:
 
 
 def seating(mechanism: Mechanism, model: LinearModel) -> dict[str, Seating]:
-    """The seating of each contact, by link, under the stage's dead load.
+    """Compute the seating of each ball contact, by link, under the permanent load.
 
-    The wrench of a link tells the motion of its ball up to motions that no contact feels, and so the force of each contact: with stiffness
-    linear about the preload. Gross sliding is judged: that all of the tangential force exceeds friction times what presses.
+    The wrench of a link determines the motion of its ball, except for motions without stiffness, and so the force of each contact.
+    Stiffness is linearised about the preload. The criterion is gross sliding: the total tangential force exceeds friction times the normal
+    force.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -68,7 +69,7 @@ def seating(mechanism: Mechanism, model: LinearModel) -> dict[str, Seating]:
 
 
 def seated(part: Contact, material: Material, wrench: Array) -> Seating:
-    """The seating of a ball whose link passes a wrench (..., 6) besides its preload, about its centre, on the ball."""
+    """Compute the seating of a ball under a wrench (..., 6) on the ball about its centre, in addition to the preload."""
     contacts = hertz(part, material)
     pressed, shifted = _contact_forces(part, material, contacts, wrench)
     left = np.min(pressed / np.real(contacts.force)[..., None], axis=-1)
@@ -81,7 +82,7 @@ def seated(part: Contact, material: Material, wrench: Array) -> Seating:
 
 
 def _contact_forces(part: Contact, material: Material, contacts: Hertz, wrench: Array) -> tuple[Array, Array]:
-    """Normal force (..., c), positive where it presses, and size of the tangential force of each contact."""
+    """Normal force (..., c), compression positive, and magnitude of the tangential force of each contact."""
     scale = stack([*(3 * [1.0]), *(3 * [1.0 / np.real(np.asarray(part.radius))])])
     scaled = scale[..., :, None] * np.real(contact_stiffness(part, material)) * scale[..., None, :]
     moved = scale * (np.linalg.pinv(scaled, rcond=_RANK, hermitian=True) @ (scale * wrench)[..., None])[..., 0]
@@ -92,25 +93,21 @@ def _contact_forces(part: Contact, material: Material, contacts: Hertz, wrench: 
 
 
 def _softer(material: Material) -> Array:
-    """The lower yield stress of a pair; NaN where neither states one."""
+    """Lower yield stress of a pair; NaN if neither has one."""
     stated = [np.real(each.yield_stress) for each in (material, getattr(material, "counter", material)) if each.yield_stress is not None]
     return np.asarray(np.nan) if not stated else np.minimum(stated[0], stated[-1])
 
 
 def seating_findings(found: Mapping[str, Seating]) -> Iterator[Finding]:
-    """Balls that lift off, slip or yield, on the first design."""
+    """Return warnings for balls that lift off, slip or yield, on the first design."""
     for name, each in found.items():
         left, slip, pressure, crush = (float(first_design(value, 0)) for value in (each.left, each.slip, each.pressure, each.crush))
         if left <= 0.0:
-            what = f"weight, payloads and forces lift the ball off its seat: they take {1.0 - left:.3g} times what its preload presses with"
-            yield Finding(name, what, "Preload it more, or check that what presses it is described: a spring, a magnet, weight")
+            what = f"the ball lifts off its seat: weight, payloads and forces unload {1.0 - left:.3g} times its preload"
+            yield Finding(name, what, "Increase the preload, or check that its source is described: a spring, a magnet, weight")
         elif slip > 1.0:
-            what = f"weight, payloads and forces make it slip: they push it along its seat with {slip:.3g} times what friction holds"
-            yield Finding(name, what, "Preload it more; its stiffness is that of a ball that sticks")
+            what = f"the ball slips: weight, payloads and forces give a tangential force of {slip:.3g} times the friction limit"
+            yield Finding(name, what, "Increase the preload; its stiffness holds without slip")
         if crush > 1.0:
-            what = (
-                f"the greatest pressure, {pressure / 1e6:.4g} MPa, is {crush:.3g} times that at which the softer material begins to yield"
-            )
-            yield Finding(
-                name, f"{what} ({_ONSET:g} times its yield stress)", "Take a larger ball or a harder material, or preload it less"
-            )
+            what = f"the greatest pressure, {pressure / 1e6:.4g} MPa, is {crush:.3g} times the onset of yield in the softer material"
+            yield Finding(name, f"{what} ({_ONSET:g} times its yield stress)", "Use a larger ball, a harder material or less preload")

@@ -1,8 +1,8 @@
-"""Stability of a whole stage: by how much its loads could grow before the drawn position gives way.
+"""Stability of a whole stage: linearised buckling load factors in the nominal position.
 
-Linearised buckling of the drawn stage, (K + lambda K_g) x = 0. K_g is the second variation of the energy about the loaded stage: of every
-part under the wrench it carries (`beams.geometric`), and of every rigid body, whose forces act at points that turn with it. With F at r
-from the body's reference, over all forces on it: tr(S) I - (S + S^T)/2, S = sum F r^T.
+Linearised buckling of the drawn stage, (K + lambda K_g) x = 0. K_g is the second variation of the energy about the loaded stage. It has
+terms of every part under the wrench it carries (`beams.geometric`)and of every rigid body with forces at points that rotate with it.
+With F at r from the body's reference, over all forces on it: tr(S) I - (S + S^T)/2, S = sum F r^T.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import scipy
 
 from flexstage.analysis.workspace.load import SAFETY, dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
-from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.number import Array, first_design, stack
 from flexstage.base.record import Heading, Layout
 from flexstage.base.session import SESSION
@@ -38,36 +38,38 @@ from flexstage.parts.part import Part, push_of
 from flexstage.spatial.frame import COMPONENTS, FORCES, spatial_rotation, transport, twist_transform
 
 DOUBTFUL = 20.0
-"""Load factor below which the loaded stage is told apart from the drawn one: 5 % of the stiffness."""
+"""Load factor below which the loaded stage differs from the nominal one: 5 % of the stiffness."""
 
 _Of = TypeVar("_Of")
 _KEPT, _ALIKE, _REPEATED, _NAMED = 3, 1e-9, 1e-6, 6
 _NONE = 1e-9
-"""A share of the stiffness that counts as no softening: rounding."""
+"""Relative softening below which the stage counts as not softened: rounding."""
+_NEUTRAL = 1e-6
+"""Stiffness over mass [1/s^2] of a motion without stiffness that is rounding."""
 LARGE = 900
-"""Freedoms above which matrices are kept without their zeros."""
+"""Degrees of freedom above which matrices are sparse."""
 _DENSE = 6000
-"""Freedoms above which no loaded state is worked out."""
+"""Degrees of freedom above which no loaded state is computed."""
 _SHAPES = 6
-"""Shapes looked at of a large stage: of more that repeat, not all bodies are named."""
+"""Number of buckling modes computed for a large stage."""
 
 
 @dataclass(frozen=True, eq=False)
 class Stability:
-    """What multiplies all loads where the stage gives way (...): `dead` that of weight, payloads and forces, strokes at rest.
+    """Buckling load factors of a stage (...): `dead` of weight, payloads and forces, strokes zero.
 
-    `worst` (...) that of the dead load with the worst `strokes` (..., m) [m]; infinite where nothing softens. `stiffens` (...) is by how
-    much the dead load stiffens at most, as a share of the stiffness. `moving` names the bodies that move most as the dead load gives way.
+    `worst` (...) is the factor of the permanent load with the worst `strokes` (..., m) [m]; infinite without softening. `stiffens` (...) is
+    the largest relative stiffening by the permanent load. `moving` names the bodies with the largest motion in the buckling mode.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Buckling of the stage",
         "dead worst",
-        notes=("Load factor at which the stage buckles as a whole: linearised, every column with its real ends.",),
+        notes=("Load factor at which the stage buckles as a whole: linearised, every column with its actual end conditions.",),
     )
 
-    dead: Annotated[Array, RATIO, Heading("dead load", digits=4, infinite="none", mark=SAFETY)]
-    worst: Annotated[Array, RATIO, Heading("dead load with the worst strokes", digits=4, infinite="none", mark=SAFETY)]
+    dead: Annotated[Array, RATIO, Heading("permanent load", digits=4, infinite="none", mark=SAFETY)]
+    worst: Annotated[Array, RATIO, Heading("permanent load, worst strokes", digits=4, infinite="none", mark=SAFETY)]
     strokes: Annotated[Array, LENGTH]
     stiffens: Annotated[Array, RATIO]
     moving: tuple[str, ...]
@@ -75,60 +77,60 @@ class Stability:
 
     @property
     def refusals(self) -> tuple[Finding, ...]:
-        """What keeps elastic results from being given: a drawn position that its own dead load does not let stand."""
+        """Error if the nominal position buckles under its permanent load."""
         least = float(np.min(np.real(self.dead)))
         if least >= 1.0:
             return ()
         what = (
-            f"the drawn position does not hold: weight, payloads and forces are {1.0 / least:.3g} times what it can bear "
-            f"(load factor {least:.3g}), {give_way(' and '.join(self.moving))}"
+            f"the nominal position is unstable: weight, payloads and forces are {1.0 / least:.3g} times the critical load "
+            f"(load factor {least:.3g}), {buckling_clause(' and '.join(self.moving))}"
         )
-        return (Finding("stage", what, "Lighten the load, make the parts it presses on stiffer, or turn them so that it hangs"),)
+        return (Finding("stage", what, "Reduce the load, stiffen the parts in compression, or turn them to tension"),)
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Where stiffness and frequencies of the loaded stage are others than those of the drawn one."""
+        """Warnings if stiffness and frequencies of the loaded stage differ from the nominal ones."""
         return tuple(self._doubts())
 
     def _doubts(self) -> Iterator[Finding]:
         dead, worst, stiffer = (float(each) for each in (np.min(np.real(self.dead)), np.min(np.real(self.worst)), np.max(self.stiffens)))
         if 1.0 <= dead < DOUBTFUL:
             what = (
-                f"weight, payloads and forces soften it: load factor {dead:.3g}, where {give_way(' and '.join(self.moving))}. In that "
-                f"motion the loaded stage is {100.0 / dead:.2g} % less stiff than the drawn one, its frequency {_lower(dead):.2g} % lower"
+                f"weight, payloads and forces soften it: load factor {dead:.3g}, {buckling_clause(' and '.join(self.moving))}. In that "
+                f"motion the loaded stage is {100.0 / dead:.2g} % less stiff than the nominal one, its frequency {_lower(dead):.2g} % lower"
             )
-            advice = "Count on the lower values in results of the unloaded stage; stiffen what the load presses on, or let it hang"
+            advice = "Use the lower values for results of the unloaded stage; stiffen the parts in compression, or turn them to tension"
             yield Finding("stage", what, advice)
         if worst < DOUBTFUL and worst < 0.99 * dead:
-            what = f"with the strokes at their worst corner the load factor is {worst:.3g}"
+            what = f"load factor {worst:.3g} at the worst corner of the strokes"
             if worst >= 1.0:
                 what += f": there the stage is up to {100.0 / worst:.2g} % less stiff than printed, a frequency {_lower(worst):.2g} % lower"
-            yield Finding("stage", what, "Make the parts that the stacks press on stiffer, or limit the strokes")
+            yield Finding("stage", what, "Stiffen the parts that the stacks compress, or limit the strokes")
         if stiffer > 1.0 / DOUBTFUL:
             what = f"weight, payloads and forces stiffen it by up to {100.0 * stiffer:.2g} % in one motion"
-            yield Finding("stage", what, "Count on higher frequencies in that motion in results of the unloaded stage")
+            yield Finding("stage", what, "Expect higher frequencies in that motion than those of the unloaded stage")
 
 
-def give_way(bodies: str) -> str:
-    """That bodies give way, one or several.
+def buckling_clause(bodies: str) -> str:
+    """Return the clause that one or several bodies buckle.
 
-    >>> give_way("table"), give_way("table and frame")
-    ('table gives way', 'table and frame give way')
+    >>> buckling_clause("table"), buckling_clause("table and frame")
+    ('table buckles', 'table and frame buckle')
     """
-    return f"{bodies} {'give' if ' and ' in bodies else 'gives'} way"
+    return f"{bodies} {'buckle' if ' and ' in bodies else 'buckles'}"
 
 
 def _lower(factor: float) -> float:
-    """By how many per cent a frequency is lower at a load factor."""
+    """Reduction of a frequency at a load factor [%]."""
     return 100.0 * (1.0 - np.sqrt(1.0 - 1.0 / factor))
 
 
 @SESSION.keep(2)
 def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
-    """Load factors of the whole stage; with `limits`, of the worst strokes between them too. Kept for what asks the same next.
+    """Compute linearised buckling load factors of the stage; with `limits`, also of the worst strokes between them. Cached.
 
-    `model` is the lumped one. The worst strokes lie at a corner, as the reciprocal of the factor is convex in them. Raises `DesignError`
-    where the stage has superelements: what forces add to their stiffness is not known.
+    `model` is the lumped one. The worst strokes are at a corner, as the reciprocal of the factor is convex in them. Raises `DesignError`
+    for stages with superelements: their geometric stiffness is unknown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -141,6 +143,8 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     unit = [pieces.matrix(pieces.geometric(*_stroke(mechanism, pieces, name))) for name in (() if limits is None else limits.actuators)]
     matrices = (pieces.matrix(pieces.stiffness), pieces.dead, *unit)
     corners = np.zeros((1, 0)) if limits is None else np.real(limits.corners)
+    if model.floating is not None:
+        _require_neutral(model.floating.T @ matrices[1][: len(model.floating), : len(model.floating)] @ model.floating)
     batch = np.broadcast_shapes(corners.shape[:-2], *(each.shape[:-2] for each in matrices))
     corners = np.broadcast_to(corners, (*batch, *corners.shape[-2:]))
     if pieces.is_large:
@@ -161,14 +165,22 @@ def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | N
     )
 
 
+def _require_neutral(square: Array) -> None:
+    """Refuse a dead load that gives motions without stiffness a stiffness of its own, here over mass (k, k) [1/s^2]."""
+    if np.max(np.abs(square)) > _NEUTRAL:
+        frequency = float(np.sqrt(np.max(np.abs(square)))) / (2.0 * np.pi)
+        what = f"weight acts as a spring on a motion without stiffness (frequency {frequency:.3g} Hz), which this model neglects"
+        raise refuse("stage", what, "Place the centre of mass on the axis of the bearing, or set gravity along it")
+
+
 @SESSION.keep(2)
 def _pieces(mechanism: Mechanism, model: LinearModel) -> _Pieces:
-    """The stage in pieces: the same with and without strokes."""
+    """Matrices of the stage in terms, shared with and without strokes."""
     return _Pieces.of(mechanism, model)
 
 
 def is_large(mechanism: Mechanism, model: LinearModel) -> bool:
-    """Whether a stage has too many freedoms for the dense matrices of its loaded state.
+    """Return whether a stage has too many degrees of freedom for dense matrices of its loaded state.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -179,9 +191,9 @@ def is_large(mechanism: Mechanism, model: LinearModel) -> bool:
 
 
 def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
-    """The lumped model with what its dead load adds to its stiffness, `geometric`, in the drawn position; one design.
+    """Return the lumped model with the `geometric` stiffness of its permanent load in the nominal position; one design.
 
-    Inner bending of parts follows without mass.
+    Internal bending of parts is massless.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -200,19 +212,19 @@ def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
 
 def _unknown_softening(assembly: Assembly) -> Iterator[Finding]:
     for name in assembly.superelements:
-        what = "it is known by its matrices alone: what the forces in it add to its stiffness, and so whether it buckles, is not known"
-        yield Finding(name, what, "Judge it in the code that its matrices come from")
+        what = "geometric stiffness of the superelement unknown, and so its buckling load"
+        yield Finding(name, what, "Check buckling in the program that computed its matrices")
 
 
 _Loads: TypeAlias = Mapping[str, list[tuple[Array, Array]]]
-"""Loads by body: pairs of a wrench (..., 6) in the stage's axes and the point (..., 3) it acts at."""
+"""Loads by body: pairs of a wrench (..., 6) in the stage's axes and its point of application (..., 3)."""
 _Terms: TypeAlias = list[tuple[Sparse, Array]]
 """A symmetric matrix as a sum of terms R^T law R."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Pieces:
-    """The stage in the model's coordinates and the inner bending of its parts: twists of bodies, laws of links."""
+    """The stage in the model's coordinates and the internal bending of its parts: twists of bodies, laws of links."""
 
     mechanism: Mechanism
     assembly: Assembly
@@ -230,7 +242,7 @@ class _Pieces:
 
     @cached_property
     def is_large(self) -> bool:
-        """Whether there are so many freedoms that the matrices of a single design are kept without their zeros."""
+        """Whether the matrices of a single design are sparse."""
         if self.size <= LARGE or self.model.designs or any(part.per_force.ndim > 3 for part in self.parts.values()):
             return False
         return self.model.is_sparse or not np.iscomplexobj(self.model.stiffness_matrix)
@@ -240,32 +252,35 @@ class _Pieces:
         return len(self.model.coordinates) + sum(part.inner.shape[-1] for part in self.parts.values())
 
     def matrix(self, terms: _Terms) -> Any:
-        """The sum of terms, dense (..., n + k, n + k) or, of a large stage, without its zeros."""
+        """Sum of terms, dense (..., n + k, n + k), or sparse for a large stage."""
         if self.is_large:
             return Quadratic.of([rows for rows, _ in terms], [law for _, law in terms], self.size)
         return _dense(terms, self.size)
 
     @cached_property
     def dead(self) -> Any:
-        """K_g of the dead load."""
+        """K_g of the permanent load."""
         return self.matrix(self.geometric(*_dead(self.mechanism, self)))
 
     @property
     def stiffness(self) -> _Terms:
-        """K: the model's, and the inner bending of every part beside it."""
+        """K: stiffness of the model and of the internal bending of every part."""
         own = [(few(item.operator), item.law) for item in self.model.stiffness.values()]
+        if self.model.floating is not None:
+            momentum = self.model.inertia_matrix @ self.model.floating
+            own.append((few(momentum.T), self.model.scale * np.eye(momentum.shape[-1])))
         return own + [(self.inner[name], part.inner[..., None] * np.eye(part.inner.shape[-1])) for name, part in self.parts.items()]
 
     @cached_property
     def inner(self) -> Mapping[str, Sparse]:
-        """By link, the coordinates of its inner bending."""
+        """Coordinates of internal bending, by link."""
         ends = np.cumsum([len(self.model.coordinates), *(part.inner.shape[-1] for part in self.parts.values())]).tolist()
         places = zip(self.parts, ends[:-1], ends[1:], strict=True)
         return {name: Sparse(np.arange(start, end), np.eye(end - start), self.size) for name, start, end in places}
 
     @cached_property
     def motions(self) -> Mapping[str, Sparse]:
-        """By link, the motion (..., 12 + k, n + k) of both ends, at its centre, in its frame, and of its inner bending."""
+        """Motion (..., 12 + k, n + k) of both ends at the centre of each link, in its frame, and of its internal bending."""
         return {
             name: below([*(self._end(body, link) for body in link.joins), self.inner[name]], self.size)
             for name, link in self.assembly.links.items()
@@ -291,7 +306,7 @@ class _Pieces:
         return terms + [(self.twists[name][..., slice(3, 6), :], law) for name, law in turned.items()]
 
     def moving(self, shapes: Array) -> tuple[str, ...]:
-        """Bodies that move most in the shapes (n + k, s) of one load factor, by what their reference points move in all of them."""
+        """Bodies with the largest motion of reference points over the modes (n + k, s) of one load factor."""
         first = {name: np.real(first_design(twist.values, 2)) @ shapes[twist.columns] for name, twist in self.twists.items()}
         sizes = {name: float(np.linalg.norm(twist[:3])) for name, twist in first.items() if name != GROUND}
         largest = max(sizes.values(), default=0.0)
@@ -313,13 +328,13 @@ def _dense(terms: _Terms, size: int) -> Array:
 
 
 def _turning_law(reference: Array, acting: list[tuple[Array, Array]]) -> Array:
-    """What forces at points of a rigid body resist of its rotation (..., 3, 3)."""
+    """Rotational stiffness (..., 3, 3) of forces at points of a rigid body."""
     moment = sum((force[..., :, None] * (point - reference)[..., None, :] for force, point in acting), np.zeros((3, 3)))
     return np.trace(moment, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - 0.5 * (moment + _transposed(moment))
 
 
 def _with_drawn_parts(mechanism: Mechanism) -> Mechanism:
-    """The description with the drawn parts that computed matrices stand for: those have a length."""
+    """The description with drawn parts instead of the computed matrices that replace them."""
     try:
         return with_drawn_parts(mechanism)
     except DesignError:
@@ -327,7 +342,7 @@ def _with_drawn_parts(mechanism: Mechanism) -> Mechanism:
 
 
 def _dead(mechanism: Mechanism, pieces: _Pieces) -> tuple[dict[str, Array], _Loads]:
-    """Wrenches of the links under weight, payloads and forces, strokes at rest; and these loads."""
+    """Wrenches of the links under weight, payloads and forces, strokes zero; and these loads."""
     model = pieces.model
     loads = _weights(mechanism)
     total = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
@@ -337,19 +352,19 @@ def _dead(mechanism: Mechanism, pieces: _Pieces) -> tuple[dict[str, Array], _Loa
 
 
 def _pushed(link: PlacedLink) -> Array:
-    """The compression (..., 6) that a link has as drawn."""
+    """Initial compression (..., 6) of a link."""
     push = push_of(link.part)
     return np.zeros(6) if push is None else np.asarray(push)[..., None] * np.eye(6)[0]
 
 
 def _stroke(mechanism: Mechanism, pieces: _Pieces, actuator: str) -> tuple[dict[str, Array], _Loads]:
-    """Wrenches of the links per metre of a stroke."""
+    """Wrenches of the links per unit of stroke [1/m]."""
     column = pieces.model.input_index((actuator,))
     return _whole(mechanism, _spring_forces(pieces, input_motion(pieces.model, column), column), {}), {}
 
 
 def _spring_forces(pieces: _Pieces, motion: Array, column: Sequence[int] = ()) -> dict[str, Array]:
-    """Forces (..., 6) in the springs of every link due to a motion (..., n, 1) and to a unit of the input in that column."""
+    """Forces (..., 6) in the springs of every link due to a motion (..., n, 1) and a unit input."""
     model, links = pieces.model, pieces.assembly.links
     rows = model.output_index(tuple(f"{name}.{force}" for name in links for force in FORCES))
     seen = (model.seen(rows, motion) + np.sum(model.feedthrough[..., rows, :][..., list(column)], axis=-1, keepdims=True))[..., 0]
@@ -357,7 +372,7 @@ def _spring_forces(pieces: _Pieces, motion: Array, column: Sequence[int] = ()) -
 
 
 def _weights(mechanism: Mechanism) -> _Loads:
-    """Weights of bodies, payloads and links, and stated forces."""
+    """Weights of bodies, payloads and links, and specified forces."""
     assembly, gravity = expand(mechanism), stack(mechanism.gravity)
     loads: dict[str, list[tuple[Array, Array]]] = {name: [] for name in assembly.bodies}
     for name, placed in assembly.bodies.items():
@@ -378,7 +393,7 @@ def _weights(mechanism: Mechanism) -> _Loads:
 
 
 def _by_part(links: Iterable[PlacedLink], work: Callable[[Part, Material | None], _Of]) -> list[_Of]:
-    """What a function gives of every link's part and material, asked once of links that share both."""
+    """Value of a function for every link, computed once for each part and material."""
     known: dict[tuple[int, int], _Of] = {}
     found: list[_Of] = []
     for link in links:
@@ -394,7 +409,7 @@ def _force(force: Array) -> Array:
 
 
 def _whole(mechanism: Mechanism, sprung: dict[str, Array], loads: _Loads) -> dict[str, Array]:
-    """The wrenches of the links with the forces of their locked freedoms, which no spring feels: from the equilibrium of every body."""
+    """Wrenches of the links including constraint forces of locked degrees of freedom, from the equilibrium of every body."""
     assembly = expand(mechanism)
     locked = {name: [freedom.index for freedom in locked_by(link.part)] for name, link in assembly.links.items()}
     if not any(locked.values()):
@@ -426,7 +441,7 @@ def _whole(mechanism: Mechanism, sprung: dict[str, Array], loads: _Loads) -> dic
 
 @dataclass(frozen=True)
 class _LoadFactors:
-    """Factors of one design, and the `shapes` (n + k, s) in which it buckles under its dead load: several where the factor repeats."""
+    """Load factors of one design, and the buckling `shapes` (n + k, s) under its permanent load; several for a repeated factor."""
 
     dead: complex
     worst: complex
@@ -436,7 +451,7 @@ class _LoadFactors:
 
 
 def _load_factors(stiffness: Array, *parts: Array, corners: Array) -> _LoadFactors:
-    """Factors of one design; of stepped numbers, those that belong to the real design's shape."""
+    """Load factors of one design; complex-step numbers use the mode of the real design."""
     root = scipy.linalg.cholesky(np.real(stiffness), lower=True)
     normal = [_normal(root, np.real(each)) for each in parts]
     values, shapes = np.linalg.eigh(normal[0])
@@ -446,7 +461,7 @@ def _load_factors(stiffness: Array, *parts: Array, corners: Array) -> _LoadFacto
 
 
 def _load_factors_of_large(stiffness: Quadratic, *parts: Quadratic, corners: Array) -> _LoadFactors:
-    """Factors of one design of many freedoms: the least eigenvalues of K_g x = mu K x, without dense matrices."""
+    """Load factors of one large design: least eigenvalues of K_g x = mu K x with sparse matrices."""
     softest = partial(_softest, Solver(stiffness))
     values, shapes = softest(parts[0])
     strokes, steep = _worst(softest, stiffness, parts, corners) if parts[1:] else (corners[0], shapes[:, 0])
@@ -454,26 +469,26 @@ def _load_factors_of_large(stiffness: Quadratic, *parts: Quadratic, corners: Arr
 
 
 def _assess(stiffness: Any, parts: Sequence[Any], strokes: Array, steep: Array, *, largest: float, shapes: Array) -> _LoadFactors:
-    """Factors from the largest mu of the dead load, the shapes of its least, and the softest shape at the worst corner."""
+    """Load factors from the extreme mu of the permanent load, its buckling modes, and the mode at the worst corner."""
     dead, worst = _factor(stiffness, parts[0], shapes[:, 0]), _factor(stiffness, _combined(parts, strokes), steep)
     return _LoadFactors(dead, min(dead, worst, key=np.real), strokes, float(max(largest, 0.0)), shapes)
 
 
 def _repeated(values: Array) -> Array:
-    """Which of ascending values equal the first."""
+    """Mask of ascending values that equal the first."""
     return values <= values[0] + _REPEATED * np.abs(values[0]) + _ALIKE * np.max(np.abs(values))
 
 
 def _combined(parts: Sequence[Any], strokes: Array) -> Any:
-    """K_g of the dead load, the first part, and of strokes."""
+    """K_g of the permanent load (first term) and of strokes."""
     return sum((stroke * each for stroke, each in zip(strokes.tolist(), parts[1:], strict=True)), parts[0])
 
 
 def _worst(softest: Callable[[Any], Any], stiffness: Any, parts: Sequence[Any], corners: Array) -> tuple[Array, Array]:
-    """The corner with the least eigenvalue, and its shape.
+    """Corner with the least eigenvalue, and its mode.
 
-    Eigenvalues in the space of the softest shapes of some corners are bounds from above for all corners; the corner with the least of them
-    is solved and its shapes added, until that corner is one that was solved.
+    Eigenvalues in the subspace of modes of some corners bound those of all corners from above. The corner with the least bound is solved
+    and its modes added, until that corner is already solved.
     """
     weights = np.concatenate([np.ones((len(corners), 1)), corners], axis=-1)
     wanted = [0, len(corners) - 1, *(2**place for place in range(corners.shape[-1]))]
@@ -491,7 +506,7 @@ def _worst(softest: Callable[[Any], Any], stiffness: Any, parts: Sequence[Any], 
 
 
 def _orthonormal(stiffness: Any, shapes: Array) -> Array:
-    """What spans the same, with unit energies and none between any two."""
+    """Orthonormal basis of the same space in the energy norm."""
     shapes = shapes / np.sqrt(np.sum(shapes * (stiffness @ shapes), axis=0))
     values, turn = np.linalg.eigh(shapes.T @ (stiffness @ shapes))
     kept = values > _ALIKE
@@ -499,13 +514,13 @@ def _orthonormal(stiffness: Any, shapes: Array) -> Array:
 
 
 def _factor(stiffness: Any, softening: Any, shape: Array) -> complex:
-    """The factor of a shape: the elastic energy over what the loads take away; infinite where they take nothing."""
+    """Rayleigh quotient of a mode: elastic over geometric energy; infinite without softening."""
     elastic, taken = shape @ (stiffness @ shape), -(shape @ (softening @ shape))
     return complex(elastic / taken) if np.real(taken) > _NONE * np.real(elastic) else complex(np.inf)
 
 
 def _softest(solver: Solver, softening: Quadratic) -> tuple[Array, Array]:
-    """The least mu of K_g x = mu K x and their shapes (n + k, s)."""
+    """Least mu of K_g x = mu K x and their modes (n + k, s)."""
     if not softening.matrix.count_nonzero():
         return np.zeros(1), solver.solve(np.ones((softening.shape[-1], 1)))
     return least_ratios(solver, softening, _SHAPES)

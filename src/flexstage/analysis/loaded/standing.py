@@ -1,4 +1,4 @@
-"""Models of stages that stand: elastic results are given only where the drawn position is an equilibrium that holds."""
+"""Models of stable stages: elastic results require a stable nominal position."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.lumped import lumped
 
 _CORNERS = 12
-"""Strokes of more actuators have too many corners."""
+"""Largest number of actuators whose stroke corners are enumerated."""
 
 
 def standing(mechanism: Mechanism) -> LinearModel:
-    """The lumped model of a stage whose dead load lets the drawn position stand; of a batch, or with superelements, nothing is looked at.
+    """Return the lumped model of a stage that is stable in its nominal position; unchecked for a batch or superelements.
 
-    Raises `DesignError` where the load factor of weight, payloads and forces is below 1.
+    Raises `DesignError` if the load factor of weight, payloads and forces is below 1.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> len(standing(parallelogram()).coordinates)
@@ -33,13 +33,13 @@ def standing(mechanism: Mechanism) -> LinearModel:
 
 
 def under_load(mechanism: Mechanism) -> Stability | None:
-    """Load factors of the dead load, strokes at rest; `None` of a batch and of a stage with superelements."""
+    """Return load factors of the permanent load, strokes zero; `None` for a batch or a stage with superelements."""
     return _under_load(mechanism)[1]
 
 
 @SESSION.keep(2)
 def drawn(mechanism: Mechanism) -> LinearModel:
-    """The lumped model, whether the drawn position stands or not, kept for what else one command asks of the same description.
+    """Return the lumped model without a stability check. Cached by description.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> len(drawn(parallelogram()).coordinates)
@@ -50,7 +50,7 @@ def drawn(mechanism: Mechanism) -> LinearModel:
 
 @SESSION.keep(2)
 def kinematics(mechanism: Mechanism) -> Kinematics:
-    """The ideal kinematics, kept in the same way.
+    """Return the ideal kinematics. Cached by description.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> kinematics(parallelogram()).mobility
@@ -61,14 +61,14 @@ def kinematics(mechanism: Mechanism) -> Kinematics:
 
 @SESSION.keep(2)
 def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
-    """The lumped model and how it stands, kept for what else one command asks of the same description."""
+    """The lumped model and its load factors. Cached by description."""
     model = drawn(mechanism)
     known = not model.designs and not expand(mechanism).superelements
     return model, stability(mechanism, model) if known else None
 
 
 def require_standing(mechanism: Mechanism) -> None:
-    """Refuse elastic results of a stage whose drawn position does not hold; where the lumped model has no answer, nothing is said.
+    """Refuse elastic results of a stage that is unstable in its nominal position; pass if the lumped model fails.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> require_standing(parallelogram())
@@ -83,7 +83,7 @@ def require_standing(mechanism: Mechanism) -> None:
 
 @SESSION.keep(2)
 def load_factors(mechanism: Mechanism) -> Stability | None:
-    """Load factors of the whole stage over all strokes from no voltage; `None` where it has no elastic model.
+    """Return load factors of the stage over all strokes, relative to zero voltage; `None` without an elastic model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> bool(load_factors(parallelogram()).worst > 100.0)

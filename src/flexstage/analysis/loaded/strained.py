@@ -1,4 +1,4 @@
-"""Where strained flexures leave what the theory of large displacements holds for."""
+"""Strain limits of the theory of large displacements."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from flexstage.parts.contact import Contact
 from flexstage.parts.part import inner
 
 _STRAIN, _CURVING = 0.02, 40.0
-"""The largest strain that a linear law is physics for, and the largest b^2 k / t that two shapes across a leaf's width suffice for."""
+"""Largest strain for linear elasticity, and largest b^2 k / t for two shape functions across a leaf's width."""
 
 
 def strain_warnings(strained: Strains) -> Iterator[Finding]:
-    """Flexures whose strain, stress or curving is beyond the theory in any case; of many that are alike each is told.
+    """Return warnings for flexures whose strain, stress or curvature exceeds the limits of the theory in any case.
 
     >>> none = np.zeros((1, 1))
     >>> [str(each.where) for each in strain_warnings(Strains(("leaf",), none + 0.03, none, none, np.array([np.nan])))]
@@ -28,20 +28,20 @@ def strain_warnings(strained: Strains) -> Iterator[Finding]:
     largest, curving, stress = (np.nan_to_num(each) for each in (strained.largest, strained.curving, strained.stress))
     for name, most in zip(strained.names, _most(largest), strict=True):
         if most > _STRAIN:
-            what = f"its strain reaches {most:.2%}, beyond which no linear elastic law is physics"
-            yield Finding(name, what, "Ask for less stroke, or make it longer or thinner")
+            what = f"strain beyond linear elasticity (got {most:.2%}, expected {_STRAIN:.0%} or less)"
+            yield Finding(name, what, "Reduce the stroke, or make it longer or thinner")
     for name, most, limit in zip(strained.names, _most(stress), strained.limit, strict=True):
         if most > limit:
-            what = f"its stress reaches {most / 1e6:.4g} MPa, its material's limit is {limit / 1e6:.4g} MPa"
-            yield Finding(name, what, "Ask for less stroke, make it longer or thinner, or take a stronger material")
+            what = f"stress above the material's limit (got {most / 1e6:.4g} MPa, expected {limit / 1e6:.4g} MPa or less)"
+            yield Finding(name, what, "Reduce the stroke, make it longer or thinner, or use a stronger material")
     for name, most in zip(strained.names, _most(curving), strict=True):
         if most > _CURVING:
-            what = f"b^2 k / t reaches {most:.3g}, above {_CURVING:g}: two shapes across its width do not suffice"
-            yield Finding(name, what, "Count on an error of some tenths of a per cent in bending")
+            what = f"b^2 k / t too large for two shape functions across its width (got {most:.3g}, expected {_CURVING:g} or less)"
+            yield Finding(name, what, "Expect a bending error of some tenths of a per cent")
 
 
 def left_out(state: State) -> Iterator[Finding]:
-    """What the theory does not count and a state gets to in any case: contacts that would lift off, stops that would be met.
+    """Return warnings for effects outside the theory: contacts that lift off, stops that are reached.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
@@ -65,8 +65,8 @@ def _lifted(state: State) -> Iterator[Finding]:
     for place in pressed:
         least = float(np.min(-force[place, known, 0], initial=np.inf))
         if least <= 0.0:
-            what = f"its seat would have to pull with up to {-least:.4g} N: it lifts off, which is not counted"
-            yield Finding(hinges.names[place], what, "Ask for less, or preload it more")
+            what = f"the ball lifts off (tension of {-least:.4g} N at its seat); the model ignores this"
+            yield Finding(hinges.names[place], what, "Reduce the load or stroke, or increase the preload")
 
 
 def _stopped(state: State) -> Iterator[Finding]:
@@ -78,8 +78,8 @@ def _stopped(state: State) -> Iterator[Finding]:
         gone = (moved[0] - moved[1])[known]
         low, high = float(np.min(gone, initial=np.inf)), float(np.max(gone, initial=-np.inf))
         if low < float(stop.low) or high > float(stop.high):
-            what = f"the stage goes through it: {_gap(low)} to {_gap(high)} along it, where it has {_gap(stop.low)} to {_gap(stop.high)}"
-            yield Finding(name, what, "Stops are not met at large displacements: ask for no more than they allow")
+            what = f"the stop is exceeded: motion {_gap(low)} to {_gap(high)}, gaps {_gap(stop.low)} to {_gap(stop.high)}"
+            yield Finding(name, what, "Large displacements ignore stops: reduce the stroke")
 
 
 def _gap(value: float | np.ndarray) -> str:
@@ -87,11 +87,11 @@ def _gap(value: float | np.ndarray) -> str:
 
 
 def _moved(state: State, body: int, place: np.ndarray) -> np.ndarray:
-    """Displacements (b, 3) of a drawn point that moves with a body."""
+    """Displacements (b, 3) of a point fixed to a body."""
     arm = place - state.model.reference[body]
     return state.pose.position[:, body] + state.pose.turn[:, body] @ arm - place
 
 
 def _most(values: np.ndarray) -> np.ndarray:
-    """The largest (l,) of all cases (..., l)."""
+    """Largest (l,) of all cases (..., l)."""
     return np.max(values, axis=tuple(range(values.ndim - 1)), initial=0.0)

@@ -1,4 +1,4 @@
-"""A stage over its stroke: force, stiffness, parasitic motion, frequencies, strain, stability at every point of a path."""
+"""Characteristics over the stroke: force, stiffness, parasitic motion, frequencies, strain and stability along a load path."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ _FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
 
 
 class Stroke(Result):
-    """A stage along `drive`: a row a point `along` it.
+    """Characteristics of a stage over the stroke of a `drive`: a row of `along` for each point.
 
-    Columns: the drive's value; the force that holds it there and the stiffness against it, where the drive is a coordinate; the platform's
-    displacement and rotation vector; the share `lost` of a stack's stroke; the platform's first natural frequencies, free under that force;
-    the largest stress and strain of a flexure; and in how many ways the free stage would leave that place (0: stable). Drive and
-    displacements count from `sag`, where weight and loads bring the platform from its drawn place; None where they count from that one.
+    Columns: the drive's value, its holding force and stiffness (of a coordinate), and the platform's displacement and rotation vector.
+    `lost` is the relative lost motion of a stack's stroke. Further columns are the platform's first natural frequencies, free under that
+    force, the largest stress and strain of a flexure, and the number of unstable modes (0: stable). Drive and displacements are relative to
+    `sag`, the static deflection under weight and loads; None if they are relative to the nominal position.
     """
 
     drive: str
@@ -52,13 +52,13 @@ class Stroke(Result):
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """What is beyond the theory, or not found."""
+        """Strains beyond the limits of the theory, and missing equilibria."""
         return (*_warnings(self), *self.doubts)
 
 
 @dataclass(frozen=True, eq=False)
 class Beyond:
-    """The path from where a stage gives way, and what is told of it."""
+    """The post-buckling path and its characteristics."""
 
     path: LoadPath
     stroke: Stroke
@@ -66,11 +66,11 @@ class Beyond:
 
 @check_arguments
 def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics | None = None) -> Stroke:
-    """What a designer asks of a path, point by point (docs/nonlinear.md, 25 to 28).
+    """Compute the characteristics over a stroke, point by point (docs/nonlinear.md, 25 to 28).
 
-    Frequencies are NaN where the free stage is not stable. Loads and weight are those of the path. The drive and displacements count from
-    `rest`, if it is given. With the stage's ideal `kinematics` the lost motion of a driven stack is told: 1 - R_a V^+ (t - t_rest) / a, of
-    the platform's displacement and rotation vector t and the stroke a, R_a and V those of the drawn position (`lost_motion`).
+    Frequencies are NaN if the free stage is unstable. Loads and weight are those of the path. The drive and displacements are relative to
+    `rest`, if specified. With the ideal `kinematics` of the stage, the lost motion of a driven stack is 1 - R_a V^+ (t - t_rest) / a. The
+    platform's displacement and rotation vector is t, the stroke a; R_a and V are of the nominal position (`lost_motion`).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.paths.load_path import load_path
@@ -92,9 +92,9 @@ def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics 
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """States (k,) along a drive's `values`, from `rest` if it is given, and what a stroke tells of them, worked out when first asked for.
+    """States (k,) along a drive's `values`, relative to `rest`, and their characteristics, computed on first use.
 
-    `locked` coordinates stay held where the stage is free; by its ideal `kinematics` lost motion is told.
+    `locked` coordinates stay fixed for the free stage; the ideal `kinematics` gives lost motion.
     """
 
     drive: str
@@ -106,7 +106,7 @@ class Points:
 
     @cached_property
     def about(self) -> LinearModel:
-        """Small motions about them."""
+        """Models linearised about the states."""
         return linearise(self.state, locked=self.locked)
 
     @cached_property
@@ -116,22 +116,22 @@ class Points:
 
     @cached_property
     def motions(self) -> Array:
-        """In how many ways each would be left, what a held drive holds counted as held; -1 where there is none."""
+        """Number of unstable modes of each state, fixed drive coordinates fixed; -1 without equilibrium."""
         return unstable_motions(self.state)
 
     @cached_property
     def frequencies(self) -> Array:
-        """Natural frequencies (k, n) of the free stage [Hz]; NaN where it is not stable."""
+        """Natural frequencies (k, n) of the free stage [Hz]; NaN if unstable."""
         with np.errstate(invalid="ignore"):
             return np.sqrt(eigenvalues(self.about)) / (2.0 * np.pi)
 
     @cached_property
     def columns(self) -> dict[str, tuple[Callable[[], Array], str]]:
-        """What gives each column, and its unit."""
+        """Function and unit of each column."""
         return dict(_columns(self))
 
     def column(self, name: str) -> Array:
-        """A column (k,), alone."""
+        """A single column (k,)."""
         return self.columns[name][0]()
 
 
@@ -169,7 +169,7 @@ def _take(twist: Array, place: int) -> Array:
 
 
 def _lost(ideal: Kinematics, drive: str, strokes: Array, twist: Array) -> Array:
-    """The share of a stroke that the platform does not follow; NaN where there is none."""
+    """Relative lost motion of a stroke; NaN at zero stroke."""
     sense = (ideal.mapping.values @ ideal.projection)[ideal.actuators.index(drive)]
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(strokes == 0.0, np.nan, 1.0 - twist @ sense / strokes)
@@ -181,7 +181,7 @@ def _frequency(points: Points, place: int) -> Array:
 
 
 def _stiffness(about: LinearModel, coordinate: str, force: str) -> Array:
-    """Force over displacement in its own direction, everything else free."""
+    """Force per displacement along the drive, all else free."""
     known = np.asarray(np.isfinite(about.stiffness_matrix).all(axis=(-2, -1)))[..., None, None]
     matrix = np.where(known, about.stiffness_matrix, np.eye(len(about.coordinates)))
     moved = np.linalg.solve(matrix, about.input_matrix[..., about.input_index((force,))])
@@ -193,16 +193,16 @@ def _warnings(found: Stroke) -> Iterator[Finding]:
     yield from strain_warnings(found.strained)
     lost = np.isnan(found.along.values[:, -2])
     if lost.any():
-        what = f"{int(lost.sum())} of {len(lost)} points have no equilibrium that was found, the first at {_first(found, lost)}"
-        yield Finding(found.drive, what, "Ask for less, or follow the load by arc length (fs.continuation)")
+        what = f"no equilibrium found at {int(lost.sum())} of {len(lost)} points, the first at {_first(found, lost)}"
+        yield Finding(found.drive, what, "Reduce the stroke, or use arc-length continuation (fs.continuation)")
     loose = found.along.values[:, -1] > 0
     if loose.any():
-        what = f"at {int(loose.sum())} of {len(loose)} points the free stage is not stable, the first at {_first(found, loose)}"
-        yield Finding(found.drive, what, "Ask flexstage buckle what gives way")
+        what = f"the free stage is unstable at {int(loose.sum())} of {len(loose)} points, the first at {_first(found, loose)}"
+        yield Finding(found.drive, what, "Run flexstage buckle to find the buckling mode")
 
 
 def _first(found: Stroke, points: Array) -> str:
-    """Where the drive is at the first of some points."""
+    """Value of the drive at the first of the marked points."""
     along = found.along
     unit = along.unit if isinstance(along.unit, str) else along.unit[0][0]
     return show(float(along.values[points, 0][0]), LENGTH if unit == "m" else quantity_of_unit(unit), digits=4)

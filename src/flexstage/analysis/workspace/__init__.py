@@ -1,1 +1,1 @@
-"""What a stage can reach and bear: strokes, forces, stress, buckling, loads, gauges, clearance and volts."""
+"""Workspace of a stage: strokes, forces, stress, buckling, loads, gauges, clearance and volts."""

@@ -1,4 +1,4 @@
-"""Blocking forces: the force-stroke lines of the stacks against the stage's stiffness, and of the platform against the outside."""
+"""Blocked forces: force-displacement lines of the stacks against the stage stiffness, and of the platform against external loads."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, WRENCH
 
 
 class StackLine(Result):
-    """Each stack driven alone over its full stroke against the stage, (..., n) each.
+    """Force-displacement lines of single stacks against the stage, (..., n) each; other strokes zero.
 
-    `free` stroke [m] and `blocking` force [N] end the stack's own line; `stiffness` [N/m] is its own, `stage_stiffness` [N/m] the
-    stage's at its ends, other strokes held; `travel` [m] and `force` [N] (compression) the crossing of both lines.
+    `free` displacement [m] and `blocking` force [N] are the ends of the stack's line, `stiffness` [N/m] is its stiffness. `stage_stiffness`
+    [N/m] is that of the stage at its ends, other strokes fixed. `travel` [m] and `force` [N] (compression) are the intersection of both
+    lines.
     """
 
     TABLE: ClassVar[Layout] = Layout("Stacks against the stage")
@@ -39,16 +40,16 @@ class StackLine(Result):
 
 
 class PlatformLine(Result):
-    """The platform's force-stroke line along each coordinate, commanded by the ideal mapping, (..., f) each.
+    """Force-displacement line of the platform along each coordinate, commanded by the ideal mapping, (..., f) each.
 
-    `travel` [m, rad] without load (both ways), `stiffness` [N/m, N m/rad] of the platform against a load along this coordinate alone,
-    `blocking` [N, N m] the load that brings it back to zero.
+    `travel` [m, rad] is without load (both ways), `stiffness` [N/m, N m/rad] for a load along this coordinate only. `blocking` [N, N m] is
+    the blocked force: the load that returns the platform to zero.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Forces of the platform",
         "table",
-        notes=("A command along one coordinate ends where the first actuator does; the load acts along it alone.",),
+        notes=("A command along one coordinate ends at the first actuator's limit; the load acts along it only.",),
     )
 
     coordinates: tuple[str, ...]
@@ -59,7 +60,7 @@ class PlatformLine(Result):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
-        """Rows are the coordinates, columns travel, stiffness and blocking."""
+        """Rows are the coordinates, columns travel, stiffness and blocked force."""
         moves = list(map(MOTION.unit, self.coordinates))
         loads = list(map(WRENCH.unit, self.coordinates))
         slopes = ratio_units(tuple(loads), tuple(moves))
@@ -69,9 +70,9 @@ class PlatformLine(Result):
 
 
 def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
-    """Where each stack's line F = k (u - s) meets the stage's line F = k_s s.
+    """Compute the intersection of each stack's line F = k (u - s) with the stage's line F = k_s s.
 
-    The stack's force per stroke, k k_s / (k + k_s), is read from the model; k_s follows.
+    The model gives the stack's force per stroke, k k_s / (k + k_s), and so k_s.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -102,17 +103,17 @@ def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
 
 
 def _along(model: LinearModel, link: str, name: str, free: Array) -> Array:
-    """The link's force (...) along its own free deformation per unit of its stroke."""
+    """The link's force (...) along its free deformation per unit stroke."""
     places = np.flatnonzero(np.any(np.reshape(free, (-1, 6)), axis=0))
     forces = static_gain(model, tuple(f"{link}.{FORCES[place]}" for place in places), (name,)).values[..., 0]
     return np.sum(forces * free[..., places], axis=-1)
 
 
 def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) -> PlatformLine:
-    """Force-stroke lines of the platform at its reference point; `mapping` as for `single_axis`.
+    """Compute force-displacement lines of the platform at its reference point; `mapping` as for `single_axis`.
 
-    The command along coordinate j ends where the first actuator does; travel is the elastic motion there (lost motion counted); the load
-    acts along j alone, the other coordinates give way: stiffness 1 / C_jj.
+    The command along coordinate j ends at the first actuator's limit. Travel is the elastic motion there, including lost motion. The load
+    acts along j only, the other coordinates are free: stiffness 1 / C_jj.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

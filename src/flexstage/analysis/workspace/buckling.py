@@ -1,4 +1,4 @@
-"""Buckling of the whole stage, and Euler's load of every slender part against its axial force, at the worst corner of the strokes."""
+"""Buckling of the whole stage, and Euler load of every slender part, at the worst corner of the strokes."""
 
 from __future__ import annotations
 
@@ -27,28 +27,28 @@ _ROUNDING = 1e-9
 
 
 class Ends(Enum):
-    """How the ends of a column are held, which sets its effective length: P = pi^2 E I / (effective length)^2."""
+    """End conditions of a column, which determine its effective length: P = pi^2 E I / (effective length)^2."""
 
     GUIDED = "guided"
     """Both ends clamped, one free to move sideways (a flexure between blocks): effective length L."""
     PINNED = "pinned"
-    """Both ends hinged and held sideways (a stack between two hinges): effective length L, from hinge to hinge."""
+    """Both ends pinned (a stack between two hinges): effective length L, from hinge to hinge."""
     FREE = "free"
-    """One end clamped, the other held by nothing else (a body on a single flexure): effective length 2 L."""
+    """One end clamped, the other free (a body on a single flexure): effective length 2 L."""
 
 
 class Buckling(Result):
     """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst corner (negative: tension throughout), `length` [m].
 
-    `ends` says how each column was taken as held. `stage` is how the whole stage gives way: what a column's ends really do, and several
-    columns and bodies together.
+    `ends` lists the assumed end conditions of each column. `stage` is buckling of the whole stage, with the actual end conditions and with
+    several columns and bodies together.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Buckling of single parts",
         "table ends",
         head="part",
-        notes=("Euler's load of each part, its ends as listed.",),
+        notes=("Euler load of each part with the listed end conditions.",),
     )
 
     links: tuple[str, ...]
@@ -61,7 +61,7 @@ class Buckling(Result):
 
     @property
     def factor(self) -> Annotated[Array, INNER, Heading("load factor", digits=4, infinite="in tension", mark=SAFETY)]:
-        """By how much the compression could grow (..., L); infinite for parts in tension."""
+        """Critical load over compression (..., L); infinite for parts in tension."""
         pressed = self.compression > 0.0
         return np.where(pressed, self.critical / np.where(pressed, self.compression, 1.0), np.inf)
 
@@ -72,7 +72,7 @@ class Buckling(Result):
 
     @property
     def weakest(self) -> Annotated[str | None, VIEW]:
-        """The link with the least factor of its own on the first design; None where no column is pressed."""
+        """Link with the least Euler load factor on the first design; None without a column in compression."""
         if not self.links:
             return None
         first = 1.0 / self.factor.reshape(-1, len(self.links))[0]
@@ -86,12 +86,14 @@ class Buckling(Result):
 
 
 def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> Buckling:
-    """Euler's loads of leaves, rods, notches, necks and stacks against their compression over the corners of the strokes and dead load.
+    """Compute Euler loads of slender parts against their compression over the corners of the strokes and permanent load.
 
-    P = pi^2 E I / L_e^2 with the least second moment of the thinnest section over the whole length, so hinges are underestimated;
-    or the load at which a section twists, where its law states a lower one.
-    The whole stage's own factor knows how ends are really held. Compressions of less than a billionth of the largest
-    force in any part, along or across it, are rounding, and none.
+    Slender parts are leaves, rods, notches, necks and stacks. P = pi^2 E I / L_e^2 with the least second moment of the thinnest section
+    over the whole length, so hinges are underestimated. A lower
+    torsional buckling load of the section law takes precedence.
+
+    The factor of the whole stage uses the actual end conditions. Compressions below 1e-9 of the largest force in any part are rounding, and
+    count as zero.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -132,7 +134,7 @@ def _column(assembly: Assembly, link: PlacedLink) -> tuple[Number, Number, Ends]
 
 
 def _twisting_load(link: PlacedLink) -> Number:
-    """The load at which its section twists, where its law states one."""
+    """Torsional buckling load of the section, if its law specifies one."""
     known = law_of(link.part)
     if known is None or known.twisting_load is None or link.material is None:
         return np.inf
@@ -140,7 +142,7 @@ def _twisting_load(link: PlacedLink) -> Number:
 
 
 def stack_rigidity(piezo: Piezo) -> Number:
-    """Bending rigidity of a stack [N m^2]: as stated, else that of its ceramic, E I = k L d^2 / 16 (E = k L / A).
+    """Return the bending rigidity of a stack [N m^2]: as specified, else E I = k L d^2 / 16 of its ceramic (E = k L / A).
 
     >>> round(stack_rigidity(Piezo(stroke=1e-4, stiffness=16e6, length=0.1, diameter=0.01)), 9)
     10.0
@@ -151,7 +153,7 @@ def stack_rigidity(piezo: Piezo) -> Number:
 
 
 def _strut_length(assembly: Assembly, link: PlacedLink, piezo: Piezo) -> Array:
-    """From the hinge before the stack to the hinge behind it; a stack whose neighbour has several links ends there itself."""
+    """Length between the hinges at both ends of a stack; the stack's own end at a neighbour with several links."""
     axis = link.frame.rotation[..., :, 0] * 0.5 * np.asarray(piezo.length)[..., None]
     ends: list[Array] = []
     for body, own in zip(link.joins, (link.frame.position - axis, link.frame.position + axis), strict=True):

@@ -1,4 +1,4 @@
-"""Room: the clear opening as a keep-out in plan, and the envelope."""
+"""Clearance: the clear aperture as a keep-out area in plan, and the envelope."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ _BOTH_WAYS: Array = np.concatenate([np.eye(3), -np.eye(3)])
 
 @dataclass(frozen=True, eq=False)
 class Intrusion:
-    """An outline that enters the opening, and by how much it would have to move in plan (...) [m] to leave it."""
+    """Outline inside the aperture, and the motion in plan (...) [m] that would clear it."""
 
     name: str
     depth: Annotated[Array, LENGTH]
 
 
 class Clearance(Result):
-    """What the stage occupies.
+    """Clearance of the stage: its bounding box, envelope and clear aperture.
 
-    `intrusions` into the `opening` (..., 2) [m], none where none is described; `low` and `high` corners (..., 3) [m] of the bounding box;
-    `envelope` (..., 3) [m] or `None`; `extreme` names the outlines that reach farthest (low x, y, z, high x, y, z; first design).
+    `intrusions` are into the `opening` (..., 2) [m], empty without an aperture. `low` and `high` are corners (..., 3) [m] of the bounding
+    box, `envelope` is (..., 3) [m] or `None`. `extreme` names the outermost outlines (low x, y, z, high x, y, z; first design).
     """
 
     TABLE: ClassVar[Layout] = Layout("Clearance", "table reached_by", head="axis")
@@ -70,13 +70,13 @@ class Clearance(Result):
 
     @property
     def notes(self) -> Annotated[tuple[str, ...], INNER]:
-        """The outlines in the opening, the edges beyond the envelope."""
+        """Outlines inside the aperture, edges outside the envelope."""
         said = tuple(f"{each.where}: {each.what}." for each in self.findings)
         return said or (() if self.opening is None else ("Nothing enters the clear opening.",))
 
     @property
     def findings(self) -> Annotated[tuple[Finding, ...], VIEW]:
-        """What does not fit: outlines in the opening, edges beyond the envelope."""
+        """Errors: outlines inside the aperture, edges outside the envelope."""
         return (*self._intrusion_findings(), *self._beyond())
 
     def _intrusion_findings(self) -> Iterator[Finding]:
@@ -91,15 +91,19 @@ class Clearance(Result):
             if size > limit + _TOUCHING:
                 shown = (show(size, LENGTH, digits=4), show(limit, LENGTH, digits=4))
                 ends = " and ".join(dict.fromkeys((self.extreme[index], self.extreme[3 + index])))
-                yield Finding(f"envelope.{axis}", f"the stage is {shown[0]} wide, the envelope {shown[1]}", f"Look at {ends}")
+                yield Finding(
+                    f"envelope.{axis}",
+                    f"the stage is larger than the envelope (got {shown[0]}, expected {shown[1]} or less)",
+                    f"Check {ends}",
+                )
 
 
 @SESSION.keep(2)
 def clearance(mechanism: Mechanism) -> Clearance:
-    """The bounding box of all outlines against the envelope, and the outlines that enter the opening (a rectangle about the z axis).
+    """Compare the bounding box with the envelope, and the outlines with the aperture (a rectangle about the z axis).
 
-    Convex outlines in plan, found by separating directions: exact for boxes and round discs, an upper bound of the depth for tilted
-    cylinders. What has an upright hole that holds the opening stays clear. Parts without dimensions (given matrices, joints) take no room.
+    Convex outlines in plan, tested by separating axes: exact for boxes and round discs, an upper bound of the depth for tilted cylinders. A
+    body is clear if its upright through hole encloses the aperture. Parts without dimensions (compliance matrices, joints) are ignored.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> clearance(double_triangle()).size[2].round(6).item()
@@ -120,7 +124,7 @@ def clearance(mechanism: Mechanism) -> Clearance:
 
 
 def bounds(found: tuple[Outline, ...]) -> tuple[Array, Array, tuple[str, ...]]:
-    """Corners low and high (..., 3) [m] of the box around outlines, and the names of those that reach farthest; nought around none.
+    """Return the corners low and high (..., 3) [m] of the bounding box, and the names of the outermost outlines; zero without outlines.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> low, high, _ = bounds(outlines(expand(double_triangle())))
@@ -149,7 +153,7 @@ def _intrusions(found: tuple[Outline, ...], opening: Array) -> Iterator[Intrusio
 
 
 def _surrounds(outline: Outline, opening: Array) -> Array:
-    """Whether the outline's own through hole, upright, holds the whole opening."""
+    """Whether the outline's upright through hole encloses the whole aperture."""
     turn = outline.frame.rotation
     corners = 0.5 * opening[..., None, :] * np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
     arms = corners - outline.frame.position[..., None, :2]
@@ -170,7 +174,7 @@ def _depth(outline: Outline, opening: Array) -> Array:
 
 
 def _directions(outline: Outline, opening: Array) -> Array:
-    """Outward normals (n, ..., 3) of both shapes in plan, and directions from the opening's corners to a round outline's middle."""
+    """Outward normals (n, ..., 3) of both shapes in plan, and directions from the aperture's corners to a round outline's centre."""
     normals = [np.array([1.0, 0.0]), np.array([0.0, 1.0])]
     edges = outline.frame.rotation[..., :2, :]
     normals += [np.stack([-edges[..., 1, index], edges[..., 0, index]], axis=-1) for index in range(3)]
@@ -189,4 +193,4 @@ def _directions(outline: Outline, opening: Array) -> Array:
 
 
 _AROUND: Array = np.stack([each(np.linspace(0.0, np.pi, 180, endpoint=False)) for each in (np.cos, np.sin)], axis=-1)
-"""Directions in plan, half round."""
+"""Directions in plan over half a turn."""

@@ -1,4 +1,4 @@
-"""Volts: strokes to voltages and back, and the currents that charge the stacks."""
+"""Electrical drive: conversion of strokes and voltages, and charging currents of the stacks."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 class Drive(Result):
-    """The electrical side of the actuators: `gain` (..., n) [m/V], `low`, `high`, `bias` [V], `capacitance` [F] (NaN where not stated).
+    """The electrical side of the actuators: `gain` (..., n) [m/V], `low`, `high`, `bias` [V], `capacitance` [F] (NaN if not specified).
 
-    Linear: the free stroke is proportional to the voltage; hysteresis and creep are left to the loop.
+    Linear: the free stroke is proportional to the voltage; no hysteresis or creep.
     """
 
     TABLE: ClassVar[Layout] = Layout("Drive")
@@ -32,7 +32,7 @@ class Drive(Result):
 
 
 def drive(mechanism: Mechanism) -> Drive:
-    """The electrical side of a stage. Bias absent: the middle of the range. Raises `DesignError` for stacks without a voltage range.
+    """Return the electrical side of a stage; default bias: mid-range. Raises `DesignError` for stacks without a voltage range.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> electric = drive(double_triangle())
@@ -41,7 +41,7 @@ def drive(mechanism: Mechanism) -> Drive:
     """
     piezos = stacks(mechanism)
     require(
-        Finding(name, "its stack states no voltage range", 'Add for example voltage_low = "0 V" and voltage_high = "1000 V"')
+        Finding(name, "voltage range of the stack missing", 'Add e.g. voltage_low = "0 V" and voltage_high = "1000 V"')
         for name, piezo in piezos.items()
         if piezo.voltage_low is None or piezo.voltage_high is None
     )

@@ -1,4 +1,4 @@
-"""Force workspace, of stages that forces move: travel along each axis, its limits, and the currents that keep it there."""
+"""Force workspace of force-driven stages: travel along each axis, its limits, and the holding currents."""
 
 from __future__ import annotations
 
@@ -33,24 +33,23 @@ _ROUNDING, _NONE = 1e-12, 1e-9
 
 _STRESS_STEPS = 60
 _YIELD = "yield stress"
-_LIMIT = 'Add for example peak_current = "2 A" to the coil, or maximum = "20 N" to the force'
+_LIMIT = 'Add e.g. peak_current = "2 A" to the coil, or maximum = "20 N" to the force'
 
 
 class ForceWorkspace(Result):
-    """Force workspace: travel of a point along single coordinates, either way, by the elastic model; alone where the inputs allow it.
+    """Force workspace: elastic travel of a point along single coordinates, in both directions.
 
-    `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate, the other ideal
-    ones at zero, or, where `alone` says so, giving way. `bounds` (coordinates x causes) [m, rad] is the motion at which each cause ends it
-    if it is held for ever, `short` that in short use (a coil's `duty`); NaN where a limit is not stated. `current`, `voltage`, `power` and
-    `rise` (coordinates x coils) are what the held motion takes: i, R i, i^2 R and i^2 R times the thermal resistance [K]. `unmoved` are the
-    ideal motions that no input moves.
+    `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate. The other ideal
+    coordinates are zero if `alone`, else free. `bounds` (coordinates x causes) [m, rad] are the continuous motion limits by cause, `short`
+    the limits in short use (a coil's `duty`). They are NaN if unspecified. `current`, `voltage`, `power` and `rise` (coordinates x coils)
+    hold the motion: i, R i, i^2 R and i^2 R times the thermal resistance [K]. `unmoved` are ideal motions without an input.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Reach",
         "held held_briefly limited_by",
         head="along",
-        notes=("Elastic motion, either way. Held: without time limit; short use: for a coil's share of time, `duty`.",),
+        notes=("Elastic motion in both directions. Continuous: without time limit; short use: for a coil's duty cycle, `duty`.",),
     )
 
     point: str
@@ -67,24 +66,24 @@ class ForceWorkspace(Result):
     provenance: str
 
     @property
-    def held(self) -> Annotated[Array, VIEW, MOTION, Axes("coordinates"), Heading("held, both ways")]:
-        """The least bound of every coordinate (..., f) [m, rad], for ever; NaN where no limit is known."""
+    def held(self) -> Annotated[Array, VIEW, MOTION, Axes("coordinates"), Heading("continuous, both ways")]:
+        """Least continuous limit of every coordinate (..., f) [m, rad]; NaN without a known limit."""
         return _least(self.bounds.values)
 
     @property
     def held_briefly(self) -> Annotated[Array, VIEW, MOTION, Axes("coordinates"), Heading("short use")]:
-        """The least bound of every coordinate (..., f) [m, rad] in short use."""
+        """Least short-use limit of every coordinate (..., f) [m, rad]."""
         return _least(self.short.values)
 
     @property
     def limited_by(self) -> Annotated[tuple[str, ...], VIEW]:
-        """The cause that ends each coordinate's motion, on the first design; empty where no limit is known."""
+        """Cause of the least limit of each coordinate, on the first design; empty without a known limit."""
         first = np.nan_to_num(np.real(first_design(self.bounds.values, 2)), nan=np.inf)
         return tuple(self.bounds.columns[int(np.argmin(row))] if np.isfinite(np.min(row, initial=np.inf)) else "" for row in first)
 
     @property
     def holding(self) -> Annotated[Matrix, INNER]:
-        """Current, voltage, power and temperature rise of each coil at the travel held along each coordinate (first design)."""
+        """Current, voltage, power and temperature rise of each coil at the continuous limit of each coordinate (first design)."""
         needs = (self.current, self.voltage, self.power, self.rise)
         values = np.stack([np.real(first_design(need.values, 2)).ravel() for need in needs], axis=-1)
         rows = tuple(f"{name}, {coil}" for name in self.coordinates for coil in self.current.columns)
@@ -92,7 +91,7 @@ class ForceWorkspace(Result):
 
     @property
     def notes(self) -> Annotated[tuple[str, ...], INNER]:
-        """Motions that inputs do not move alone, or not at all."""
+        """Motions that inputs do not move independently, or not at all."""
         coupled = () if all(self.alone) else ("Fewer inputs than ideal motions: the other coordinates move freely.",)
         return (*coupled, *([f"No actuator moves {', '.join(self.unmoved)}."] if self.unmoved else []))
 
@@ -104,22 +103,23 @@ def _least(bounds: Array) -> Array:
 
 @check_arguments
 def force_workspace(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> ForceWorkspace:
-    """Limit over compliance along every ideal motion, of stages with force actuators.
+    """Compute the force workspace: limits over compliance along every ideal motion, for stages with force actuators.
 
-    C = dx/du (elastic, strokes and forces) gives the inputs per motion, G = C^-1 for as many inputs as motions, of least share of their
-    limits for more. What is left of the motion ends with the first of: each coil's peak and continuous current, heat i^2 R over its
-    thermal resistance, amplifier voltage R i (at rest), largest force, magnetic travel, each stroke, each stop's nearer side, and yield in
-    a hinge under dead load. Linear. An input moves a coordinate where it does so by more than rounding: 1e-9 of (c E)^1/2, which by Cauchy
-    and Schwarz is the most, c the coordinate's compliance and E twice the input's energy. Raises `DesignError` where the stage has no force
-    actuator, no ideal motion, or none that an input moves.
+    C = dx/du (elastic, strokes and forces) gives the inputs per motion G. It is C^-1 for as many inputs as motions, for more the least-norm
+    inverse relative to input limits. Coils limit the motion by peak and continuous current, heat i^2 R over thermal resistance, static
+    amplifier voltage R i, largest force and magnetic travel. Other limits are strokes, the nearer side of each stop, and yield in a hinge
+    under permanent load. Linear.
+
+    An input moves a coordinate if its effect exceeds 1e-9 of the Cauchy-Schwarz bound (c E)^1/2. Here c is the compliance of the coordinate
+    and E twice the energy of the input. Raises `DesignError` without a force actuator, an ideal motion, or a motion with an input.
     """
     if not kinematics.thrusts or not kinematics.mobility:
-        raise refuse("force_workspace", "the stage has no force actuator that moves it", "Ask for its workspace, which strokes determine")
+        raise refuse("force_workspace", "no force actuator moves the stage", "Use the workspace of its strokes")
     assembly = expand(mechanism)
     inputs, gain, names = model.actuators, *_moved(model, point, kinematics.coordinates)
     if not names:
         what = f"no actuator moves {point} along any ideal motion ({', '.join(kinematics.coordinates)})"
-        raise refuse("force_workspace", what, "Look which way the actuators push, and how they turn with what they are joined to")
+        raise refuse("force_workspace", what, "Check the directions and connections of the actuators")
     limits = {brief: _input_limits(mechanism, assembly, inputs, brief=brief) for brief in (False, True)}
     per_motion, alone = _inverse(gain, _sizes(limits[False]))
     per_motion = _without_rounding(per_motion)
@@ -145,7 +145,7 @@ def force_workspace(mechanism: Mechanism, kinematics: Kinematics, model: LinearM
 
 
 def _moved(model: LinearModel, point: str, coordinates: tuple[str, ...]) -> tuple[Array, tuple[str, ...]]:
-    """The gain (..., f, n) of all inputs on the coordinates that they move in some design, zero where it is rounding; and those."""
+    """Gain (..., f, n) of all inputs on the coordinates that they move in any design, rounding set to zero; and these coordinates."""
     outputs = tuple(f"{point}.{name}" for name in coordinates)
     wrenches = tuple(f"{point}.{FORCES[COMPONENTS.index(name)]}" for name in coordinates)
     gain = static_gain(model, outputs, model.actuators).values
@@ -162,7 +162,7 @@ _Causes = list[tuple[str, Array]]
 
 
 def _input_limits(mechanism: Mechanism, assembly: Assembly, inputs: tuple[str, ...], *, brief: bool) -> list[list[tuple[str, Number]]]:
-    """What bounds every input either way, by name; strokes by their nearer end."""
+    """Symmetric limits of every input by name; strokes by their nearer end."""
     strokes = stroke_limits(mechanism)
     result: list[list[tuple[str, Number]]] = []
     for name in inputs:
@@ -177,15 +177,15 @@ def _input_limits(mechanism: Mechanism, assembly: Assembly, inputs: tuple[str, .
 
 
 def _sizes(limits: list[list[tuple[str, Number]]]) -> list[float]:
-    """Root of every input's least limit on the first design (1 where none is known): redundant inputs u_i share by least sum u_i^2/limit_i.
+    """Square root of every input's least limit (first design; 1 if unknown): redundant inputs minimise sum u_i^2/limit_i.
 
-    Two on one line then reach their limits together.
+    Two collinear inputs then reach their limits together.
     """
     return [min((single(value) for _, value in own), default=1.0) ** 0.5 for own in limits]
 
 
 def _inverse(gain: Array, sizes: list[float]) -> tuple[Array, tuple[bool, ...]]:
-    """Inputs (..., n, f) per motion, and whether each coordinate moves alone: else the others give way."""
+    """Inputs (..., n, f) per motion, and whether each coordinate moves alone; else the others are free."""
     scaled = gain * np.asarray(sizes)
     count, first = gain.shape[-2], np.real(first_design(scaled, 2))
     weight = np.max(np.abs(first), axis=1, keepdims=True)
@@ -196,7 +196,7 @@ def _inverse(gain: Array, sizes: list[float]) -> tuple[Array, tuple[bool, ...]]:
 
 
 def _least_norm(gain: Array) -> Array:
-    """G = C^T (C C^T)^-1, which is C^-1 of a square C; NaN of designs in which no input moves a coordinate."""
+    """G = C^T (C C^T)^-1, equal to C^-1 for a square C; NaN for designs in which no input moves a coordinate."""
     transposed = np.swapaxes(gain, -1, -2)
     square = gain if gain.shape[-1] == gain.shape[-2] else gain @ transposed
     lost = np.linalg.det(np.real(square))[..., None, None] == 0.0
@@ -211,21 +211,21 @@ def _by_input(inputs: tuple[str, ...], limits: list[list[tuple[str, Number]]], p
 
 
 def _over(limit: Array, slope: Array) -> Array:
-    """The motion (..., f) at which a slope per motion reaches its limit; infinite where it never does."""
+    """Motion (..., f) at which a quantity of given slope reaches its limit; infinite at zero slope."""
     size = magnitude(_without_rounding(slope))
     known = np.real(size) > 0.0
     return np.where(known, limit / np.where(known, size, 1.0), np.inf)
 
 
 def _without_rounding(slope: Array) -> Array:
-    """Slopes per motion (..., f), zero where they are rounding beside those of other motions; their derivatives stay."""
+    """Slopes per motion (..., f) with rounding (relative to other motions) set to zero; derivatives unchanged."""
     size = np.abs(np.real(slope))
     known = size > _ROUNDING * np.max(np.nan_to_num(size), axis=-1, keepdims=True)
     return np.where(known, slope, slope - np.real(slope))
 
 
 def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterable[tuple[str, Array]]:
-    """Half the magnetic travel of every coil against how far the motion opens it."""
+    """Limit from half the magnetic travel of every coil."""
     columns = model.input_index(inputs)
     moved = input_motion(model, columns, per_motion)
     found: dict[str, Array] = {}
@@ -241,7 +241,7 @@ def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per
 
 
 def _stops(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterator[tuple[str, Array]]:
-    """The motion, by the nearer side, at which every stop is met."""
+    """Motion at which every stop closes, on the nearer side."""
     for name, stop in assembly.stops.items():
         twists = {
             body: static_gain(model, tuple(f"{body}.{component}" for component in COMPONENTS), inputs).values @ per_motion
@@ -252,7 +252,7 @@ def _stops(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_
 
 
 def _twist(assembly: Assembly, twists: Mapping[str, Array], body: str, frame: Frame) -> Array:
-    """The twist of a body at a frame, of those (..., 6, f) at the bodies' reference points; the ground rests."""
+    """Twist of a body at a frame, from twists (..., 6, f) at the bodies' reference points; zero for the ground."""
     still = np.zeros_like(next(iter(twists.values())))
     return still if body == GROUND else twist_transform(frame, assembly.bodies[body].reference) @ twists[body]
 
@@ -260,7 +260,7 @@ def _twist(assembly: Assembly, twists: Mapping[str, Array], body: str, frame: Fr
 def _stress(
     mechanism: Mechanism, assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array
 ) -> Iterator[tuple[str, Array]]:
-    """The motion at which a hinge yields, dead load included: s <- s / use(s), use the largest share of yield."""
+    """Motion at which a hinge yields, with permanent load: s <- s / use(s), use the largest share of yield."""
     sized = sized_links(assembly)
     if not sized:
         return
@@ -273,7 +273,7 @@ def _stress(
 
 
 def _yielding(sized: Mapping[str, PlacedLink], dead: Array, per: Array) -> Array:
-    """The least motion (...) either way at which the largest stress reaches yield; NaN where a yield stress is not stated."""
+    """Least motion (...) in both directions at which the largest stress reaches yield; NaN without a yield stress."""
     ways: list[Array] = []
     for sign in (1.0, -1.0):
         use = stress_use(sized, (sign * per).reshape(*per.shape[:-1], len(sized), len(FORCES)))
@@ -294,7 +294,7 @@ def _bounds(names: tuple[str, ...], causes: _Causes, units: tuple[str, ...]) -> 
 
 
 def _needs(assembly: Assembly, inputs: tuple[str, ...], names: tuple[str, ...], held: Array) -> dict[str, Matrix]:
-    """What the inputs (..., n, f) of the held motions ask of every coil."""
+    """Current, voltage, power and temperature rise of every coil for inputs (..., n, f)."""
     coils = [name for name in inputs if isinstance(assembly.actuator(name), Coil)]
     found: dict[str, list[Array]] = {"current": [], "voltage": [], "power": [], "rise": []}
     for name in coils:
@@ -314,10 +314,10 @@ def _needs(assembly: Assembly, inputs: tuple[str, ...], names: tuple[str, ...], 
 
 
 def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
-    """Least and largest of every input, strokes from no voltage, forces either way: the least that is stated of a coil in short use.
+    """Return the limits of every input: strokes from zero voltage, symmetric forces; the least specified short-use limit of a coil.
 
-    What opens a coil alone by more than half its travel is more than it is ever given. Raises `DesignError` for a force actuator that
-    states no limit.
+    A single input may not displace its coil by more than half the magnetic travel. Raises `DesignError` for a force actuator without a
+    limit.
     """
     assembly, inputs = expand(mechanism), model.actuators
     strokes = stroke_limits(mechanism).from_zero
@@ -325,11 +325,7 @@ def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
     for name, bounds in _travel(assembly, model, inputs, np.eye(len(inputs))):
         owner = name.removesuffix(" travel")
         known[inputs.index(owner)].append((name, bounds[..., inputs.index(owner)]))
-    require(
-        Finding(name, "it states no limit of its force, and what it may load the stage with is not known", _LIMIT)
-        for name, own in zip(inputs, known, strict=True)
-        if not own
-    )
+    require(Finding(name, "no limit of its force is specified", _LIMIT) for name, own in zip(inputs, known, strict=True) if not own)
     low, high = [], []
     for name, own in zip(inputs, known, strict=True):
         if name in strokes.actuators:
@@ -344,13 +340,13 @@ def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
 
 
 def bounds_along(found: ForceWorkspace, name: str) -> Array:
-    """The bounds (..., k) of the motion along one coordinate, infinite where a limit is not stated; refused where none is."""
+    """Return the limits (..., k) of the motion along one coordinate, infinite if unspecified. Raises `DesignError` if all are."""
     if name not in found.coordinates:
-        what = "no actuator moves it" if name in found.unmoved else "is no ideal motion of this stage"
+        what = "no actuator moves it" if name in found.unmoved else "not an ideal motion of this stage"
         raise refuse(f"stroke.{name}", what, f"Its actuators move it along {', '.join(found.coordinates)}")
     place = found.coordinates.index(name)
     if np.any(np.isnan(found.held[..., place])):
-        what = "no limit of its actuators is stated"
+        what = "its actuators have no specified limit"
         raise refuse(f"force_workspace.{name}", what, _LIMIT)
     values = found.bounds.values[..., place, :]
     return np.where(np.isnan(values), np.inf, values)

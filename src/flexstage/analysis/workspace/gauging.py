@@ -1,4 +1,4 @@
-"""Gauges: whether their ranges hold the commanded corner, how far out they could sit, and what pose their resolution resolves."""
+"""Gauges (displacement sensors): range at the commanded corner, largest mounting radius, and pose resolution."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 _ANGLES = 720
 _LEVEL = 1e-9
-"""Swing per metre of radius over swing on the axis, below which a gauge counts as not feeling its radius."""
+"""Ratio of reading per metre of radius to reading on the axis, below which a gauge counts as independent of its radius."""
 
 
 class GaugeRange(Result):
-    """Gauge readings at the worst corner of a box of commands, against half the measuring range (gauges set to mid-range), (..., g) each.
+    """Gauge readings at the worst corner of a box of commands, and half the measuring range (gauges at mid-range), (..., g) each.
 
     `swing` the largest reading and `limit` half the range, in `units` by gauge (m, rad). `radius` [m] is each gauge's distance from the
-    platform's axis, `largest_here` [m] the largest that fits at its own angle, `largest_anywhere` [m] at any angle (infinite: the range
-    holds everywhere; NaN: it does not even hold on the axis, or the gauge does not stand between platform and ground).
+    platform's axis, `largest_here` [m] the largest within range at its angle, `largest_anywhere` [m] at any angle. Infinite: within range
+    everywhere; NaN: out of range even on the axis, or the gauge is not between platform and ground.
     """
 
     TABLE: ClassVar[Layout] = Layout("Gauge ranges", "table used")
@@ -46,12 +46,12 @@ class GaugeRange(Result):
 
     @property
     def used(self) -> Annotated[Array, INNER, SHARE, Bound(high=1.0), Along("gauges")]:
-        """Share of half the range that the corner takes (..., g)."""
+        """Reading at the corner over half the range (..., g)."""
         return self.swing / self.limit
 
     @property
     def fits(self) -> Annotated[Array, Along("gauges")]:
-        """Whether each gauge's range holds the corner (..., g)."""
+        """Whether the corner is within each gauge's range (..., g)."""
         return self.swing <= self.limit * (1.0 + 1e-12)
 
     @property
@@ -64,12 +64,11 @@ class GaugeRange(Result):
 
 
 class PoseResolution(Result):
-    """Platform motion that one resolution step of every gauge amounts to, through S = V (R_s V)^+, (..., 6) [m, rad].
+    """Pose resolution: platform motion for one resolution step of every gauge, by S = V (R_s V)^+, (..., 6) [m, rad].
 
-    S is by single gauges, through the sums that take them up; `gauge_steps` and `gauge_noise` (..., g) [m, rad] are what each of these
-    has. `worst`: all gauges off by one step with the worst signs,
-    sum |S_ij| r_j; `rms`: independently, (sum S_ij^2 r_j^2)^(1/2); `noise` the rms of the stated noise densities over the gauges'
-    bandwidths (NaN where none is stated).
+    S is by single gauges, also for those in sums; `gauge_steps` and `gauge_noise` (..., g) [m, rad] are their resolution and noise. `worst`
+    is for one step of all gauges with the worst signs, sum |S_ij| r_j; `rms` for independent steps, (sum S_ij^2 r_j^2)^(1/2). `noise` is
+    the rms of the specified noise densities over the gauges' bandwidths (NaN if unspecified).
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -94,10 +93,10 @@ class PoseResolution(Result):
 
 
 def gauge_inverse(kinematics: Kinematics) -> Matrix:
-    """S (..., 6, g): platform motion per gauge reading, R_s^-1 for six gauges, its least-squares inverse on the ideal motions otherwise.
+    """Compute S (..., 6, g), platform motion per reading: R_s^-1 for six gauges, else the least-squares inverse on the ideal motions.
 
-    Where there are sums of gauges, R_s is of the gauges that no sum takes up, and the columns of S are the single gauges. Raises
-    `DesignError` where the gauges do not see every ideal motion.
+    With sums of gauges, R_s is of the sums and of the gauges outside sums; the columns of S are the single gauges. Raises `DesignError` if
+    the gauges do not determine every ideal motion.
 
     >>> from flexstage.cases.double_triangle import SM_REF_A, double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -113,7 +112,7 @@ def gauge_inverse(kinematics: Kinematics) -> Matrix:
     if rank < kinematics.mobility:
         raise refuse(
             "gauges",
-            f"{len(kinematics.telling)} gauges see {rank} of the platform's {kinematics.mobility} ideal motions",
+            f"{len(kinematics.telling)} gauges determine {rank} of the platform's {kinematics.mobility} ideal motions",
             "Add gauges, or turn them so that every motion changes a reading",
         )
     values = kinematics.motion @ (scale[..., None] * _pseudo_inverse(scaled) * even[..., None, :, 0])
@@ -123,13 +122,13 @@ def gauge_inverse(kinematics: Kinematics) -> Matrix:
 
 
 def _even(kinematics: Kinematics, units: Mapping[str, str]) -> Array:
-    """Factors (..., t, 1) that make readings comparable: 1, and the stage's length for rotations."""
+    """Scale factors (..., t, 1) of readings: 1, and the stage's length for rotations."""
     lengths = [units[name] == "m" for name in kinematics.telling]
     return np.where(lengths, 1.0, np.asarray(kinematics.length)[..., None])[..., None]
 
 
 def _pseudo_inverse(matrix: Array) -> Array:
-    """A^+ of full column rank, that derivatives by complex step pass through: dA^+ = A^+ A^+^T dA^T (I - A A^+) - A^+ dA A^+."""
+    """A^+ of full column rank, valid for complex-step derivatives: dA^+ = A^+ A^+^T dA^T (I - A A^+) - A^+ dA A^+."""
     real = np.real(matrix)
     back = np.linalg.pinv(real)
     if not np.iscomplexobj(matrix):
@@ -141,7 +140,7 @@ def _pseudo_inverse(matrix: Array) -> Array:
 
 
 def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolution:
-    """Pose resolution from the gauges' resolution and noise.
+    """Compute the pose resolution from the gauges' resolution and noise.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -172,7 +171,7 @@ def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolut
 
 
 def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number]) -> GaugeRange:
-    """Swing of every gauge over the corners of a box of commands (half widths by coordinate [m, rad]), against half its range.
+    """Compute gauge readings over the corners of a box of commands (half widths by coordinate [m, rad]), and half ranges.
 
     The platform's axis is the line along z through its reference point; gauges not between platform and ground have no `largest` radius.
 
@@ -205,7 +204,7 @@ def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[s
 
 
 def gauge_swing(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
-    """How far each reading goes either way (..., g) [m, rad] at the worst corner of a box of motions given by their half widths.
+    """Compute the largest reading (..., g) [m, rad] over the corners of a box of motions (half widths).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -216,7 +215,7 @@ def gauge_swing(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
 
 
 def half_ranges(assembly: Assembly) -> Array:
-    """Half of each gauge's range (..., g) [m, rad].
+    """Return half of each gauge's range (..., g) [m, rad].
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> half_ranges(expand(double_triangle()))[:2].tolist()
@@ -229,12 +228,12 @@ def _half(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
     names = kinematics.coordinates
     for name in command:
         if name not in names:
-            raise refuse(f"command {name}", "is not one of the stage's ideal motions", f"These are {', '.join(names)}")
+            raise refuse(f"command {name}", "not an ideal motion of the stage", f"Use {', '.join(names)}")
     return magnitude(stack([command.get(name, 0.0) for name in names]))
 
 
 def _places(assembly: Assembly, name: str, box: Array, limit: Array) -> tuple[Array, Array, Array]:
-    """Radius of a gauge, the largest radius at its own angle, and the largest at any angle."""
+    """Radius of a gauge, and the largest radius at its angle and at any angle."""
     placed = assembly.gauges[name].single
     if placed is None:
         unknown = np.full(box.shape[:-2], np.nan)
@@ -250,10 +249,10 @@ def _places(assembly: Assembly, name: str, box: Array, limit: Array) -> tuple[Ar
 
 
 def _largest_radius(box: Array, limit: Array, angles: Array, *, direction: Array, outward: Array, height: Array) -> Array:
-    """Largest radius (..., angles) at which the swing sum_j |A_j + r B_j| stays within the limit, the gauge carried around the axis.
+    """Largest radius (..., angles) with a reading sum_j |A_j + r B_j| within the limit, for a gauge rotated about the axis.
 
-    At the first angle it reads the translation or rotation along its `direction` (..., 6) and lies at `height` in the direction `outward`
-    from the axis. Convex and piecewise linear in r: Newton's steps from above end in as many steps as there are pieces.
+    At the first angle it reads the translation or rotation along its `direction` (..., 6) at `height`, in the direction `outward` from the
+    axis. Convex and piecewise linear in r: Newton's steps from above end in at most one step per piece.
     """
     turned, about = (_around(part, angles) for part in (direction[..., :3], direction[..., 3:]))
     out = _around(np.concatenate([outward, np.zeros_like(outward[..., :1])], axis=-1), angles)
@@ -274,14 +273,14 @@ def _largest_radius(box: Array, limit: Array, angles: Array, *, direction: Array
 
 
 def _row(sight: Sight) -> Array:
-    """The translation or rotation that is read (..., 6), in the stage's axes."""
+    """Direction (..., 6) of the measured translation or rotation, in the stage's axes."""
     axis = sight.frame.rotation[..., :, sight.component % 3]
     parts = (axis, np.zeros_like(axis))
     return np.concatenate(parts if sight.component < 3 else parts[::-1], axis=-1)
 
 
 def _around(vector: Array, angles: Array) -> Array:
-    """A vector (..., 3) turned about z by each angle, (..., angles, 3)."""
+    """A vector (..., 3) rotated about z by each angle, (..., angles, 3)."""
     x, y, z = (vector[..., None, index] for index in range(3))
     cosine, sine = np.cos(angles), np.sin(angles)
     return stack([x * cosine - y * sine, x * sine + y * cosine, z])

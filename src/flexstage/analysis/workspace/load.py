@@ -1,4 +1,4 @@
-"""Loads: how weight, payload and bonding forces, also eccentric ones, are shared among the actuators, against what their stacks bear."""
+"""Actuator loads: distribution of weight, payload and forces (also eccentric) over the stacks, and the stacks' load limits."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, WRENCH_UNITS, transport
 OWN_WEIGHT = "own weight"
 _ROUNDING = 1e-9
 SAFETY = Graded(1.5, 1.0, Mark.PLAIN)
-"""Grade of factors against failure: below 1 it happens, below 1.5 little is left."""
+"""Grades of safety factors: failure below 1, small margin below 1.5."""
 
 
 class LoadRange(Result):
-    """Compression [N] of each stack over the strokes: `min_force`, `max_force`; `usage` of its maximum load, `pull` over what holds it."""
+    """Compression [N] of each stack over the strokes, with its ratios to maximum load (`usage`) and tension limit (`pull`)."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Axial forces of the stacks over all strokes",
         "min_force max_force usage pull",
-        notes=("From no voltage, dead load included, preload not counted; negative: tension, used of preload and tensile limit.",),
+        notes=("From zero voltage, with permanent load, without preload; negative: tension, relative to preload and tensile limit.",),
     )
 
     actuators: tuple[str, ...]
@@ -45,10 +45,10 @@ class LoadRange(Result):
 
 
 class LoadShare(Result):
-    """Axial forces of the stacks under dead load, positive in compression.
+    """Axial forces of the stacks under permanent load, positive in compression.
 
     `loads` (actuators x own weight, payloads and forces) [N]; `share` (actuators x wrench at the platform's reference) per unit wrench;
-    `stroke` (actuators x strokes) [N/m]. `maximum`, `preload` and `tensile` (..., n) [N] are the stacks' limits (NaN: not stated);
+    `stroke` (actuators x strokes) [N/m]. `maximum`, `preload` and `tensile` (..., n) [N] are the stacks' limits (NaN: not specified);
     `reference` (..., 3) the platform's reference point [m].
     """
 
@@ -68,17 +68,17 @@ class LoadShare(Result):
 
     @property
     def compression(self) -> Annotated[Array, FORCE, Along("actuators")]:
-        """Compression (..., n) [N] under gravity and all forces, strokes at rest, preload not counted."""
+        """Compression (..., n) [N] under gravity and all forces, strokes zero, without preload."""
         return np.sum(self.loads.values, axis=-1)
 
     def under(self, force: Array, at: Array) -> Array:
-        """Compression (..., n) [N] that a force (..., 3) [N] on the platform at a point (..., 3) [m] adds, both in the stage's frame."""
+        """Added compression (..., n) [N] due to a force (..., 3) [N] on the platform at a point (..., 3) [m], both in the stage's frame."""
         moment = np.cross(at - self.reference, force)
         wrench = np.concatenate(np.broadcast_arrays(force, moment), axis=-1)
         return (self.share.values @ wrench[..., None])[..., 0]
 
     def range(self, limits: StrokeLimits) -> tuple[Array, Array]:
-        """Least and largest compression (..., n) [N] over the box of strokes, dead load included: the ends of intervals, exactly."""
+        """Least and largest compression (..., n) [N] over the box of strokes with permanent load: exact interval ends."""
         ends = np.stack([self.stroke.values * limits.low[..., None, :], self.stroke.values * limits.high[..., None, :]])
         return (
             self.compression + np.sum(np.min(ends, axis=0), axis=-1),
@@ -86,47 +86,47 @@ class LoadShare(Result):
         )
 
     def usage(self, compression: Array) -> Array:
-        """The stack's compression with its preload over its maximum load (..., n); NaN where none is stated."""
+        """Compression including preload over maximum load (..., n); NaN if unspecified."""
         return (compression + np.nan_to_num(self.preload)) / self.maximum
 
     def pull(self, compression: Array) -> Array:
-        """Tension over what preload and tensile limit allow (..., n): above 1 the stack lifts off or tears; infinite without either."""
+        """Tension over the sum of preload and tensile limit (..., n): above 1 the stack separates or breaks; infinite without either."""
         allowed = np.nan_to_num(self.preload) + np.nan_to_num(self.tensile)
         tension = np.maximum(0.0, -compression)
         safe = np.where(allowed > 0.0, allowed, 1.0)
         return np.where(tension <= 0.0, 0.0, np.where(allowed > 0.0, tension / safe, np.inf))
 
     def over(self, limits: StrokeLimits) -> LoadRange:
-        """What the stacks bear over the box of strokes, dead load included."""
+        """Load range of the stacks over the box of strokes with permanent load."""
         least, largest = self.range(limits)
         return LoadRange(self.actuators, least, largest, self.usage(largest), self.pull(least))
 
     def use(self, limits: StrokeLimits) -> Array:
-        """Share of its limits that each stack bears over the box of strokes (..., n): of the maximum load, or of what pulls it."""
+        """Largest share of each stack's limits over the box of strokes (..., n), in compression or tension."""
         least, largest = self.range(limits)
         pressed, pulled = np.broadcast_arrays(self.usage(largest), self.pull(least))
         return np.where(np.real(pulled) > np.real(np.nan_to_num(pressed)), pulled, pressed)
 
     def tension_findings(self, limits: StrokeLimits) -> Iterator[Finding]:
-        """Stacks that are pulled with more than their preload and tensile limit allow, or that state neither."""
+        """Stacks in tension beyond preload and tensile limit, or without specified limits."""
         least, pull = self.range(limits)[0], self.pull(self.range(limits)[0])
         first, share = (np.real(each).reshape(-1, len(self.actuators))[0] for each in (least, pull))
         scale = np.max(np.abs(first), initial=0.0)
         for place, name in enumerate(self.actuators):
             if share[place] <= 1.0 or -first[place] <= _ROUNDING * scale:
                 continue
-            what = f"at the worst corner of the strokes its stack is pulled with {-first[place]:.4g} N"
+            what = f"tension of {-first[place]:.4g} N in its stack at the worst corner of the strokes"
             if np.isinf(share[place]):
-                yield Finding(name, f"{what}, and it states neither preload nor tensile limit", 'Add for example preload = "200 N"')
+                yield Finding(name, f"{what}, preload and tensile limit missing", 'Add e.g. preload = "200 N"')
             else:
-                yield Finding(name, f"{what}, {share[place]:.3g} times what its limits allow", "Preload it, or limit the volts")
+                yield Finding(name, f"{what}, {share[place]:.3g} times its limits", "Preload it, or limit the voltage")
 
 
 def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
-    """Share of weight (bodies, links, payloads) and of the description's forces among the stacks, strokes held.
+    """Compute the distribution of weight (bodies, links, payloads) and specified forces over the stacks, strokes fixed.
 
-    Every force f at a point acts on its body's coordinates; f_stack = C K^-1 f. Small displacements; a stack that only pushes (no tensile
-    limit, no preload) is still taken as tied: `pull` says where that is not so.
+    Every force f at a point acts on its body's coordinates; f_stack = C K^-1 f. Small displacements; a stack without tensile limit and
+    preload also counts as connected in tension; check `pull`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -138,7 +138,7 @@ def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     assembly = expand(mechanism)
     names = tuple(assembly.strokes)
     if not names:
-        raise refuse("stacks", "the stage has none, so none shares its loads", "Ask for the deflection under dead load instead")
+        raise refuse("stacks", "the stage has no stacks", "Use the deflection under permanent load")
     axial = tuple(f"{link}.fx" for link in assembly.strokes.values())
     require_known(model, axial)
     causes = dead_loads(mechanism, model)
@@ -160,7 +160,7 @@ def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
 
 
 def dead_loads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
-    """Generalised forces (..., n) by cause: the stage's own weight, each payload's, each stated force, each preload of a spring.
+    """Compute generalised forces (..., n) by cause: own weight, each payload, each specified force, each spring preload.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -177,7 +177,7 @@ def dead_loads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
 
 
 def _preloads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
-    """What links that push or pull as drawn exert on the bodies that they join."""
+    """Forces of links with preload on the bodies that they join."""
     return {
         f"preload of {name}": sum((applied_forces(mechanism, model, each) for each in pair), np.zeros(len(model.coordinates)))
         for name, pair in preload_pairs(expand(mechanism)).items()
@@ -185,7 +185,7 @@ def _preloads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
 
 
 def preload_pairs(assembly: Assembly) -> dict[str, tuple[Force, Force]]:
-    """The forces with which links push their bodies apart as drawn, by link: on the first and on the second body.
+    """Return the preload forces by link, on its first and second body.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> preload_pairs(expand(double_triangle()))
@@ -213,7 +213,7 @@ def _weight(mechanism: Mechanism, name: str) -> Force:
 
 
 def applied_forces(mechanism: Mechanism, model: LinearModel, force: Force) -> Array:
-    """Generalised forces (..., n) of a force on a body at a point, stage's frame; none for a force on the ground.
+    """Compute generalised forces (..., n) of a force on a body at a point, in the stage's frame; zero on the ground.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -25,14 +25,15 @@ _ROUNDING = 64.0 * float(np.finfo(float).eps)
 
 
 class MapError(Result):
-    """Error of the linear map, finite pose less J a, at every point tried.
+    """Error of the linear map: finite pose minus J a.
 
-    `strokes` (k, ..., n) [m] tried, `errors` (k, ..., 6) [m, rad] there; `worst` (..., 6) the largest by axis, `worst_strokes` (..., 6, n)
-    where, 0 and the first where nothing but rounding is left; `residual` (...) [m] how far redundant constraints disagree at worst.
+    `strokes` (k, ..., n) [m] have `errors` (k, ..., 6) [m, rad]. `worst` (..., 6) is the largest by axis, at `worst_strokes` (..., 6, n).
+    For rounding errors, these are 0 and the first strokes. `residual` (...) [m] is the largest constraint residual of redundant
+    constraints.
     """
 
     TABLE: ClassVar[Layout] = Layout(
-        "Error of the linear map", "errors_and_strokes", notes=("Finite less linear kinematics at {self.points} combinations of strokes.",)
+        "Error of the linear map", "errors_and_strokes", notes=("Finite minus linear kinematics at {self.points} combinations of strokes.",)
     )
 
     actuators: tuple[str, ...]
@@ -45,34 +46,34 @@ class MapError(Result):
 
     @property
     def points(self) -> Annotated[int, VIEW]:
-        """How many combinations of strokes were tried."""
+        """Number of combinations of strokes."""
         return len(self.strokes)
 
     @property
     def errors_and_strokes(self) -> Annotated[Matrix, INNER]:
-        """The same without strokes where nothing but rounding is left."""
+        """Worst errors and strokes; no strokes for rounding errors."""
         found = self.table
         rounding = (np.arange(found.values.shape[-1]) > 0) & (self.worst[..., None] == 0.0)
         return replace(found, values=np.where(rounding, np.nan, found.values))
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is rounding."""
-        return ("0 stands for rounding noise of the positions.",) if np.any(first_design(self.worst, 1) == 0.0) else ()
+        """Note on rounding."""
+        return ("0: rounding noise of the positions.",) if np.any(first_design(self.worst, 1) == 0.0) else ()
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:
-        """Rows are the six components; columns the worst error and the strokes at which it occurs."""
+        """Rows are the six components; columns the worst error and its strokes."""
         values = np.concatenate([self.worst[..., None], self.worst_strokes], axis=-1)
         units = tuple((unit, *("m",) * len(self.actuators)) for unit in TWIST_UNITS)
         return Matrix(values, COMPONENTS, ("worst", *self.actuators), units)
 
 
 def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: StrokeLimits, *, inside: int = 64) -> MapError:
-    """Error of x = J a over the box of strokes: its corners, the centres of its faces and `inside` points of a Halton sequence.
+    """Compute the error of x = J a over the box of strokes: corners, centres of faces and `inside` points of a Halton sequence.
 
-    Redundant strokes strain the links unless they belong to a pose: there the vertices of the reachable polytope are tried, and halfway to
-    them. Raises `DesignError` for more than 12 actuators, and where there are none.
+    Redundant strokes strain the links unless they belong to a pose: these stages use the vertices of the reachable polytope and points
+    halfway to them. Raises `DesignError` for more than 12 actuators or none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -83,7 +84,7 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
     ((80, 6), True)
     """
     if not kinematics.actuators:
-        raise refuse("linear map error", "no actuator imposes a stroke, so there is no map of strokes", "Ask for what forces reach instead")
+        raise refuse("linear map error", "the stage has no stroke actuators", "Use the force workspace")
     depth = len(design_shape(mechanism, kinematics))
     if len(kinematics.actuators) > kinematics.mobility:
         vertices = np.moveaxis(reachable(kinematics.mapping, limits).vertices, -2, 0)
@@ -94,7 +95,7 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
 
 
 def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> MapError:
-    """Error of x = J a at given strokes (k, ..., n) [m], batch axes between.
+    """Compute the error of x = J a at strokes (k, ..., n) [m], batch axes between.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -104,7 +105,9 @@ def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -
     """
     count = len(kinematics.actuators)
     if strokes.shape[-1] != count:
-        raise refuse("linear map error", f"{strokes.shape[-1]} strokes are given for {count} actuators", "Give one stroke an actuator")
+        raise refuse(
+            "linear map error", f"wrong number of strokes (got {strokes.shape[-1]}, expected {count})", "Use one stroke per actuator"
+        )
     moved = forward_kinematics(mechanism, kinematics, strokes)
     linear = (kinematics.jacobian.values @ strokes[..., None])[..., 0]
     rounding = _ROUNDING * np.repeat([_reach(mechanism), 1.0], 3)
@@ -123,12 +126,12 @@ def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -
 
 
 def _reach(mechanism: Mechanism) -> float:
-    """The largest coordinate [m] of a link: what poses are computed from, and rounded with."""
+    """Largest coordinate [m] of a link, the scale of rounding of poses."""
     return max((float(np.max(np.abs(link.frame.position))) for link in expand(mechanism).links.values()), default=0.0)
 
 
 def _pick(strokes: Array, place: Array) -> Array:
-    """Strokes (..., 6, n) of the points (k, ..., n) numbered by `place` (..., 6)."""
+    """Strokes (..., 6, n) of the points (k, ..., n) with index `place` (..., 6)."""
     return np.take_along_axis(strokes[..., None, :], place[None, ..., None], axis=0)[0]
 
 
@@ -147,7 +150,7 @@ def _interior(limits: StrokeLimits, count: int) -> Array:
 
 
 def _radical_inverse(numbers: Array, base: int) -> Array:
-    """Halton's sequence: the digits of a number mirrored at the point."""
+    """Halton sequence: radical inverse of an integer."""
     result, weight, left = np.zeros(numbers.shape), 1.0 / base, numbers.copy()
     while np.any(left > 0):
         result += weight * (left % base)

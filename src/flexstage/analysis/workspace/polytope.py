@@ -1,4 +1,4 @@
-"""The polytope of all poses the strokes can reach."""
+"""Polytope of reachable poses."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _TOLERANCE = 1e-9
 class Polytope(Result):
     """Reachable poses {xi : `normals` xi <= `offsets`}: normals (..., 2 n, f), offsets (..., 2 n) [m].
 
-    `vertices` (..., v, f) [m, rad] (padded with NaN where redundant strokes leave designs with fewer), `volume` (...) in `volume_unit`.
+    `vertices` (..., v, f) [m, rad] (padded with NaN for designs with fewer), `volume` (...) in `volume_unit`.
     """
 
     TABLE: ClassVar[Layout] = Layout("Reachable extents, other coordinates free", "extent")
@@ -51,16 +51,16 @@ class Polytope(Result):
 
     @property
     def extent(self) -> Annotated[Matrix, VIEW]:
-        """The least and largest value of each coordinate when the others are free to follow (rows: coordinates)."""
+        """Least and largest value of each coordinate, the others free (rows: coordinates)."""
         values = np.stack([np.nanmin(self.vertices, axis=-2), np.nanmax(self.vertices, axis=-2)], axis=-1)
         units = tuple((MOTION.unit(name),) * 2 for name in self.coordinates)
         return Matrix(values, self.coordinates, ("least", "largest"), units)
 
 
 def reachable(mapping: Matrix, limits: StrokeLimits, *, provenance: str = "") -> Polytope:
-    """The poses with low <= R_a xi <= high. `mapping` as for `single_axis`.
+    """Compute the polytope of poses with low <= R_a xi <= high. `mapping` as for `single_axis`.
 
-    With as many strokes as coordinates it is a parallelotope: vertices R_a^-1 a over all corners a, volume prod(full strokes) / |det R_a|.
+    With as many strokes as coordinates, a parallelotope: vertices R_a^-1 a over all corners a, volume prod(full strokes) / |det R_a|.
 
     >>> square = reachable(Matrix(np.diag([1.0, 2.0]), ("A", "B"), ("x", "y"), "1"), StrokeLimits(("A", "B"), -np.ones(2), np.ones(2)))
     >>> float(square.volume), bool(square.contains(np.array([1.0, 0.5]))), bool(square.contains(np.array([1.0, 0.6])))
@@ -84,7 +84,7 @@ def _volume_unit(coordinates: tuple[str, ...]) -> str:
 
 
 def _redundant(normals: Array, offsets: Array) -> tuple[Array, Array]:
-    """Vertices and volumes where there are more strokes than coordinates: every feasible crossing of f faces, design by design."""
+    """Vertices and volumes for redundant strokes: every feasible intersection of f faces, design by design."""
     flat = [
         _crossings(*design) for design in zip(normals.reshape(-1, *normals.shape[-2:]), offsets.reshape(-1, offsets.shape[-1]), strict=True)
     ]
@@ -100,9 +100,7 @@ def _crossings(normals: Array, offsets: Array) -> Array:
     half = count // 2
     choices = [choice for choice in combinations(range(count), size) if len({index % half for index in choice}) == size]
     if len(choices) > _MOST_VERTEX_CANDIDATES:
-        raise refuse(
-            "reachable polytope", f"{half} strokes give {len(choices)} candidate vertices", "Ask for half-spaces and membership only"
-        )
+        raise refuse("reachable polytope", f"{half} strokes give {len(choices)} candidate vertices", "Use half-spaces and membership only")
     picked = np.array(choices)
     square = normals[picked]
     scale = np.linalg.norm(normals, axis=0)

@@ -1,7 +1,7 @@
-"""How far a stage may move until its linear models are off: hinges that turn, leaves that bend, and the platform itself.
+"""Limits of small displacements of linear models: rotation of hinges, bending of leaves, motion of the platform.
 
-Linear kinematics leave out theta^2/2 of what a turned lever does, and u/L of a leaf's deflection to the same order. Where that passes
-1 % (0.141 rad) the linear model no longer answers; where the faces of a notch would touch before, that is the bound.
+Linear kinematics omit theta^2/2 of a lever's rotation, and (u/L)^2 of a leaf's deflection. The limit is 1 % (0.141 rad), or the angle at
+which the faces of a notch touch, if smaller.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from flexstage.parts.shape import Shaped
 ERROR = 0.01
 """Relative error of second order that linear models may have."""
 _ATOM = 1e-10
-"""What comes nearer by less is not told [m]."""
+"""Smallest reported shortening [m]."""
 
 
 @dataclass(frozen=True)
 class SecondOrder:
-    """By how much linear kinematics is off over a box of motions: the relative `error` of second order, of the part `link`, and why.
+    """Second-order error of linear kinematics over a box of motions: relative `error` at the part `link`, and the cause `why`.
 
-    `shortening` is how far the ends of the leaf or rod `shortened` come nearer as it bends, by which a guide goes aside; empty of none.
-    `held_twice`: redundant constraints may stretch flexures besides.
+    `shortening` is the foreshortening of the bent leaf or rod `shortened`, which displaces a guide sideways; empty without one.
+    `held_twice`: redundant constraints may also stretch flexures.
     """
 
     error: Annotated[float, RATIO]
@@ -47,28 +47,28 @@ class SecondOrder:
 
     @property
     def text(self) -> str:
-        """The error, of kinematics alone; stiffness and frequencies have no such bound.
+        """Sentence on the kinematic error; stiffness and frequencies have no such bound.
 
         >>> SecondOrder(0.0002, "left", "bends by 0.02 of its length").text.partition(". ")[0]
-        'Over the strokes linear kinematics is off by up to 0.02 % (left bends by 0.02 of its length)'
+        'Over the strokes the error of linear kinematics is up to 0.02 % (left bends by 0.02 of its length)'
         """
         cause = ", as redundant constraints stretch flexures" if self.held_twice else ""
         aside = (
-            f", and leaves out that {self.shortened} gets shorter by {show(self.shortening, LENGTH, digits=2)}"
+            f", without the foreshortening of {self.shortened} by {show(self.shortening, LENGTH, digits=2)}"
             if self.shortening > _ATOM
             else ""
         )
-        what = f"Over the strokes linear kinematics is off by up to {100.0 * self.error:.2g} %"
+        what = f"Over the strokes the error of linear kinematics is up to {100.0 * self.error:.2g} %"
         more = f"Stiffness and frequencies may change by more{cause}: see flexstage stroke"
         return f"{what} ({self.link} {self.why}){aside}. {more}."
 
 
 @dataclass(frozen=True, eq=False)
 class SmallMotion:
-    """Per unit of each coordinate (names (f)): `turn` [rad] and `bend` (deflection over length) of every link and of the platform (L, f).
+    """Rotation `turn` [rad] and `bend` (deflection over length) of every link and the platform, per unit of each coordinate (L, f).
 
-    `limit` (L) is the turn [rad] that each may make: of second-order error, or where the faces of a notch touch; `closes` says which.
-    `span` (L) is the length that a part bends over [m], nought of one that bends at a point.
+    `limit` (L) is the largest rotation [rad], by second-order error, or by contact of notch faces if `closes`.
+    `span` (L) is the bending length of a part [m]; zero for bending at a point.
     """
 
     coordinates: tuple[str, ...]
@@ -80,22 +80,22 @@ class SmallMotion:
     span: Array
 
     def _moved(self, command: Mapping[str, Number]) -> tuple[Array, Array]:
-        """Turn [rad] and bend (L) of every link over a box of commands (half widths)."""
+        """Rotation [rad] and bend (L) of every link over a box of commands (half widths)."""
         half = np.array([float(np.max(np.abs(command.get(name, 0.0)))) for name in self.coordinates])
         return self.turn @ half, self.bend @ half
 
     def use(self, command: Mapping[str, Number]) -> tuple[float, str]:
-        """Share of its bound that the most moved link makes of it over a box of commands (half widths), and its name."""
+        """Largest ratio of motion to limit over all links for a box of commands (half widths), and the link's name."""
         turned, bent = self._moved(command)
         shares = np.maximum(turned / self.limit, bent / _SMALL)
         worst = int(np.argmax(shares > (1.0 - 1e-9) * np.max(shares)))
         return float(shares[worst]), self.names[worst]
 
     def second_order(self, command: Mapping[str, Number]) -> SecondOrder:
-        """The largest theta^2 / 2 of a part that turns, or of a deflection over a length, over a box of commands (half widths).
+        """Largest theta^2 / 2 of a rotation, or of a deflection over a length, over a box of commands (half widths).
 
-        A leaf or rod of length L that is bent by u and turned by theta between its ends, u as its middle sees it, is shorter by
-        3 u^2 / (5 L) + L theta^2 / 24.
+        The foreshortening of a leaf or rod of length L is 3 u^2 / (5 L) + L theta^2 / 24. Here u is the end deflection relative to the
+        middle, theta the rotation between the ends.
         """
         turned, bent = self._moved(command)
         worst = int(np.argmax(np.round(np.maximum(turned, bent), 12)))
@@ -108,33 +108,33 @@ class SmallMotion:
         return SecondOrder(error, self.names[worst], why, shortening=float(shorter[most]), shortened=shortened)
 
     def doubt(self, command: Mapping[str, Number]) -> str:
-        """Why linear models do not answer for a box of commands; empty where they do."""
+        """Reason why linear models are invalid for a box of commands; empty if valid."""
         share, name = self.use(command)
         if share <= 1.0:
             return ""
         place = self.names.index(name)
         turned, bent = (float(each[place]) for each in self._moved(command))
         if turned / self.limit[place] < bent / _SMALL:
-            return f"{name} bends by {bent:.3g} of its length, beyond {_SMALL:.3g} linear models are more than {100.0 * ERROR:g} % off"
-        why = "its faces touch" if self.closes[place] else f"linear models are more than {100.0 * ERROR:g} % off"
+            return f"{name} bends by {bent:.3g} of its length, beyond {_SMALL:.3g} the error of linear models exceeds {100.0 * ERROR:g} %"
+        why = "its faces touch" if self.closes[place] else f"the error of linear models exceeds {100.0 * ERROR:g} %"
         return f"{name} turns by {1e3 * turned:.4g} mrad, beyond {1e3 * self.limit[place]:.4g} mrad {why}"
 
     def warnings(self, single: SingleAxis) -> Iterator[Finding]:
-        """Single-axis strokes that are no small motions, and what is left of them."""
+        """Warnings for single-axis strokes beyond small motions, with the usable stroke."""
         for name, stroke in zip(single.coordinates, np.atleast_2d(single.symmetric)[0], strict=True):
             doubt = self.doubt({name: float(stroke)})
             if doubt:
                 unit = "rad" if name.startswith("r") else "m"
                 left = float(stroke) / self.use({name: float(stroke)})[0]
-                what = f"over the +-{float(stroke):.4g} {unit} that the strokes allow {doubt}"
-                yield Finding(f"stroke.{name}", what, f"Count on +-{left:.4g} {unit}")
+                what = f"at the full stroke of +-{float(stroke):.4g} {unit} {doubt}"
+                yield Finding(f"stroke.{name}", what, f"Use +-{left:.4g} {unit} at most")
 
 
 _SMALL = float(np.sqrt(2.0 * ERROR))
 
 
 def second_order(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number] | None) -> SecondOrder | None:
-    """The error of small displacements over a box of motions; None where nobody asks for one, or no part is known to turn or bend.
+    """Compute the second-order error over a box of motions; None without a box, or without a part that rotates or bends.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -148,7 +148,7 @@ def second_order(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[
 
 
 def small_motion(mechanism: Mechanism, kinematics: Kinematics) -> SmallMotion:
-    """How much of the range of small motion the ideal motions take (of a batch, the first design).
+    """Compute the small-motion limits of the ideal motions (of a batch, the first design).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -179,7 +179,7 @@ def _first(values: Array) -> Array:
 
 
 def _span(link: PlacedLink) -> float:
-    """The length that a part bends over; infinite where it does so at a point."""
+    """Bending length of a part; infinite for bending at a point."""
     part = inner(link.part)
     return single(part.span) if isinstance(part, Shaped) and part.slender else np.inf
 

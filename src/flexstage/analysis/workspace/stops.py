@@ -1,4 +1,4 @@
-"""Stops among what ends a stroke: gaps in the place of strokes, rows of ideal motions in the place of those of R_a."""
+"""Stops as limits of strokes: gaps as strokes, rows of ideal motions as rows of R_a."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.spatial.frame import MOTION
 
 STOPS = "stops"
-"""What names of stops stand under where limits are told: `stops/end`."""
+"""Prefix of stop names in lists of limits: `stops/end`."""
 
 
 def single_strokes(mechanism: Mechanism, kinematics: Kinematics) -> SingleAxis:
-    """Ideal strokes of the platform along single coordinates: between the ends of its actuators, and between stops.
+    """Compute ideal single-axis strokes of the platform, limited by actuators and stops.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -33,10 +33,10 @@ def single_strokes(mechanism: Mechanism, kinematics: Kinematics) -> SingleAxis:
 def with_stops(
     mechanism: Mechanism, kinematics: Kinematics, mapping: Matrix, limits: StrokeLimits, point: str = PLATFORM
 ) -> tuple[Matrix, StrokeLimits]:
-    """Mapping and limits with a row for every stop that the strokes can reach: low <= n^T x <= high, n the ideal motion that closes it.
+    """Return mapping and limits with a row for every stop within reach: low <= n^T x <= high, n the ideal motion that closes it.
 
-    `mapping` is that of the motions of `point`. Stops beyond what all strokes at once can reach are left out, and an open side ends where
-    no stroke gets to, so that all limits are finite. Bodies between ground and platform move as in the ideal model, small motions only.
+    `mapping` is for motions of `point`. Stops out of reach of all simultaneous strokes are omitted; an open side gets a limit out of reach,
+    so that all limits are finite. Bodies between ground and platform move as in the ideal model (small motions).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -62,7 +62,7 @@ def with_stops(
 
 
 def _closing(mechanism: Mechanism, kinematics: Kinematics, columns: tuple[str, ...]) -> Matrix:
-    """What each stop sees per ideal motion of the platform."""
+    """Motion at each stop per ideal motion of the platform."""
     assembly = expand(mechanism)
     order = layout(assembly)
     seen = [
@@ -74,14 +74,14 @@ def _closing(mechanism: Mechanism, kinematics: Kinematics, columns: tuple[str, .
 
 
 def _reached(mapping: Array, rows: Array, limits: StrokeLimits) -> tuple[Array, Array]:
-    """Least and largest that stops (..., s) see over the box of strokes; of more strokes than motions at least that."""
+    """Range of motion at stops (..., s) over the box of strokes; an upper bound for redundant strokes."""
     gains = np.real(rows) @ np.linalg.pinv(np.real(mapping))
     ends = np.stack(np.broadcast_arrays(*(gains * np.real(each)[..., None, :] for each in (limits.low, limits.high))))
     return np.sum(np.min(ends, axis=0), axis=-1), np.sum(np.max(ends, axis=0), axis=-1)
 
 
 def _joined(first: Array, second: Array, axis: int) -> Array:
-    """Two arrays one after the other along an axis, their batches broadcast."""
+    """Two arrays concatenated along an axis, batch axes broadcast."""
     inner = -axis
     batch = np.broadcast_shapes(first.shape[:-inner], second.shape[:-inner])
     return np.concatenate([np.broadcast_to(each, batch + each.shape[-inner:]) for each in (first, second)], axis=axis)

@@ -1,8 +1,8 @@
-"""Stress at every hinge at the worst corner of the strokes, against yield, fatigue or what is allowed."""
+"""Stress at every hinge at the worst corner of the strokes, against yield, fatigue limit or allowable stress."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Annotated, Any, ClassVar, TypeAlias
 
@@ -10,36 +10,42 @@ import numpy as np
 
 from flexstage.analysis.workspace.load import SAFETY
 from flexstage.analysis.workspace.stroke import StrokeLimits
-from flexstage.analysis.workspace.wrench import corner_wrenches
+from flexstage.analysis.workspace.wrench import Command, corner_wrenches
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
 from flexstage.base.notebook import Result
 from flexstage.base.number import Array, index_of_largest, stack
-from flexstage.base.record import INNER, VIEW, Heading, Layout
+from flexstage.base.record import INNER, VIEW, Along, Heading, Layout
 from flexstage.base.units.quantity import RATIO
-from flexstage.beams.stress import has_section, stress
+from flexstage.beams.stress import FACES, has_section, stress, stressed_place
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink, expand
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 from flexstage.parts.material import Material
 from flexstage.parts.part import Part, Restricted
 from flexstage.parts.profile import single
+from flexstage.spatial.frame import COMPONENTS, MOTION
+
+FROM_ZERO = "of all strokes from no voltage"
 
 
 class HingeStress(Result):
     """Largest stress in every hinge over the corners of the strokes, (..., L) each.
 
-    `nominal` and `peak` (with the notch factor) von Mises stress [Pa]; `yield_stress` [Pa] (NaN where the material states none); `strokes`
-    (..., L, n) [m] at the worst corner. `unchecked` names links without a section to check (stacks, given matrices, restricted parts).
-    `limit` [Pa] is the least of yield stress, fatigue limit and allowable stress that the material states (NaN: none; absent: yield
-    stress), `governing` names which of them, on the first design.
+    `nominal` and `peak` (with the notch factor) von Mises stress [Pa]; `yield_stress` [Pa] (NaN if unspecified); `strokes` (..., L, n) [m]
+    at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts). `limit` [Pa] is
+    the least of yield stress, fatigue limit and allowable stress (NaN: none; absent: yield stress). `governing` names it, on the first
+    design.
+
+    `places` are end and faces with the largest stress (a batch has none), `condition` is the range of strokes. `actuators` with their
+    `units` may be force actuators, or coordinates of the platform.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Stress in the hinges",
-        "table",
+        "table places",
         head="hinge",
-        notes=("Von Mises stress at the worst corner of all strokes from no voltage, dead load included; peak: with the notch factor.",),
+        notes=("Von Mises stress at the worst corner {self.condition}, with permanent load; peak: with the notch factor.",),
     )
 
     links: tuple[str, ...]
@@ -52,59 +58,65 @@ class HingeStress(Result):
     provenance: str
     limit: Array | None = None
     governing: tuple[str, ...] = ()
+    places: Annotated[tuple[str, ...], Along("links"), Heading("largest at")] = ()
+    condition: str = FROM_ZERO
+    units: Annotated[tuple[str, ...], INNER] = ()
 
     @property
     def allowed(self) -> Annotated[Array, VIEW]:
-        """The stress that counts as the limit (..., L) [Pa]."""
+        """Governing stress limit (..., L) [Pa]."""
         return self.yield_stress if self.limit is None else self.limit
 
     @property
     def safety(self) -> Annotated[Array, INNER, Heading("safety factor", digits=4, mark=SAFETY)]:
-        """The limit over peak stress (..., L); infinite where nothing is stressed."""
+        """The limit over peak stress (..., L); infinite at zero stress."""
         loaded = self.peak != 0.0
         return np.where(loaded | np.isnan(self.allowed), self.allowed / np.where(loaded, self.peak, 1.0), np.inf)
 
     @property
     def min_safety(self) -> Annotated[Array, RATIO]:
-        """The least safety factor of the stage (...); NaN where any hinge's limit is unknown."""
+        """The least safety factor of the stage (...); NaN if any hinge's limit is unknown."""
         return np.min(self.safety, axis=-1)
 
     @property
     def weakest(self) -> Annotated[str, VIEW]:
-        """The link with the least safety factor among those that are known, on the first design."""
+        """Link with the least known safety factor, on the first design."""
         first = np.nan_to_num(self.safety.reshape(-1, len(self.links))[0], nan=np.inf)
         return self.links[int(index_of_largest(1.0 / first))]
 
     @property
     def unknown(self) -> Annotated[tuple[str, ...], VIEW]:
-        """Links whose material states no limit of stress."""
+        """Links without a specified stress limit."""
         gone = np.isnan(np.atleast_2d(self.allowed)).reshape(-1, len(self.links)).any(axis=0)
         return tuple(link for link, missing in zip(self.links, np.asarray(gone), strict=True) if missing)
 
     @property
     def notes(self) -> Annotated[tuple[str, ...], INNER]:
-        """Links that were not checked, and limits other than yield."""
+        """Notes on unchecked links and on limits other than yield."""
         other = (f"{link} {name}" for link, name in zip(self.links, self.governing, strict=False) if name not in ("", "yield stress"))
-        said = {"Not checked": self.unchecked, "Yield stress not stated": self.unknown, "Limits other than yield": tuple(other)}
+        said = {"Not checked": self.unchecked, "Yield stress not specified": self.unknown, "Limits other than yield": tuple(other)}
         return tuple(f"{text}: {', '.join(names)}." for text, names in said.items() if names)
 
     @property
     def worst_strokes(self) -> Annotated[Matrix, VIEW]:
-        """The strokes at which each link is stressed most."""
-        return Matrix(self.strokes, self.links, self.actuators, "m")
+        """Strokes at the largest stress of each link."""
+        return Matrix(self.strokes, self.links, self.actuators, (self.units,) * len(self.links) if self.units else "m")
 
     @property
     def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
-        """Rows are the links, columns nominal, peak, yield (where another limit governs, that) and safety."""
+        """Rows are the links, columns nominal, peak, yield (or the governing limit) and safety."""
         values = stack([self.nominal, self.peak, self.allowed, self.safety])
         return Matrix(values, self.links, ("nominal", "peak", "yield", "safety"), (("Pa", "Pa", "Pa", "1"),) * len(self.links))
 
 
-def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> HingeStress:
-    """Stress of every hinge from the link wrenches of an elastic model, dead load included.
+def hinge_stress(
+    mechanism: Mechanism, model: LinearModel, limits: StrokeLimits, *, command: Command | None = None, condition: str = FROM_ZERO
+) -> HingeStress:
+    """Compute the stress of every hinge from the link wrenches of an elastic model, with permanent load.
 
-    `limits`: `stroke_limits(mechanism).from_zero` for a stage assembled without voltage (its hinges are bent by the bias too), or
-    `stroke_limits(mechanism)` for one that is relaxed at its bias. Linear beam theory, section maxima added (see `beams.stress`).
+    `limits`: `stroke_limits(mechanism).from_zero` for a stage assembled without voltage (the bias also bends its hinges), or
+    `stroke_limits(mechanism)` for a stage that is stress-free at its bias; those of coordinates with a `command`, whose inputs reach them.
+    `condition` states these limits. Linear beam theory, section maxima added (see `beams.stress`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -117,7 +129,7 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
     sized = sized_links(assembly)
     if not sized:
         raise refuse("stress", "no link has a section to check", "Stress is that of notches, necks, leaves and rods")
-    wrenches = corner_wrenches(mechanism, model, limits, tuple(sized))
+    wrenches = corner_wrenches(mechanism, model, limits, tuple(sized), command)
     points = limits.points(wrenches.ndim - 3)
     rows = _rows(list(sized.values()), wrenches, points)
     nominal, peak, known, limit = (stack([row[item] for row in rows]) for item in (0, 1, 2, 4))
@@ -132,41 +144,64 @@ def hinge_stress(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits)
         provenance=model.provenance,
         limit=limit,
         governing=tuple(_governing(link.material) for link in sized.values()),
+        places=() if any(row[5].ndim > 1 for row in rows) else tuple(_places(sized, np.stack([np.real(row[5]) for row in rows]))),
+        condition=condition,
+        units=tuple(_input_unit(model, name) for name in limits.actuators),
     )
 
 
+def _input_unit(model: LinearModel, name: str) -> str:
+    return MOTION.unit(name) if name in COMPONENTS else model.inputs[model.input_index((name,))[0]].unit
+
+
+def _places(links: Mapping[str, PlacedLink], wrenches: Array) -> Iterator[str]:
+    """End and faces of the largest stress of links under their wrenches (L, 6); the body of an end without the name of its instance."""
+    groups: dict[int, list[int]] = {}
+    found: dict[int, tuple[int, int]] = {}
+    for index, link in enumerate(links.values()):
+        groups.setdefault(id(link.part), []).append(index)
+    for members in groups.values():
+        first = list(links.values())[members[0]]
+        found |= dict(zip(members, zip(*stressed_place(_real(first.part), first.material, wrenches[members]), strict=True), strict=True))
+    for index, (name, link) in enumerate(links.items()):
+        end, face = found[index]
+        instance = f"{name.rpartition('/')[0]}/"
+        side = "middle" if end == 0 else f"{link.joins[int(end > 0)].removeprefix(instance)} end"
+        yield f"{side}, {FACES[face]}"
+
+
 def sized_links(assembly: Assembly) -> dict[str, PlacedLink]:
-    """The links of which the stress is known."""
+    """Return the links with a computed stress."""
     return {name: link for name, link in assembly.links.items() if _has_section(link)}
 
 
 def stress_use(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
-    """Largest share of its limit of stress (...) that a link bears under wrenches (..., L, 6); NaN where a limit is not stated."""
+    """Compute the largest ratio of stress to limit (...) over all links under wrenches (..., L, 6); NaN without a limit."""
     return np.max(stress_shares(links, wrenches), axis=-1)
 
 
 def stress_shares(links: Mapping[str, PlacedLink], wrenches: Array) -> Array:
-    """Shares of their limits of stress (..., L) that links bear under wrenches (..., L, 6); NaN where a limit is not stated."""
+    """Compute ratios of stress to limit (..., L) of links under wrenches (..., L, 6); NaN without a limit."""
     rows = _rows(list(links.values()), wrenches[None], np.zeros((1, *(1,) * (wrenches.ndim - 2), 0)))
     return stack([row[1] / row[4] for row in rows])
 
 
 def _governing(material: Material | None) -> str:
-    """Which limit of stress is the least on the first design; empty where none is stated."""
+    """Name of the least stress limit on the first design; empty without a limit."""
     limits = {} if material is None else material.limits
     return min(limits, key=lambda name: single(limits[name]), default="")
 
 
 def _has_section(link: PlacedLink) -> bool:
-    """Whether beam theory knows a section and the model the whole wrench (locked freedoms pass forces that no spring feels)."""
+    """Whether the section is known to beam theory and the whole wrench to the model (locked degrees of freedom hide constraint forces)."""
     return not isinstance(link.part, Restricted) and has_section(link.part)
 
 
-_Row: TypeAlias = tuple[Array, Array, Array, Array, Array]
+_Row: TypeAlias = tuple[Array, Array, Array, Array, Array, Array]
 
 
 def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]:
-    """Nominal and peak stress, yield stress, strokes and least limit of links at their worst corners; those of one part together."""
+    """Nominal and peak stress, yield stress, strokes, least limit and wrench of links at their worst corners, grouped by part."""
     groups: dict[tuple[int, int], list[int]] = {}
     for index, link in enumerate(links):
         groups.setdefault((id(link.part), id(link.material)), []).append(index)
@@ -177,11 +212,11 @@ def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]
         peaks = _stress(_real(first.part), first, np.real(own))[1]
         where = np.argmax(peaks, axis=1)[:, None]
         worst = np.take_along_axis(np.broadcast_to(own, (*peaks.shape, 6)), where[..., None], axis=1)
-        nominal, peak = _stress(first.part, first, worst)  # of stepped numbers, derivatives at the worst corner are all that is needed
+        nominal, peak = _stress(first.part, first, worst)  # complex-step derivatives are needed only at the worst corner
         for place, index in enumerate(members):
             strokes = np.take_along_axis(np.broadcast_to(points, (*peaks.shape[1:], points.shape[-1])), where[place][..., None], axis=0)[0]
             limits = (_limit(links[index], name, peak[place, 0]) for name in ("yield_stress", "limit"))
-            rows[index] = nominal[place, 0], peak[place, 0], next(limits), strokes, next(limits)
+            rows[index] = nominal[place, 0], peak[place, 0], next(limits), strokes, next(limits), worst[place, 0]
     return [rows[index] for index in range(len(links))]
 
 

@@ -1,4 +1,4 @@
-"""Strokes of the platform from those of the actuators: one axis at a time, and several at once."""
+"""Platform strokes from actuator strokes: single-axis and simultaneous."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, Frame
 
 @dataclass(frozen=True, eq=False)
 class StrokeLimits:
-    """The interval `low` to `high` (..., n) [m] each actuator's stroke may take, counted from its bias (or middle).
+    """Stroke limits `low` to `high` (..., n) [m] of each actuator, relative to its bias (or mid-range).
 
-    `zero` (..., n) is the stroke without voltage, counted the same way (absent: the lowest).
+    `zero` (..., n) is the stroke at zero voltage, relative to the bias (absent: the lowest).
     """
 
     actuators: tuple[str, ...]
@@ -43,7 +43,7 @@ class StrokeLimits:
 
     @cached_property
     def from_zero(self) -> StrokeLimits:
-        """The same strokes counted from no voltage, as a stage assembled without voltage feels them: negative with the volts."""
+        """Stroke limits relative to zero voltage, for a stage assembled without voltage."""
         zero = self.low if self.zero is None else self.zero
         return StrokeLimits(self.actuators, self.low - zero, self.high - zero, np.zeros_like(self.low - zero))
 
@@ -52,12 +52,12 @@ class StrokeLimits:
         """All 2^n combinations of least and largest strokes (..., 2^n, n) [m]; refused for more than 12 actuators."""
         count = len(self.actuators)
         if count > 12:
-            raise refuse("stroke corners", f"{count} actuators have {2**count} corners", "Ask for single strokes instead")
+            raise refuse("stroke corners", f"{count} actuators have {2**count} corners", "Use single strokes")
         high = (np.arange(2**count)[:, None] >> np.arange(count)) & 1 == 1
         return np.where(high, self.high[..., None, :], self.low[..., None, :])
 
     def points(self, depth: int) -> Array:
-        """The corners as points (2^n, ..., n) with at least `depth` batch axes between, to stand beside a batch of designs."""
+        """The corners as points (2^n, ..., n) with at least `depth` batch axes between, for broadcasting with a batch of designs."""
         return beside(np.moveaxis(self.corners, -2, 0), depth)
 
 
@@ -78,7 +78,7 @@ class SingleAxis(Result):
 
     @property
     def symmetric(self) -> Array:
-        """The stroke available both ways (..., f): the lesser of -low and high."""
+        """Symmetric stroke (..., f): the lesser of -low and high."""
         return np.minimum(-self.low, self.high)
 
     @property
@@ -90,10 +90,10 @@ class SingleAxis(Result):
 
 
 class Utilisation(Result):
-    """What a box of commands, all coordinates at once, asks of the actuators.
+    """Actuator utilisation for a box of simultaneous commands.
 
-    `demand` (..., n) [m] is the largest stroke either way over the box' corners, `available` (..., n) the stroke available both ways. Stops
-    that the strokes reach stand among the actuators (`stops/end`), their gaps in the place of strokes.
+    `demand` (..., n) [m] is the largest absolute stroke over the corners of the box, `available` (..., n) the symmetric stroke. Stops
+    within reach are listed with the actuators (`stops/end`), with their gaps as strokes.
     """
 
     TABLE: ClassVar[Layout] = Layout("Simultaneous strokes", "demand available ratio")
@@ -106,7 +106,7 @@ class Utilisation(Result):
 
     @property
     def ratio(self) -> Annotated[Array, SHARE, Bound(high=1.0), Along("actuators"), Heading("used")]:
-        """Demand over what is available (..., n); above 1 the corner cannot be reached."""
+        """Demand over available stroke (..., n); above 1 the corner is out of reach."""
         return self.demand / self.available
 
     @property
@@ -116,12 +116,12 @@ class Utilisation(Result):
 
     @property
     def scale(self) -> Annotated[Array, RATIO]:
-        """Factor (...) by which the whole box could grow (below 1: must shrink) to use the strokes fully."""
+        """Scale factor (...) of the box that uses the strokes fully."""
         return 1.0 / np.max(self.ratio, axis=-1)
 
 
 def beside(points: Array, depth: int) -> Array:
-    """Points (k, ..., n) with at least `depth` batch axes between, so that they do not meet the designs' axes.
+    """Return points (k, ..., n) with at least `depth` batch axes between, for broadcasting with designs.
 
     >>> beside(np.zeros((64, 6)), 1).shape
     (64, 1, 6)
@@ -131,7 +131,7 @@ def beside(points: Array, depth: int) -> Array:
 
 
 def stacks(mechanism: Mechanism) -> dict[str, ChargedActuator]:
-    """The piezo actuator of every input that has one, by input name, with overrides applied: what has volts and a capacitance.
+    """Return the piezo actuators by input name, with overrides applied.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stacks(double_triangle())["B4"].length
@@ -141,7 +141,7 @@ def stacks(mechanism: Mechanism) -> dict[str, ChargedActuator]:
 
 
 def stroke_actuators(mechanism: Mechanism) -> dict[str, StrokeActuator]:
-    """The part of every stroke input, by input name, with overrides applied.
+    """Return the part of every stroke input by input name, with overrides applied.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(stroke_actuators(double_triangle()))
@@ -154,7 +154,7 @@ def stroke_actuators(mechanism: Mechanism) -> dict[str, StrokeActuator]:
 
 @SESSION.keep(2)
 def stroke_limits(mechanism: Mechanism) -> StrokeLimits:
-    """Strokes around the bias voltage, or around the middle of the range where none is stated.
+    """Return stroke limits relative to the bias voltage (default: mid-range).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> limits = stroke_limits(double_triangle())
@@ -169,12 +169,12 @@ def stroke_limits(mechanism: Mechanism) -> StrokeLimits:
 
 
 def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFORM, *, mapping: Matrix | None = None) -> Matrix:
-    """R_a for the motion of a named point: strokes per coordinate of that point, the other coordinates of the point held.
+    """Compute R_a for the motion of a named point: strokes per coordinate of the point, its other coordinates fixed.
 
-    `mapping` instead of R_a: the correction gains of lost motion, also strokes per platform coordinate.
+    `mapping` replaces R_a, e.g. by the correction gains of lost motion (strokes per platform coordinate).
 
-    Translations of a rigid platform are the same everywhere; rotations turn about the point. With fewer than six ideal motions the
-    coordinates keep their names; refused where the point cannot follow them independently.
+    Translations of a rigid platform are equal everywhere; rotations are about the point. With fewer than six ideal motions the coordinates
+    keep their names. Raises `DesignError` if the point cannot follow them independently.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -191,7 +191,7 @@ def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFO
 
 
 def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Array:
-    """Twist of a named point per ideal motion, (..., 6, f): `platform` (its reference), a point of the platform, or `body.point`.
+    """Compute the twist (..., 6, f) of a named point per ideal motion: `platform` (its reference), a platform point, or `body.point`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -203,15 +203,15 @@ def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Ar
     if point == PLATFORM:
         return kinematics.motion
     if point not in assembly.points:
-        raise refuse(point, "no point of this name is in the description", suggest_nearest(point, (PLATFORM, *assembly.points)))
+        raise refuse(point, "unknown point", suggest_nearest(point, (PLATFORM, *assembly.points)))
     body, position = assembly.points[point]
     return twist_at(assembly, layout(assembly), body, Frame(np.eye(3), position)) @ kinematics.bodies
 
 
 def single_axis(mapping: Matrix, limits: StrokeLimits, *, at: str = PLATFORM, provenance: str = "") -> SingleAxis:
-    """Strokes along single coordinates, within low <= R_a x <= high.
+    """Compute single-axis strokes within low <= R_a x <= high.
 
-    `mapping` is `kinematics.mapping`, `mapping_at` of a point, or the correction gains of lost motion. For one actuator alone:
+    `mapping` is `kinematics.mapping`, `mapping_at` of a point, or the correction gains of lost motion. For a single actuator:
 
     >>> lever = Matrix(np.array([[0.5]]), ("B1",), ("z",), "1")
     >>> stroke = single_axis(lever, StrokeLimits(("B1",), np.array([-1e-4]), np.array([1e-4])))
@@ -228,15 +228,17 @@ def single_axis(mapping: Matrix, limits: StrokeLimits, *, at: str = PLATFORM, pr
 
 
 def utilisation(mapping: Matrix, limits: StrokeLimits, command: Mapping[str, Number], *, provenance: str = "") -> Utilisation:
-    """What the corners of a box of commands (half widths by coordinate [m, rad]) ask of each actuator: sum_j |R_ij| c_j.
+    """Compute each actuator's demand, sum_j |R_ij| c_j, for a box of commands (half widths by coordinate [m, rad]).
 
     >>> pair = Matrix(np.array([[1.0, 0.085]]), ("B1",), ("x", "rz"), "1")
-    >>> asked = utilisation(pair, StrokeLimits(("B1",), np.array([-75e-6]), np.array([75e-6])), {"x": 50e-6, "rz": 244e-6})
-    >>> (1e6 * asked.demand).round(2).tolist()
+    >>> used = utilisation(pair, StrokeLimits(("B1",), np.array([-75e-6]), np.array([75e-6])), {"x": 50e-6, "rz": 244e-6})
+    >>> (1e6 * used.demand).round(2).tolist()
     [70.74]
     """
     require(
-        Finding(f"command {name}", f"the stage's coordinates are {', '.join(mapping.columns)}", suggest_nearest(name, mapping.columns))
+        Finding(
+            f"command {name}", f"unknown coordinate (expected one of {', '.join(mapping.columns)})", suggest_nearest(name, mapping.columns)
+        )
         for name in command
         if name not in mapping.columns
     )

@@ -1,4 +1,4 @@
-"""What a stage can reach and bear, as one value: strokes, forces, volts, stress, buckling, loads, gauges, clearance, map errors."""
+"""Workspace of a stage: strokes, forces, voltages, stress, buckling, loads, gauges, clearance, map errors."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import MOTION
 
 _RIGID = "the ideal model has no elasticity"
-_HINGELESS = "this model knows no single hinges: use the lumped one"
+_HINGELESS = "the model has no single hinges; use the lumped model"
 _FURTHER = frozenset({"worst_case", "polytope", "drive", "map_error", "gauges", "clearance", "platform_lines", "stack_lines", "loads"})
 
 
 class Workspace(Result):
-    """The workspace of one design; `None` where model or stage do not give a result, and `reasons` say why, by field name.
+    """Workspace of one design; a field is `None` without a result, with the reason in `reasons` by field name.
 
-    `single_axis` are ideal strokes, `corrected` those with lost motion corrected by command. `worst_case` is what the box
-    `command` of motions (half widths by coordinate, all at once) asks of the actuators, `gauges` what it asks of the gauges.
-    Stress, buckling and loads count from the stage relaxed without voltage, over all strokes and under dead load.
+    `single_axis` are ideal strokes, `corrected` those with lost motion corrected by command. `worst_case` is the actuators' demand for the
+    box `command` of motions (half widths by coordinate, all at once), `gauges` the gauges' readings. Stress, buckling and loads are for a
+    stage stress-free at zero voltage, over all strokes and under permanent load.
     """
 
     command: Annotated[Mapping[str, Number], MOTION]
@@ -64,7 +64,7 @@ class Workspace(Result):
 
     @property
     def bearing(self) -> Annotated[LoadRange | None, VIEW]:
-        """What the stacks bear over all strokes, from no voltage."""
+        """Load range of the stacks over all strokes from zero voltage."""
         return None if self.loads is None else self.loads.over(self.limits.from_zero)
 
 
@@ -79,10 +79,10 @@ def workspace(
     command: Mapping[str, Number] | None = None,
     whole: bool = True,
 ) -> Workspace:
-    """Everything about the workspace that a model gives. One design; `command` absent: all single-axis strokes at once.
+    """Compute the workspace of one design; default `command`: all single-axis strokes at once.
 
-    Unless `whole` only strokes, resolution, stress and buckling, two thirds of the time; all else is `None` without a reason. Raises
-    `DesignError` where the strokes do not determine the platform.
+    Unless `whole`, only strokes, resolution, stress and buckling (two thirds of the time); other fields are `None` without a reason. Raises
+    `DesignError` if the strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -119,7 +119,7 @@ def workspace(
 
 
 def all_strokes(mechanism: Mechanism) -> Mapping[str, float]:
-    """The ideal single-axis strokes as a box of commands by coordinate [m, rad].
+    """Return the ideal single-axis strokes as a box of commands by coordinate [m, rad].
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(1e6 * all_strokes(double_triangle())["z"], 6)

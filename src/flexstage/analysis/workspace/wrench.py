@@ -1,11 +1,14 @@
-"""Stress resultants at the links over a box of strokes, dead load included."""
+"""Stress resultants at the links over a box of strokes, with permanent load."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.analysis.workspace.stroke import StrokeLimits
+from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
@@ -13,10 +16,21 @@ from flexstage.models.linear.static import displacement, static_gain
 from flexstage.spatial.frame import FORCES
 
 
-def corner_wrenches(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits, links: tuple[str, ...]) -> Array:
-    """Wrenches (k, ..., L, 6) [N, N m] at the centres of links, in their frames on the second body, at all k = 2^n corners of the strokes.
+@dataclass(frozen=True, eq=False)
+class Command:
+    """Inputs (..., n) = `start` + `mapping` x that bring the platform to its coordinates x."""
+
+    mapping: Matrix
+    start: Array
+
+
+def corner_wrenches(
+    mechanism: Mechanism, model: LinearModel, limits: StrokeLimits, links: tuple[str, ...], command: Command | None = None
+) -> Array:
+    """Compute link wrenches (k, ..., L, 6) [N, N m] at all k = 2^n stroke corners, on the second body, in the frame at the link's centre.
 
     The wrench is linear in the strokes, so convex measures of it (stress, force) are largest at a corner. Weight and forces are included.
+    With a `command`, the limits are those of its coordinates.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -26,14 +40,17 @@ def corner_wrenches(mechanism: Mechanism, model: LinearModel, limits: StrokeLimi
     (64, 1, 6)
     """
     names = tuple(f"{link}.{force}" for link in links for force in FORCES)
-    gain = static_gain(model, names, limits.actuators).values
+    gain = static_gain(model, names, limits.actuators if command is None else command.mapping.rows).values
     dead = dead_wrenches(mechanism, model, names)
+    if command is not None:
+        dead = dead + (gain @ command.start[..., None])[..., 0]
+        gain = gain @ command.mapping.part(command.mapping.rows, limits.actuators).values
     total = (gain @ limits.points(max(gain.ndim - 2, dead.ndim - 1))[..., None])[..., 0] + dead
     return total.reshape(*total.shape[:-1], len(links), len(FORCES))
 
 
 def dead_wrenches(mechanism: Mechanism, model: LinearModel, outputs: tuple[str, ...]) -> Array:
-    """Values (..., p) of outputs under weight and forces, strokes held.
+    """Compute outputs (..., p) under weight and forces, strokes fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

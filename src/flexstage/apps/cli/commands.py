@@ -9,15 +9,17 @@ from typing import Annotated, Any, NamedTuple, cast
 
 import typer
 from typer.core import TyperCommand, TyperGroup
+from typer.exceptions import TyperException
 from typer.main import get_command
 
-from flexstage.base.finding import Finding, require
+from flexstage.apps.cli.usage import usage_error
+from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.renamed import new_name
 from flexstage.show.command.models import Models
 
 
 class Command(NamedTuple):
-    """A command: its `name`, the `group` it stands in, one line of `help`, its function or `Typer` as module:name, and an `example`.
+    """A command: its `name`, its `group`, one line of `help`, its function or `Typer` as module:name, and an `example`.
 
     The line of help is the first line of the function's docstring, which is read when the command is called.
     """
@@ -133,11 +135,11 @@ COMMANDS: tuple[Command, ...] = (
 _SPELLINGS = {"analyze": "analyse", "optimize": "optimise"}
 
 MODELS = Models({"solid": f"{_SOLID}.modes:fea_modes"})
-"""Models that commands of other wings may ask for."""
+"""Models for commands of other packages."""
 
 
 class LazyCommand(TyperCommand):
-    """Stands for a command in the help and in completion until it is called."""
+    """Placeholder of a command in the help and in completion until it is called."""
 
     def __init__(self, command: Command) -> None:
         super().__init__(command.name, help=command.help, rich_markup_mode=None)
@@ -153,26 +155,29 @@ class LazyCommand(TyperCommand):
 
 
 class GroupedCommands(TyperGroup):
-    """A group that lists its commands by purpose, and loads the one that is called."""
+    """A group that lists its commands by purpose, and loads the called one."""
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """The command of this name, in British or American spelling."""
         return super().get_command(ctx, _SPELLINGS.get(cmd_name, cmd_name))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Name, command and the rest of the arguments."""
+        """Name, command and the remaining arguments."""
+        if not args[0].startswith("-") and self.get_command(ctx, args[0]) is None:
+            listed = "Use 'flexstage --help' to list all commands"
+            raise refuse(args[0], "unknown command", suggest_nearest(args[0], self.commands, otherwise=listed))
         name, found, rest = super().resolve_command(ctx, args)
         command = cast("LazyCommand", found).load() if found else None
         known = {word for each in getattr(command, "params", ()) for word in (*each.opts, *each.secondary_opts)}
         require(
-            Finding(old, "this option is not known", f"It is called {new}" if new.startswith("--") else f"Write {name} {new.upper()}")
+            Finding(old, "unknown option", f"Use {new}" if new.startswith("--") else f"Use {name} {new.upper()}")
             for old in dict.fromkeys(word.partition("=")[0] for word in rest)
             if (new := new_name(old, known)) is not None
         )
         return name, command, rest
 
-    def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002 (the framework gives it)
-        """Write a section a purpose; all columns are alike."""
+    def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002 (required by the framework)
+        """Write one section for each purpose, with equal columns."""
         width = max(map(len, self.commands))
         for group, commands in groupby(cast("Iterable[LazyCommand]", self.commands.values()), lambda each: each.command.group):
             with formatter.section(group):
@@ -180,7 +185,7 @@ class GroupedCommands(TyperGroup):
 
 
 def application(commands: tuple[Command, ...] = COMMANDS) -> TyperGroup:
-    """The command line: a group of commands, none of which is imported before it is called."""
+    """The command line: a group of commands, imported at their first call."""
     app = typer.Typer(
         cls=GroupedCommands,
         help="Design and proof of flexure-based ultra-precision positioning stages.",
@@ -197,8 +202,18 @@ def application(commands: tuple[Command, ...] = COMMANDS) -> TyperGroup:
     return group
 
 
-def _tell_version(*, asked: bool) -> None:
-    if asked:
+def run_application(arguments: list[str]) -> int:
+    """Run a command line, and return the exit code that it requests; a usage error has the form of all messages."""
+    group = application()
+    try:
+        code = group(arguments or ["--help"], prog_name="flexstage", obj=MODELS, standalone_mode=False)
+    except TyperException as error:
+        raise usage_error(error, arguments, {each.name: each.example for each in COMMANDS}) from None
+    return code if isinstance(code, int) else 0
+
+
+def _print_version(*, requested: bool) -> None:
+    if requested:
         from flexstage.apps.commands.about import version  # when called, as the module of any command
 
         version()
@@ -208,7 +223,7 @@ def _tell_version(*, asked: bool) -> None:
 def _options(
     *,
     version: Annotated[
-        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Print the version of flexstage and stop.")
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version of flexstage and stop.")
     ] = False,
 ) -> None:
     pass

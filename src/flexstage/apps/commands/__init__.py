@@ -1,1 +1,1 @@
-"""Commands that describe a stage, analyse it and examine the installation, a module for each or for a few of a subject."""
+"""Commands that describe a stage, analyse it and examine the installation, one module for each subject."""

@@ -1,4 +1,4 @@
-"""Commands about what a stage reaches and how exactly: `workspace`, `drift`, `sensitivities`, `budget`."""
+"""Commands about workspace and accuracy of a stage: `workspace`, `drift`, `sensitivities`, `budget`."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def workspace(
 
 
 def _with_error(body: Any, small: SecondOrder | None) -> Any:
-    """A result, and beside it by how much linear kinematics is off over the motions that it is about."""
+    """A result with the error of linear kinematics over its motions."""
     return body if small is None else SideBySide((body, {"second_order": small}))
 
 

@@ -14,26 +14,27 @@ from flexstage.analysis import complete
 from flexstage.analysis.assessment.difference import Comparison, difference, set_values
 from flexstage.analysis.caveats import caveats
 from flexstage.analysis.complete import Analysis
+from flexstage.base.finding import combine_warnings
 from flexstage.base.storage.document import Document, as_text
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import list_caveats, print_missing, show, write_csv, write_workbook
 from flexstage.show.command.design import change, open_design
 from flexstage.show.command.failure import MISSED
-from flexstage.show.command.options import Changes, Csv, Design, Json, ModelName, Report, Xlsx, text_option
+from flexstage.show.command.options import Changes, Csv, Design, Full, Json, ModelName, Report, Xlsx, text_option
 from flexstage.show.command.output import STDOUT, save
 from flexstage.show.command.terminal import print_note
 from flexstage.show.document import analysis_body, analysis_results, envelope, requirements_body
 from flexstage.show.table import Table, result_table
 from flexstage.show.tables import errors, kinematics, lost_motion, statics, workspace
 from flexstage.show.tables.change import set_table
-from flexstage.show.tables.force_workspace import force_workspace_tables
+from flexstage.show.tables.force_workspace import drive_force_tables, force_workspace_tables
 from flexstage.show.tables.modes import mode_table
-from flexstage.show.tables.overview import closing_text, load_line, overview_tables, small_line, stage_text
+from flexstage.show.tables.overview import closing_text, count_text, floating_line, load_line, overview_tables, small_line, stage_text
 from flexstage.show.tables.requirements import verdict_table
 from flexstage.show.tables.units import omitted_table
 
 _WARNINGS, _WIDTH = 3, 80
-"""Lines of warnings that the short form shows, of a terminal of that width."""
+"""Lines of warnings in the short form, and width of the terminal."""
 
 
 def analyse(  # noqa: PLR0913 (its options)
@@ -47,7 +48,7 @@ def analyse(  # noqa: PLR0913 (its options)
     xlsx: Xlsx = None,
     mat: Annotated[Path | None, text_option("--mat", "FILE", "Write R_a, R_s, K, M, B, C, D and the state space for MATLAB.")] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit with code 1 if a requirement is missed.")] = False,
-    full: Annotated[bool, typer.Option("--full", help="Show the tables of every analysis, not the short form.")] = False,
+    full: Full = False,
 ) -> None:
     """Analyse a stage: everything at once.
 
@@ -73,7 +74,7 @@ def analyse(  # noqa: PLR0913 (its options)
         save(json, _json_text(analysis, compared), "--json")
     if STDOUT not in (json, str(report), str(mat), str(xlsx)):
         show(_tables(analysis, compared) if full else _short_tables(analysis, compared))
-        print_missing(analysis.missing)
+        print_missing(analysis.missing, forced=bool(analysis.kinematics.thrusts))
     missed = [verdict for verdict in analysis.verdicts if not verdict.passed]
     if strict and missed:
         print_note(f"{len(missed)} of {len(analysis.verdicts)} requirements are missed.")
@@ -113,19 +114,16 @@ def _short_tables(analysis: Analysis, compared: Comparison | None) -> Iterator[T
 
 
 def _short_caveats(analysis: Analysis) -> Iterator[str]:
-    known = caveats(analysis.mechanism)
-    if known.warnings:
-        shown = _first_lines([f"  {each}" for each in known.warnings])
-        rest = len(known.warnings) - len(shown)
-        more = [f"  {rest} more: --full"] if rest > 0 else []
-        yield "\n".join(["Warnings", "", *shown, *more])
-    taken = len(known.defaults_of("analyse"))
-    if taken:
-        yield f"{taken} value{'' if taken == 1 else 's'} taken by default: --full."
+    warnings = [f"warning: {each}" for each in combine_warnings(caveats(analysis.mechanism).warnings)]
+    shown = _first_lines(warnings)
+    counts = {"more warning": len(warnings) - len(shown), "default value": len(caveats(analysis.mechanism).defaults_of("analyse"))}
+    lines = [*shown, *(f"{count_text(count, thing)}: --full" for thing, count in counts.items() if count)]
+    if lines:
+        yield "\n".join(lines)
 
 
 def _first_lines(texts: list[str]) -> list[str]:
-    """The first of some texts, at least one, as long as they leave room for the rest on a screen of 80 columns."""
+    """The first of some texts, at least one, as many as leave room for the other results on a screen of 80 columns."""
     used = accumulate(math.ceil(len(each) / _WIDTH) for each in texts)
     return [each for place, (each, lines) in enumerate(zip(texts, used, strict=True)) if place == 0 or lines <= _WARNINGS]
 
@@ -133,11 +131,12 @@ def _first_lines(texts: list[str]) -> list[str]:
 def _tables(analysis: Analysis, compared: Comparison | None) -> Iterator[Table | str | None]:
     yield stage_text(analysis)
     yield verdict_table(analysis.verdicts)
+    yield floating_line(analysis.linear)
+    yield from _change_tables(analysis, compared)
+    yield from _analysis_tables(analysis)
     yield load_line(analysis)
     yield small_line(analysis)
     yield from list_caveats("analyse", analysis.mechanism)
-    yield from _change_tables(analysis, compared)
-    yield from _analysis_tables(analysis)
     yield closing_text(analysis, whole=True)
 
 
@@ -148,7 +147,7 @@ def _change_tables(analysis: Analysis, compared: Comparison | None) -> Iterator[
 
 
 def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
-    """What decides first, one or two an analysis; the commands of one analysis show more."""
+    """Main tables, one or two for each analysis; the commands of one analysis print more."""
     found = analysis.kinematics
     yield kinematics.mobility_table(found)
     yield kinematics.mapping_table(found) if found.actuated else None
@@ -167,6 +166,8 @@ def _analysis_tables(analysis: Analysis) -> Iterator[Table | None]:
     yield None if analysis.modes is None else mode_table(analysis.modes)
     if analysis.force_workspace is not None:
         yield from force_workspace_tables(analysis.force_workspace)
+    yield from drive_force_tables(analysis.drive_force)
+    yield workspace.weakest_first(analysis.stress)
     if analysis.workspace is not None:
         yield from workspace.stroke_tables(analysis.workspace)
         yield from workspace.strength_tables(analysis.workspace)

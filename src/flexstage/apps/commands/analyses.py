@@ -102,7 +102,7 @@ def stiffness(
     found = statics(linear, load_point=known_point(linear, load_point or point, "--load-point"), read_point=read_point)
     sagging = deflection(mechanism, linear, point=point) if model is Model.LUMPED and there.operating_point is None else None
     mass = mass_matrix(mechanism, linear, point=point)
-    attempt = Attempts()  # ideal kinematics are refused of stages that have a stiffness all the same
+    attempt = Attempts()  # a stage without ideal kinematics may have a stiffness
     freedoms = attempt.of("freedoms", lambda: freedom_stiffness(found, ideal(mechanism))) if mass.body == PLATFORM else None
     return CommandResult(
         mechanism,
@@ -202,7 +202,7 @@ def modes(
 
 
 def _view_ending(path: Path) -> str:
-    """The kind of file that is wanted, by its ending; refused where it is none of the two."""
+    """The kind of the output file, by its ending; refuses other endings."""
     ending = path.suffix.lower()
     if ending not in {".html", ".glb"}:
         raise refuse("--view", f'"{path}" ends neither in .html nor in .glb', "Name a page, stage.html, or a GLB file, stage.glb")
@@ -210,15 +210,15 @@ def _view_ending(path: Path) -> str:
 
 
 def _moving(mechanism: Mechanism, linear: LinearModel, found: Modes, ending: str | None, model: Model) -> str | bytes:
-    """The stage with its modes, as a page or as a GLB file; strokes and deflections are those of the drawn stage."""
+    """The stage with its modes, as a page or as a GLB file; strokes and deflections are those of the undeformed stage."""
     drawn = standing(mechanism) if model is Model.LUMPED else linear
     shown = stage_data(mechanism, model=drawn, weighed=linear, found=found)
     return glb_of(shown) if ending == ".glb" else view_of(mechanism, shown).html
 
 
 def _moving_there(mechanism: Mechanism, there: OperatingPoint, found: Modes) -> str:
-    """The stage with its modes about where it stands, as a page."""
-    return view_of(mechanism, modes_at_data(mechanism, there, found, "about where it stands"), "state 1").html
+    """The stage with its modes about an operating point, as a page."""
+    return view_of(mechanism, modes_at_data(mechanism, there, found, "about the operating point"), "state 1").html
 
 
 @command()

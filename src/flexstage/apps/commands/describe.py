@@ -10,8 +10,9 @@ from typing import Annotated
 import typer
 
 from flexstage.analysis.caveats import caveats, model_findings
+from flexstage.analysis.loaded.standing import drawn
 from flexstage.apps.words import File
-from flexstage.base.finding import DesignError, Finding, require
+from flexstage.base.finding import DesignError, Finding, combine_warnings, refuse, require
 from flexstage.base.storage.document import as_text
 from flexstage.base.text import printable
 from flexstage.base.version import __version__
@@ -33,13 +34,14 @@ from flexstage.show.figures.drawing import drawing, format_of
 from flexstage.show.listing import case_table, catalogue_body, catalogue_tables, find_section, parameter_table
 from flexstage.show.plan import plan_figure
 from flexstage.show.tables.description import composition_table
+from flexstage.show.tables.overview import count_text, floating_line
 from flexstage.show.viewer.data import still_data
 from flexstage.studies.form import study_schema
 from flexstage.studies.synthesis.specification import specification_schema
 
 DEFAULT_CASE = "double-triangle"
 SCHEMA_FILE = "flexstage.schema.json"
-"""Where the first line of a new design file tells editors to look for the schema: beside it, as `flexstage schema > FILE` writes it."""
+"""File of the schema in the first line of a new design file, for editors: in the same folder, from `flexstage schema > FILE`."""
 
 
 def new(
@@ -58,12 +60,12 @@ def new(
         show([case_table() if listed else parameter_table(case)])
         return
     if target is None:
-        raise typer.BadParameter("name the file to write, e.g. stage.toml", param_hint="STAGE.TOML")
+        raise refuse("STAGE.TOML", "missing", "Use e.g. 'flexstage new stage.toml --case hexapod'")
     stated = _stated(case_parameter or ())
     start = shipped_case(case)
     require_writable([(str(target), target)])
     if target.exists() and not force:
-        require([Finding(str(target), "the file exists already", "Choose another name, or overwrite it with --force")])
+        require([Finding(str(target), "file exists", "Choose another name, or overwrite it with --force")])
     text = start.text(stated, _heading(case, start.summary, printable(str(target)), stated))
     write(target, f"#:schema ./{SCHEMA_FILE}\n{text}", str(target))
     announce(f"Wrote {target} ({case}: {start.summary}). Next: flexstage analyse {target}")
@@ -72,11 +74,11 @@ def new(
 def _stated(assignments: Sequence[str]) -> dict[str, str]:
     """Names and values of parameters."""
     split = [each.partition("=") for each in assignments]
-    advice = "Write for example --case-parameter long_arm=80mm"
-    require(Finding(f'--case-parameter "{name}"', "it gives no value", advice) for name, equals, _ in split if not equals)
+    advice = "Use e.g. --case-parameter long_arm=80mm"
+    require(Finding(f'--case-parameter "{name}"', "value missing", advice) for name, equals, _ in split if not equals)
     names = [name.strip() for name, _, _ in split]
     twice = {name for name in names if names.count(name) > 1}
-    require(Finding(f"--case-parameter {name}", "it is stated more than once", "State it once") for name in sorted(twice))
+    require(Finding(f"--case-parameter {name}", "given twice", "Give it once") for name in sorted(twice))
     return {name.strip(): value.strip() for name, _, value in split}
 
 
@@ -85,7 +87,7 @@ def _heading(case: str, summary: str, target: str, stated: Mapping[str, str]) ->
         f"{case}: {summary}.\n"
         + "".join(f"Parameter {name} = {value}.\n" for name, value in stated.items())
         + f"flexstage check {target}     flexstage analyse {target} --report report.html\n"
-        f"flexstage schema > {Path(target).with_name(SCHEMA_FILE)}     lets an editor check this file while you type.\n"
+        f"flexstage schema > {Path(target).with_name(SCHEMA_FILE)}     is for editors that check this file during typing.\n"
         "Every physical value carries a unit. tags say where a value comes from: stated, derived or assumed (untagged), and the source."
     )
 
@@ -113,10 +115,10 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
 
 def _tell_sound(design: Path, mechanism: Mechanism) -> None:
-    show((composition_table(mechanism), *list_caveats("check", mechanism)))
-    count = len(caveats(mechanism).warnings)
-    said = f", {count} warning{'' if count == 1 else 's'}" if count else ""
-    print_result(f"{design}: no findings{said}.")
+    show((composition_table(mechanism), floating_line(drawn(mechanism)), *list_caveats("check", mechanism)))
+    count = len(combine_warnings(caveats(mechanism).warnings))
+    counted = f", {count_text(count, 'warning')}" if count else ""
+    print_result(f"{design}: no errors{counted}.")
 
 
 _SCHEMAS = {

@@ -1,4 +1,4 @@
-"""Commands of stages away from their drawn position: `stroke`, `buckle`."""
+"""Commands of stages away from their undeformed configuration: `stroke`, `buckle`, `misalign`."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def stroke(
 
 
 def _first_path(mechanism: Mechanism) -> str:
-    """The first path of a design, "" without one; others are told of."""
+    """The first path of a design, "" without one; prints a note about the others."""
     first, *others = mechanism.paths or ("",)
     if others:
         announce(f"Path {first}; of the others: {', '.join(f'--path {each}' for each in others)}")
@@ -92,9 +92,9 @@ def _first_path(mechanism: Mechanism) -> str:
 
 
 def _stated(mechanism: Mechanism, name: str, steps: int | None, loads: dict[str, float]) -> Course:
-    """A path of a design, under `loads` too."""
+    """A path of a design, with additional `loads`."""
     if name not in mechanism.paths:
-        raise refuse(f"--path {name}", "the design states no such path", suggest_nearest(name, mechanism.paths))
+        raise refuse(f"--path {name}", "unknown path", suggest_nearest(name, mechanism.paths))
     found = course(mechanism, name)
     values = found.values if steps is None else np.linspace(found.values[0], found.values[-1], steps)
     return replace(found, values=values, loads=found.loads | loads)
@@ -110,20 +110,20 @@ def _asked(model: Nonlinear, drive: str, *, start: str, end: str, steps: int, lo
 
 
 def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
-    """Where a drive ends that is not told: a stack at its full stroke, a coordinate near rest."""
+    """Default end of a drive: the full stroke of a stack, a small displacement of a coordinate."""
     own = model.assembly.actuator(drive) if drive in model.assembly.strokes else None
     if isinstance(own, StrokeActuator):
         return float(np.real(own.stroke))
     if quantity not in (LENGTH, ANGLE):
-        raise refuse("--to", f"it is not said where {drive} ends", f'Write for example --to "{quantity.example}"')
+        raise refuse("--to", f"it is not said where {drive} ends", f'Use e.g. --to "{quantity.example}"')
     return 1e-4 if quantity is LENGTH else 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Buckling:
-    """The `factor` on a `load` at which the stage gives way: how (`kind`), which flexure by itself (`link`), and its `shape` by body.
+    """The buckling `factor` on a `load`: its `kind`, a single buckling flexure (`link`), and its `shape` by body.
 
-    `cases` are all load cases and stroke ends that were asked for, the first of them this one.
+    `cases` are all requested load cases and stroke ends, the first of them this one.
     """
 
     load: str
@@ -133,7 +133,7 @@ class Buckling:
     shape: Matrix
     cases: tuple[CaseFactor, ...]
     beyond: Matrix | None = None
-    """Equilibria from there on, a row a point, along the factor."""
+    """Equilibria of the post-buckling path, one row for each point, along the factor."""
 
 
 @command("report")
@@ -177,12 +177,12 @@ def buckle(
 
 
 def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, points: int) -> Beyond:
-    """From where the least case gives way on; refused where that needs something held."""
+    """The post-buckling path of the lowest critical case; refused if it requires prescribed coordinates."""
     least = found.least
     if least is None or least.found is None:
         raise refuse("--post-buckling", "the stage does not buckle", "Leave it out, or name a larger load")
     if least.found.state.held:
-        what = f"the least factor is that of {least.load} at {least.place}, where force holds the stage"
+        what = f"the lowest factor is that of {least.load} at {least.place}, with prescribed coordinates"
         raise refuse("--post-buckling", what, "Leave out --at")
     grows = next(case.grows for case, told in zip(cases, found.cases, strict=True) if told is least)
     path = follow(least.found, grows, side=1.0 if branch is BranchSide.ALONG else -1.0, points=points)
@@ -190,7 +190,7 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, p
 
 
 def _case(mechanism: Mechanism, asked: Place, scaled: Sequence[str]) -> LoadCase:
-    """What the options name: the load that grows, else the weight, and the operating point."""
+    """The load case of the options: the scaled load, else the weight, and the operating point."""
     model = nonlinear(mechanism)
     grows, stays, there = loads_of(model, scaled, "--scale-load"), loads_of(model, asked.load or ()), asked.brought(model)
     require_consistent(model, there, {**grows, **stays}, asked.locked)
@@ -202,9 +202,9 @@ def _case(mechanism: Mechanism, asked: Place, scaled: Sequence[str]) -> LoadCase
 
 
 def _unanswered(found: CaseFactors) -> Iterator[Finding]:
-    """Why there is no answer at all: nothing loads the stage, or the one case that was asked for has no factor."""
+    """Reasons for a missing result: the stage has no load, or the only requested case has no factor."""
     if not found.cases:
-        what = "it has no weight, no stated forces and no paths that hold loads: nothing grows"
+        what = "no weight, no specified forces and no paths with loads"
         yield Finding("stage", what, 'Name a load: --scale-load "platform.fz=-20 N"')
     elif len(found.cases) == 1 and not np.isfinite(found.cases[0].factor) and found.least_bound is None:
         yield Finding(found.cases[0].load, found.cases[0].why, "Name another load, or another operating point")
@@ -240,15 +240,15 @@ def misalign(
     quantity = ANGLE if axis.startswith("r") else LENGTH
     wanted = parse(amount, quantity, where="--amount") if amount else (1e-3 if quantity is ANGLE else 1e-4)
     if not wanted:
-        raise refuse("--amount", "a misalignment of zero does nothing", 'Use for example --amount "1 mrad"')
+        raise refuse("--amount", "must not be zero", 'Use for example --amount "1 mrad"')
     if not instance:
         told = misalignments(mechanism, (axis,) if rotation or translation else COMPONENTS[3:], size=wanted)
         if told.worst is None:
-            raise refuse("stage", "no instance of a unit and no link joins the ground: nothing can be misaligned", "Draw what holds it")
+            raise refuse("stage", "no instance of a unit and no link joins the ground", "Add a link to the ground")
         return CommandResult(
             mechanism,
             lambda: told,
-            lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. What happens on the way: --instance NAME."],
+            lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. Details: --instance NAME."],
             partial(misalignments_report, mechanism, told),
             warnings=told.warnings,
         )
@@ -259,10 +259,10 @@ def misalign(
 
 def _axis(rotation: str, translation: str) -> str:
     if rotation and translation:
-        raise refuse("--translation", f"it is rotated about {rotation} already", "Leave out --rotation, or --translation")
+        raise refuse("--translation", f"given together with --rotation {rotation}", "Leave out --rotation, or --translation")
     option, axis = ("--translation", translation) if translation else ("--rotation", rotation or "y")
     if axis not in COMPONENTS[:3]:
-        raise refuse(option, f'"{axis}" is no axis', "Write x, y or z")
+        raise refuse(option, f'must be x, y or z (got "{axis}")', "Use one of them")
     return axis if translation else f"r{axis}"
 
 

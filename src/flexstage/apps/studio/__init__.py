@@ -1,1 +1,1 @@
-"""The studio: a stage in a page of this computer's browser. A server on the loopback, the session of a design, a process that computes."""
+"""The studio: a stage in a page of this computer's browser. A server on the loopback, the session of a design, computing processes."""

@@ -1,4 +1,4 @@
-"""The command `studio`: a stage in a window of the browser, changed by hand and computed as one goes."""
+"""The command `studio`: a stage in a window of the browser, edited and computed interactively."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def studio(
         print_note(f"Studio of {design}: {url}")
         print_note("Ctrl+C ends it.")
         if browser and not webbrowser.open(url):
-            print_note("No browser was found: open the address yourself.")
+            print_note("No browser was found: open this address.")
 
     try:
         asyncio.run(run(design, port, started))

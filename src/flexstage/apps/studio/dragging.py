@@ -1,4 +1,4 @@
-"""Frequencies while a slider moves: by the batch engine."""
+"""Frequencies for a moving slider, from the batch engine."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the studio's processes compute, task by task: each a function of the text, so that a process that dies is simply started anew."""
+"""Tasks of the studio's processes: each is a function of the text, so that a crashed process is restarted."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ TASKS: Mapping[str, str] = {
     "solid_modes": "solids:solid_modes",
     "compared": "results:all_figures",
 }
-"""Tasks by name: module and function, imported when first asked for."""
+"""Tasks by name: module and function, imported at the first call."""
 TELLING = frozenset({"travelled"})
-"""Those that tell how far they are: their last argument hears it."""
+"""Tasks with progress reports: their last argument receives them."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a task: its value, or the problems that refused it; processor time spent [s]."""
+    """Result of a task: its value, or the problems that refused it; processor time spent [s]."""
 
     value: Any
     problems: tuple[Problem, ...]
@@ -54,19 +54,19 @@ class Outcome:
 
 
 def problem(finding: Finding) -> Problem:
-    """A finding that is about no place in the text."""
+    """A finding without a position in the text."""
     return Problem(finding.where, finding.what, finding.advice)
 
 
 def failure(task: str, error: Exception) -> Problem:
     """An error of the program itself."""
-    what = f"flexstage failed at it, and that is its fault, not your design's: {type(error).__name__}: {error}"
+    what = f"flexstage failed, and not because of your design: {type(error).__name__}: {error}"
     return Problem(task, what, "Save the design, and report it with this message")
 
 
 @one_thread
 def work(line: Line, task: str, *arguments: Any) -> Outcome:
-    """Do a task; what goes wrong is told, whatever it is."""
+    """Run a task and report any error."""
     start = time.process_time()
     try:
         own = (line.tell,) if task in TELLING else ()
@@ -74,15 +74,15 @@ def work(line: Line, task: str, *arguments: Any) -> Outcome:
     except DesignError as error:
         value, problems = None, _located(error, arguments)
     except MemoryError:
-        value, problems = None, (Problem(task, "there is not enough memory for it", "Close other programs, or make the design smaller"),)
-    except Exception as error:  # noqa: BLE001 (one question that fails is no reason to lose the others)
+        value, problems = None, (Problem(task, "not enough memory", "Close other programs, or make the design smaller"),)
+    except Exception as error:  # noqa: BLE001 (a failed task must not stop the others)
         traceback.print_exc()
         value, problems = None, (failure(task, error),)
     return Outcome(value, problems, time.process_time() - start)
 
 
 def _located(error: DesignError, arguments: tuple[Any, ...]) -> tuple[Problem, ...]:
-    """Findings with their lines in the text that tasks take first, the file second."""
+    """Findings with their lines in the text, the first argument of tasks; the file is the second."""
     from flexstage.apps.studio.design.reading import problems_of
 
     return problems_of(error.findings, str(arguments[0]), str(arguments[1])) if len(arguments) > 1 else tuple(map(problem, error.findings))

@@ -1,4 +1,4 @@
-"""A process beside the studio's server that does one task after another, the most urgent first, and is started anew where it dies."""
+"""A process of the studio's server that runs one task after another, the most urgent first, and is restarted after a crash."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from flexstage.apps.studio.engine import Outcome, problem, work
 from flexstage.apps.studio.protocol import Problem
 from flexstage.base.processes.jobs import Heard, Word, Worker
 
-_AGAIN = "The process that computes is started anew; ask again, and report it if this happens twice"
+_AGAIN = "The computing process is restarted; try again, and report a second failure"
 
 
 class Urgency(IntEnum):
-    """What goes before what."""
+    """Priority of a task."""
 
     NOW = 0
-    """What somebody waits for."""
+    """Tasks with a waiting user."""
     SOON = 1
     """Figures of the present design."""
     LATER = 2
-    """Whatever can wait."""
+    """Tasks without urgency."""
 
 
 @dataclass(order=True)
@@ -46,11 +46,11 @@ def _always() -> bool:
 
 
 def nobody(_: Any) -> None:
-    """Hears what a task tells on its way, and does nothing."""
+    """Ignore the reports of a task."""
 
 
 class Helper:
-    """One process. `told` hears when it starts to compute (the task's name), has done (empty), and when it died (its last words)."""
+    """One process. `told` is called when it starts a task (its name), has finished (empty), and has crashed (its last message)."""
 
     def __init__(self, died: Callable[[str], None]) -> None:
         self._died = died
@@ -70,7 +70,7 @@ class Helper:
         return None if self._worker is None else self._worker.process.pid
 
     def busy(self, urgency: Urgency) -> float:
-        """For how long it has been doing a task of that urgency [s]."""
+        """Duration of its present task of that urgency [s]."""
         return time.monotonic() - self._since if self._now is not None and self._now[0].urgency == urgency else 0.0
 
     async def ask(
@@ -80,9 +80,9 @@ class Helper:
         wanted: Callable[[], bool] = _always,
         heard: Callable[[Any], None] = nobody,
     ) -> Outcome | None:
-        """Task and arguments done, after what is more urgent; nothing where it is not `wanted` any more when its turn comes.
+        """The result of a task and its arguments, after more urgent ones; nothing if it is no longer `wanted` at its turn.
 
-        `heard` is told what the task says on its way.
+        `heard` is called with the reports of the task.
         """
         if self._runner is None:
             self._runner = asyncio.create_task(self._run())
@@ -91,7 +91,7 @@ class Helper:
         return await answer
 
     def start_anew(self) -> None:
-        """Give up what it does: the process ends, and is started again for the next task."""
+        """Abort its task: the process ends, and is started again for the next task."""
         if self._worker is not None and self._now is not None:
             self._given_up = True
             self._worker.process.kill()
@@ -120,9 +120,9 @@ class Helper:
                 task.answer.set_result(outcome)
 
     async def _do(self, task: _Task) -> Outcome | None:
-        """What comes of a task; where the process dies over it, that; nothing where it was given up.
+        """The result of a task; after a crash of the process, a problem; nothing for an aborted task.
 
-        A process that has done other tasks may have died of something else: then it is tried again in a new one.
+        A crash after other tasks may have another cause: the task is then repeated in a new process.
         """
         is_new = self._worker is None
         try:
@@ -139,7 +139,7 @@ class Helper:
             self._now, self._given_up = None, False
 
     async def _attempt(self, task: _Task) -> Outcome:
-        """What comes of a task; raises `EOFError` where the process ends over it, `OSError` where none starts."""
+        """The result of a task; raises `EOFError` if the process ends during it, `OSError` if none starts."""
         done: asyncio.Future[Outcome] = asyncio.get_running_loop().create_future()
         self._now, self._since = (task, done), time.monotonic()
         if self._worker is None:
@@ -155,7 +155,7 @@ class Helper:
         return worker
 
     def _hear(self, worker: Worker, word: Word, value: Any) -> None:
-        """In the loop's thread: what a process said."""
+        """Handle a report of a process, in the loop's thread."""
         waits = self._now[1] if self._now is not None and worker is self._worker else None
         if word is Word.ENDED and worker is self._worker:
             self._worker, words = None, worker.last_words()
@@ -171,7 +171,7 @@ class Helper:
 
 
 def _pass_on(heard: Heard, loop: asyncio.AbstractEventLoop, hear: Callable[[Worker, Word, Any], None]) -> None:
-    """What a process says goes to the loop, until it ends."""
+    """Forward the reports of a process to the loop, until it ends."""
     while True:
         worker, word, value = heard.get()
         with contextlib.suppress(RuntimeError):  # the loop has ended

@@ -1,4 +1,4 @@
-"""Jobs of the studio: commands of the command line in processes of their own, one after another, with their progress and reports."""
+"""Jobs of the studio: commands of the command line in separate processes, one after another, with progress and reports."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ _WRITING = ("--report", "--json", "--csv", "--mat", "--output", "-o", "--export"
 _STUDIES = ("sweep", "optimise")
 _ENDS = {"optimise": "done; the optimum is pinned among the figures"}
 _LINES = 12
-"""Last lines of what a job said that are kept."""
+"""Number of stored last output lines of a job."""
 _PATIENCE = 3.0
-"""How long a job may take to clean up when it is ended [s]."""
+"""Time limit for the cleanup of an ended job [s]."""
 _MOST = 50
 
 
 @dataclass
 class _Job:
-    """A job: what it was asked, how it stands, its process while it runs, the files that are gone with it."""
+    """A job: its request, its state, its running process, its temporary files."""
 
     number: int
     request: say.Run
@@ -40,43 +40,43 @@ class _Job:
     process: asyncio.subprocess.Process | None = None
     files: list[Path] = field(default_factory=list[Path])
     names: dict[str, str] = field(default_factory=dict[str, str])
-    """Names of files that are the studio's own, and what they are to whoever reads of them; longer ones first."""
+    """Names of the studio's temporary files, and their replacements for the user; longer ones first."""
 
     def as_read(self, text: str) -> str:
-        """What the command said, by the names that the user knows."""
+        """Output of the command, with the names known to the user."""
         for own, known in self.names.items():
             text = text.replace(own, known)
         return text
 
 
 class Jobs:
-    """All jobs of a session on the design in a file; `tell` hears how they stand, `optimum` the text of a better design."""
+    """All jobs of a session on the design in a file; `tell` receives their states, `optimum` the text of a better design."""
 
     def __init__(self, path: Path, tell: Callable[[say.Said], None], optimum: Callable[[str], None]) -> None:
         self._path, self._tell, self._optimum = path, tell, optimum
         self.program: tuple[str, ...] = ("-P", "-m", "flexstage")
-        """What Python runs; then the command and its arguments."""
+        """Arguments of Python, before the command and its arguments."""
         self._jobs: dict[int, _Job] = {}
         self._folder: Path | None = None
         self._turn = asyncio.Lock()
         self._work: set[asyncio.Task[None]] = set()
         self.reports: dict[str, Path] = {}
-        """Reports by the name that they are asked for."""
+        """Reports by their names."""
 
     def start(self, request: say.Run, text: str) -> int:
-        """A new job on a text; refused where its command or options do not allow it. Its number is given."""
+        """Start a job on a text; refused if its command or options are not allowed. Returns its number."""
         running = [each for each in self._jobs.values() if each.state.state in ("waits", "runs")]
         if len(running) >= _MOST:
             raise refuse(request.command, f"{_MOST} jobs are waiting", "Cancel some of them")
         if request.command in _STUDIES and request.study is None:
-            raise refuse(request.command, "it needs a study: what varies, and what is wanted", "Write one, see docs/studies.md")
+            raise refuse(request.command, "study missing", "Write one, see docs/studies.md")
         if (request.record or request.command == "identify") and not (request.record and self._is_file(request.record)):
-            raise refuse(request.command, "there is no such record", "Name a file, from the folder of the design")
+            raise refuse(request.command, "record not found", "Name a file, relative to the folder of the design")
         for option in request.options:
             if "\0" in option:
                 raise refuse(request.command, "an option has a null character", "Leave it out")
             if option.partition("=")[0] in _WRITING:
-                raise refuse(request.command, f"{option} writes a file, which is the studio's to choose", "Leave it out")
+                raise refuse(request.command, f"the studio sets {option}", "Leave it out")
         number = len(self._jobs) + 1
         job = _Job(number, request, text, say.JobState(number, request.command, "waits", "waits for its turn", None, None, (), None))
         self._jobs[number] = job
@@ -87,15 +87,15 @@ class Jobs:
         return number
 
     def _is_file(self, record: str) -> bool:
-        with contextlib.suppress(OSError, ValueError):  # a name that is none
+        with contextlib.suppress(OSError, ValueError):  # an invalid name
             return (self._path.parent / record).is_file()
         return False
 
     def cancel(self, number: int) -> None:
-        """End a job; refused for a number that is none."""
+        """End a job; refused for an unknown number."""
         job = self._jobs.get(number)
         if job is None:
-            raise refuse(f"job {number}", "there is none of this number", "Look at the list")
+            raise refuse(f"job {number}", "unknown job", "Choose one of the list")
         if job.state.state in ("waits", "runs"):
             job.state = replace(job.state, state="cancelled", text="cancelled")
             if job.process is not None:
@@ -103,7 +103,7 @@ class Jobs:
             self._push()
 
     async def close(self) -> None:
-        """End all, and remove what they left."""
+        """End all jobs, and remove their files."""
         for number in self._jobs:
             self.cancel(number)
         if self._work:
@@ -131,7 +131,7 @@ class Jobs:
                 self._remove(job)
 
     async def _follow(self, job: _Job) -> None:
-        """A job from beginning to end."""
+        """Run a job from start to end."""
         if self._folder is None:
             self._folder = make_temporary_folder()
         report = self._folder / f"{job.number}.html"
@@ -163,7 +163,7 @@ class Jobs:
         self._set(job, replace(job.state, state=state, text=text, fraction=1.0 if state == "done" else None, left=None))
 
     def _arguments(self, job: _Job) -> list[str]:
-        """The files that its command takes; a text that is not saved stands beside its file meanwhile."""
+        """The files for its command; an unsaved text is stored temporarily next to its file."""
         request, folder = job.request, self._folder or Path()
         design = self._path
         if not design.is_file() or Stored.read(design).text != job.text:
@@ -181,7 +181,7 @@ class Jobs:
         return [str(study), "--output", str(folder / f"{job.number}.{ending}")]
 
     def _beside(self, job: _Job, ending: str, known: str, text: str) -> Path:
-        """A file beside the design while the job runs, which is `known` by another name to whoever reads of it."""
+        """A temporary file next to the design, with a `known` name for the user."""
         path = self._path.parent / f".{self._path.stem}.studio-{os.getpid()}-{job.number}.{ending}"
         job.files.append(path)
         job.names |= {str(path): known, path.name: known}
@@ -189,7 +189,7 @@ class Jobs:
 
     def _hear(self, job: _Job, line: str) -> None:
         if not line.startswith(f"{LINE} "):
-            if line.strip() and not (self._folder and line.startswith(f"Wrote {self._folder}")):  # its results stand in the page
+            if line.strip() and not (self._folder and line.startswith(f"Wrote {self._folder}")):  # the page shows its results
                 job.state = replace(job.state, said=(*job.state.said, job.as_read(line))[-_LINES:])
             return
         _, fraction, left, text = [*job.as_read(line).split(" ", 3), ""][:4]
@@ -205,7 +205,7 @@ class Jobs:
         self._tell(say.Jobs(tuple(each.state for each in self._jobs.values())))
 
     def _end(self, process: asyncio.subprocess.Process) -> None:
-        """Ask a process and its own ones to end, and do not ask twice."""
+        """Ask a process and its children to end, once."""
         with contextlib.suppress(ProcessLookupError, PermissionError):
             if sys.platform == "win32":
                 process.terminate()
@@ -226,21 +226,21 @@ def _kill(process: asyncio.subprocess.Process) -> None:
 
 
 def _study(text: str, design: Path, name: str) -> str:
-    """A study's text about that design; of that name where it has none."""
+    """A study's text about that design; with that name if it has none."""
     import tomlkit  # takes long to import
     from tomlkit.exceptions import TOMLKitError
 
     try:
         document = tomlkit.parse(text)
     except TOMLKitError as error:
-        raise refuse("study", f"this is not TOML: {error}", "Mend that line") from None
+        raise refuse("study", f"this is not TOML: {error}", "Correct that line") from None
     document["design"] = design.name
     document.setdefault("name", name)
     return tomlkit.dumps(document)
 
 
 async def _lines(stream: asyncio.StreamReader) -> AsyncIterator[str]:
-    """Lines of a stream, however long they are."""
+    """Lines of a stream, of any length."""
     rest = b""
     while chunk := await stream.read(65536):
         *whole, rest = (rest + chunk).split(b"\n")

@@ -1,9 +1,9 @@
-"""All messages between the studio's page and its server, a class each; `python -m tools.protocol` writes them for TypeScript.
+"""All messages between the studio's page and its server, one class each; `python -m tools.protocol` writes them for TypeScript.
 
-A message is a JSON object whose `kind` is the class's name in small letters. The page asks, each request with an `id` of its own; what
-answers it says `to` whom. An answer follows every request (`Done` where there is nothing else to say, `Refusal` where it is refused), in
-the order of asking but for `Drag` and `Pose`, of which the newest is answered and older ones are `Done`. Everything else is pushed to all
-pages when it changes. Numbers are in SI units, null where unknown.
+A message is a JSON object whose `kind` is the class's name in small letters. The page sends requests, each with a unique `id`; the
+answer contains it as `to`. Every request has an answer (`Done` without a result, `Refusal` if it is refused), in the order of
+the requests except for `Drag` and `Pose`. Of these the newest is answered, and older ones are `Done`. Everything else is pushed to all
+pages when it changes. Numbers are in SI units, null if unknown.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 VERSION = 4
-"""Raised when a message changes its meaning."""
+"""Increased if a message changes its meaning."""
 
-# --- what messages are made of ---
+# --- parts of messages ---
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A finding: the object or address it is about, what was found, what to do; line and column from 1 where the text shows them."""
+    """A finding: its object or address, problem, advice; line and column from 1 if the text shows them."""
 
     where: str
     what: str
@@ -30,10 +30,10 @@ class Problem:
 
 @dataclass(frozen=True)
 class Amount:
-    """A number of the stage: `value` in `si`, `text` as the file says it, `factor` what one `unit` is in SI.
+    """A number of the stage: `value` in `si`, `text` as in the file, `factor` the value of one `unit` in SI.
 
-    `low` and `high` bound its slider, within what the number may be. `formula` is what it is worked out of. `old` is what the file on
-    disk says. `group` is the table it stands in. `line` where it stands, or the table around it.
+    `low` and `high` bound its slider, within the bounds of the number. `formula` is its definition. `old` is its value in the file on
+    disk. `group` is its table in the file, and `line` its line, or that of the table.
     """
 
     address: str
@@ -54,7 +54,7 @@ class Amount:
 
 @dataclass(frozen=True)
 class Channel:
-    """An actuator, an axis of the platform or a gauge: its SI unit, the unit it is shown in (`factor` SI each), and its ends if known."""
+    """An actuator, an axis of the platform or a gauge: its SI unit, its display unit (`factor` SI each), and its ends if known."""
 
     name: str
     si: str
@@ -66,7 +66,7 @@ class Channel:
 
 @dataclass(frozen=True)
 class Figure:
-    """A result: its `name` as requirements call it, where it belongs, its value in `si`, and of the file on disk the `old` one."""
+    """A result: its `name` as in requirements, its group, its value in `si`, and the `old` one of the file on disk."""
 
     name: str
     group: str
@@ -99,7 +99,7 @@ class Floats:
 class ModeShape:
     """A mode: the platform's `twist` (x y z rx ry rz, m and rad) of the mass-normalised shape, `share` of kinetic energy in the platform.
 
-    `kinetic` shares by body and `strain` shares by link, those from one per cent, largest first. `local`: a mode of other bodies.
+    `kinetic` shares by body and `strain` shares by link, at least one per cent, largest first. `local`: a mode of other bodies.
     """
 
     number: int
@@ -115,10 +115,10 @@ class ModeShape:
 
 @dataclass(frozen=True)
 class SolidMode:
-    """A mode of the platform by finite elements, `error` the relative one estimated of its frequency, `motion` what a viewer plays of it.
+    """A mode of the platform by finite elements, `error` the relative one estimated of its frequency, `motion` its name in a viewer.
 
-    `theory` is the number of the mode of theory that moves most like it, absent where none is alike enough: its `theory_frequency` [Hz],
-    what it is over that of finite elements less one, and the modal assurance of the two.
+    `theory` is the number of the paired mode of theory, absent without one. Further fields are its `theory_frequency` [Hz],
+    its relative difference from that of finite elements, and the modal assurance of the two.
     """
 
     number: int
@@ -134,7 +134,7 @@ class SolidMode:
 
 @dataclass(frozen=True)
 class Curve:
-    """Frequency response of an output to an input: magnitude in `unit`, phase in degrees, at the frequencies beside it."""
+    """Frequency response of an output to an input: magnitude in `unit`, phase in degrees, at the listed frequencies."""
 
     input: str
     output: str
@@ -145,7 +145,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Loss:
-    """What an actuator's motion loses: its gain (1 is ideal), its loss, and the shares of it by link, which add up to the loss."""
+    """Lost motion of an actuator: its gain (1 is ideal), its loss, and the shares by link, which add up to the loss."""
 
     actuator: str
     gain: float
@@ -155,7 +155,7 @@ class Loss:
 
 @dataclass(frozen=True)
 class Judgement:
-    """A requirement: its key and words, limit and value in `si`, margin (0.1 is 10 % to spare), or the reason why it is not known."""
+    """A requirement: its key and text, limit and value in `si`, margin (0.1 is 10 % to spare), or the reason why it is unknown."""
 
     key: str
     text: str
@@ -174,7 +174,7 @@ class Judgement:
 
 @dataclass(frozen=True)
 class Stroke:
-    """How far the platform goes along a coordinate, and the actuator or stop that ends it."""
+    """Stroke of the platform along a coordinate, and the actuator or stop that limits it."""
 
     coordinate: str
     low: float
@@ -184,7 +184,7 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Slope:
-    """What a number buys: change of each figure per unit of the number, and of the worst requirement's margin by one per cent of it."""
+    """Sensitivity to a number: change of each figure per unit of the number, and of the worst requirement's margin by one per cent."""
 
     address: str
     si: str
@@ -195,7 +195,7 @@ class Slope:
 
 @dataclass(frozen=True)
 class Clash:
-    """Two bodies that are meant to be apart and touch, or a gap between them: the `distance` [m] is negative where they overlap."""
+    """Two separate bodies that touch, or a gap between them: the `distance` [m] is negative for an overlap."""
 
     first: str
     second: str
@@ -205,7 +205,7 @@ class Clash:
 
 @dataclass(frozen=True)
 class Screw:
-    """A free motion: the platform's twist (unit length), its axis through `point`, pitch [m/rad], null where it is a pure translation."""
+    """A free motion: the platform's twist (unit length), its axis through `point`, pitch [m/rad], null for a pure translation."""
 
     name: str
     twist: tuple[float, ...]
@@ -217,7 +217,7 @@ class Screw:
 
 @dataclass(frozen=True)
 class Snippet:
-    """What the palette offers: `text` is TOML with `{name}` where a field's text goes; fields by name with what stands there first."""
+    """A snippet of the palette: `text` is TOML with `{name}` for a field's text; fields by name with their initial texts."""
 
     name: str
     group: str
@@ -228,7 +228,7 @@ class Snippet:
 
 @dataclass(frozen=True)
 class JobState:
-    """A job: where it stands, its fraction done and seconds left as far as can be told, what it said, and its report's address if any."""
+    """A job: its state, fraction done and estimated seconds left, its output, and its report's address if any."""
 
     job: int
     command: str
@@ -242,7 +242,7 @@ class JobState:
 
 @dataclass(frozen=True)
 class Draft:
-    """The text that a studio had not saved when it ended: its last change [s since 1970], and whether the file was changed since."""
+    """The unsaved text of an ended studio: its last change [s since 1970], and whether the file was changed since."""
 
     name: str
     time: float
@@ -251,13 +251,13 @@ class Draft:
 
 @dataclass(frozen=True)
 class Fact:
-    """A line of a card: what it is, and what it says in words and units."""
+    """A line of a card: its name, and its value as text with units."""
 
     name: str
     text: str
 
 
-# --- what the page asks ---
+# --- requests of the page ---
 
 
 @dataclass(frozen=True)
@@ -288,7 +288,7 @@ class Set:
 
 @dataclass(frozen=True)
 class Drag:
-    """A slider moves: answered by `Frequencies`, the text stays."""
+    """A moving slider: answered by `Frequencies`, the text is unchanged."""
 
     id: int
     address: str
@@ -297,7 +297,7 @@ class Drag:
 
 @dataclass(frozen=True)
 class Rest:
-    """A slider is let go: the number is written into the text."""
+    """A released slider: the number is written into the text."""
 
     id: int
     address: str
@@ -314,7 +314,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Line:
-    """What stands at a line of the text."""
+    """Request for the entries at a line of the text."""
 
     id: int
     line: int
@@ -322,7 +322,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Respond:
-    """Which frequency responses are shown from now on; without frequencies, those that show every resonance."""
+    """Choice of the frequency responses; without frequencies, those that show every resonance."""
 
     id: int
     inputs: tuple[str, ...]
@@ -340,7 +340,7 @@ class Jog:
 
 @dataclass(frozen=True)
 class Pose:
-    """What the stage does at those strokes (or forces) of its actuators, exactly: readings, stress, and what is beyond its limit."""
+    """Request for the exact displacement at those strokes (or forces) of the actuators: readings, stress, and exceeded limits."""
 
     id: int
     inputs: dict[str, float]
@@ -348,16 +348,16 @@ class Pose:
 
 @dataclass(frozen=True)
 class Derive:
-    """What each number buys."""
+    """Request for the sensitivities to each number."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Travel:
-    """Bring the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE.
+    """Move the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE.
 
-    `path` names one that the design states, whose drive, ends, points and loads then hold.
+    `path` names a path of the design, whose drive, ends, points and loads then apply.
     """
 
     id: int
@@ -371,35 +371,35 @@ class Travel:
 
 @dataclass(frozen=True)
 class Halt:
-    """Give up the path that is computed."""
+    """Abort the running path."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Free:
-    """The platform's free motions, redundant constraints, and what locks it."""
+    """Request for the platform's free motions, redundant constraints, and locked motions."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Gaps:
-    """Clashes and gaps."""
+    """Request for clashes and gaps."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Solid:
-    """The platform's modes by finite elements, as far as a verification has left them in the cache."""
+    """Request for the platform's modes by finite elements, if a verification has stored them in the cache."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Pin:
-    """Keep the present design under a name (A, B, C); `keep` false lets it go."""
+    """Store the present design under a name (A, B, C); with `keep` false, remove it."""
 
     id: int
     name: str
@@ -408,14 +408,14 @@ class Pin:
 
 @dataclass(frozen=True)
 class Compare:
-    """The figures of the file, of the pinned designs and of the present one side by side."""
+    """Request for the figures of the file, of the pinned designs and of the present one side by side."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Recall:
-    """The text of a pinned design becomes the present one; the empty name is the file's own."""
+    """Make the text of a pinned design the present one; the empty name is the file's own."""
 
     id: int
     name: str
@@ -423,21 +423,21 @@ class Recall:
 
 @dataclass(frozen=True)
 class Undo:
-    """The text before the last change."""
+    """Restore the text before the last change."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Redo:
-    """The text before the last undo."""
+    """Restore the text before the last undo."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Save:
-    """Write the text to its file. Refused if that changed on disk since, unless `over` says to write over it."""
+    """Write the text to its file. Refused after a change on disk, unless `over` allows overwriting."""
 
     id: int
     over: bool
@@ -445,14 +445,14 @@ class Save:
 
 @dataclass(frozen=True)
 class Reload:
-    """Take the text that is on disk now; the present one stays in undo."""
+    """Read the text from disk; the present one remains in undo."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Recover:
-    """Take the unsaved text of a studio that ended, which `State.drafts` lists; without `keep` it is discarded."""
+    """Read the unsaved text of an ended studio in `State.drafts`; without `keep` it is discarded."""
 
     id: int
     draft: str
@@ -461,7 +461,7 @@ class Recover:
 
 @dataclass(frozen=True)
 class Palette:
-    """What can be inserted."""
+    """Request for the snippets."""
 
     id: int
 
@@ -477,9 +477,9 @@ class Insert:
 
 @dataclass(frozen=True)
 class Look:
-    """What a page shows: only that is computed after a change, the rest when it is looked at.
+    """Panes of a page: only these are computed after a change, the others when they are shown.
 
-    `stage`: the picture; `motions`: what plays in it; `reach`: strokes and strength.
+    `stage`: the picture; `motions`: its motions; `reach`: strokes and strength.
     """
 
     id: int
@@ -488,7 +488,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Run:
-    """Start a command beside; `study` is the study's or set-up's text where the command takes one, `record` a file's path."""
+    """Start a command as a job; `study` is the text of its study or set-up if it needs one, `record` a file's path."""
 
     id: int
     command: Literal["analyse", "sweep", "optimise", "verify", "identify", "loop"]
@@ -505,12 +505,12 @@ class Cancel:
     job: int
 
 
-# --- what the server says ---
+# --- messages of the server ---
 
 
 @dataclass(frozen=True)
 class Welcome:
-    """The page is let in."""
+    """The page is admitted."""
 
     version: int
     flexstage: str
@@ -520,12 +520,12 @@ class Welcome:
 
 @dataclass(frozen=True)
 class State:
-    """The text and what it says; pushed at every change. `digest` is that of the file on disk.
+    """The text and its contents; pushed at every change. `digest` is that of the file on disk.
 
-    `sound`: the design has no error. If not, `problems` list them; where they are of the text, numbers and figures are those of the last
-    text without. `changed` counts numbers that differ from the file's, `warnings` are those told last, `page` is the one whose request made
-    the change (0: the server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each. `unprotected` is
-    the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
+    `sound`: the design has no error. If not, `problems` list them; for errors of the text, numbers and figures are those of the last
+    text without. `changed` counts numbers that differ from the file's, `warnings` are the last reported ones, `page` is the one whose
+    request made the change (0: the server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each.
+    `unprotected` is the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
     """
 
     revision: int
@@ -556,7 +556,7 @@ class State:
 
 @dataclass(frozen=True)
 class Engine:
-    """What the process that computes is doing, for how long as far as can be told [s]; `ended` where it died and is started anew."""
+    """Task of the computing process, and its expected duration [s]; `ended` after a crash and restart."""
 
     state: Literal["starts", "ready", "computes", "ended"]
     text: str
@@ -565,7 +565,7 @@ class Engine:
 
 @dataclass(frozen=True)
 class Scene:
-    """The geometry of a revision for the viewer; without motions where no page looks at them."""
+    """The geometry of a revision for the viewer; without motions if no page shows them."""
 
     revision: int
     data: Any
@@ -573,7 +573,7 @@ class Scene:
 
 @dataclass(frozen=True)
 class Frequencies:
-    """The platform's frequencies [Hz] while a slider moves. Null: none there."""
+    """The platform's frequencies [Hz] for a moving slider. Null: none."""
 
     to: int
     address: str
@@ -584,9 +584,9 @@ class Frequencies:
 
 @dataclass(frozen=True)
 class Figures:
-    """Results of a revision: what is missing has its reason by name. `frequency` (f,) is what all curves stand along.
+    """Results of a revision: missing ones have a reason by name. `frequency` (f,) is the common axis of all curves.
 
-    `loading` says what the dead load changes where it is felt: stiffness, modes and curves are then those of the loaded stage.
+    `loading` describes a significant effect of the permanent load: stiffness, modes and curves are then those of the loaded stage.
     """
 
     revision: int
@@ -624,7 +624,7 @@ class Reach:
 
 @dataclass(frozen=True)
 class Warnings:
-    """What is doubtful or taken by default in a revision; the last that is told of it."""
+    """Warnings and default values of a revision; the last message about it."""
 
     revision: int
     warnings: tuple[Problem, ...]
@@ -632,10 +632,11 @@ class Warnings:
 
 @dataclass(frozen=True)
 class Card:
-    """A link: its part, lines of the text it comes from, 6x6 about its centre in its own frame, what it bears and takes.
+    """A link: its part, its lines of the text, 6x6 about its centre in its own frame, its stress and lost motion.
 
-    `stress` [Pa] is the peak over all strokes, `limit` what is allowed, `share` its share of every actuator's lost motion. `facts` say the
-    rest in words; `problems` where beam theory was not compared with elasticity. `verified` compares with stored finite elements.
+    `stress` [Pa] is the peak over all strokes, `limit` the allowable one, `share` its share of every actuator's lost motion. `facts` are
+    further properties as text; `problems` are missing comparisons of beam theory with elasticity. `verified` compares with stored finite
+    elements.
     """
 
     to: int
@@ -660,7 +661,7 @@ class Card:
 
 @dataclass(frozen=True)
 class Place:
-    """What stands at a line: links (one or several), and the addresses of the numbers there."""
+    """Entries at a line: links (one or several), and the addresses of the numbers there."""
 
     to: int
     line: int
@@ -671,7 +672,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Motion:
-    """Linear maps of a revision, elastic: `platform` is the platform's twist per unit input, `inputs` its inverse as far as there is one.
+    """Linear maps of a revision, elastic: `platform` is the platform's twist per unit input, `inputs` its (pseudo-)inverse.
 
     `gauges` are readings per input, `ideal` the twist without elasticity. `stress` (links x inputs) [Pa per unit input]: the sum of
     magnitudes over all inputs bounds a link's stress from above, with `rest` at no stroke; `allowed` its limit.
@@ -691,7 +692,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Posed:
-    """The stage at some strokes: twist, readings, stress of each link, and what is beyond its limit, in words by the name of its cause."""
+    """The stage at some strokes: twist, readings, stress of each link, and exceeded limits, as text by the name of their cause."""
 
     to: int
     twist: tuple[float, ...]
@@ -702,7 +703,7 @@ class Posed:
 
 @dataclass(frozen=True)
 class Slopes:
-    """What numbers buy, sorted by what they do for the requirement that is worst, `worst`."""
+    """Sensitivities, sorted by their effect on the worst requirement, `worst`."""
 
     to: int
     revision: int
@@ -713,7 +714,7 @@ class Slopes:
 
 @dataclass(frozen=True)
 class Underway:
-    """How far a path is that a page asked for with `request`: the fraction that is done, and what of it in words."""
+    """Progress of a path from a `request` of a page: the completed fraction, and a text."""
 
     request: int
     fraction: float
@@ -732,7 +733,7 @@ class Travelled:
 
 @dataclass(frozen=True)
 class Freedoms:
-    """Free motions, constraints of which some are superfluous with what they hold, motions that nothing feels, and what locks it."""
+    """Free motions, constraints with the redundant ones, free internal modes, and locked motions."""
 
     to: int
     revision: int
@@ -746,7 +747,7 @@ class Freedoms:
 
 @dataclass(frozen=True)
 class Clearances:
-    """Clashes first, then gaps, least first; `problems` say what does not fit into opening and envelope."""
+    """Clashes first, then gaps, smallest first; `problems` are violations of aperture and envelope."""
 
     to: int
     revision: int
@@ -756,7 +757,7 @@ class Clearances:
 
 @dataclass(frozen=True)
 class SolidModes:
-    """The platform's modes by finite elements; without any, `missing` says why."""
+    """The platform's modes by finite elements; without any, `missing` is the reason."""
 
     to: int
     revision: int
@@ -766,7 +767,7 @@ class SolidModes:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Figures of designs: a row a figure, a column a design; null where a design has none."""
+    """Figures of designs: one row for each figure, one column for each design; null for a missing one."""
 
     to: int
     designs: tuple[str, ...]
@@ -784,14 +785,14 @@ class Snippets:
 
 @dataclass(frozen=True)
 class Jobs:
-    """All jobs; pushed when one of them goes on."""
+    """All jobs; pushed at each progress."""
 
     jobs: tuple[JobState, ...]
 
 
 @dataclass(frozen=True)
 class Done:
-    """A request was done, and nothing else answers it: the text's revision is this one now; a new job's number."""
+    """A completed request without another answer: the new revision of the text; a new job's number."""
 
     to: int
     revision: int
@@ -800,7 +801,7 @@ class Done:
 
 @dataclass(frozen=True)
 class Refusal:
-    """A request was refused. `stale`: another page or program changed the text or file first."""
+    """A refused request. `stale`: another page or program changed the text or file first."""
 
     to: int
     problems: tuple[Problem, ...]

@@ -1,4 +1,4 @@
-"""Questions about a design that somebody asks in the studio: a link's card, motions and their limits, what numbers buy, freedoms, gaps."""
+"""Requests about a design in the studio: a link's card, motions and their limits, sensitivities, DOFs, gaps."""
 
 from __future__ import annotations
 
@@ -52,17 +52,17 @@ from flexstage.show.display import format_value, to_typography
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
 
 _WITHIN = 2e-3
-"""Gaps wider than this [m] are not told."""
+"""Largest reported gap [m]."""
 _MOST_GAPS = 60
 _PLATFORM = tuple(f"platform.{name}" for name in COMPONENTS)
 
 
 def card(text: str, file: str, to: int, name: str) -> Card:
-    """What is known of a link."""
+    """Data of a link."""
     known = bench(text, file)
     links: Mapping[str, PlacedLink | PlacedSuperelement] = {**known.assembly.links, **known.assembly.superelements}
     if name not in links:
-        raise refuse(name, "there is no link of this name", suggest_nearest(name, links))
+        raise refuse(name, "unknown link", suggest_nearest(name, links))
     link, lines = links[name], line_numbers(text)
     attempt = Attempts()
     own = link if isinstance(link, PlacedLink) else None
@@ -90,7 +90,7 @@ def card(text: str, file: str, to: int, name: str) -> Card:
         tuple(_facts(link)),
         verified,
         problems_of(told, text, file),
-        attempt.missing | ({} if verified else {"verified": "no finite elements are stored of it: verify the design"}),
+        attempt.missing | ({} if verified else {"verified": "no stored finite elements: verify the design"}),
     )
 
 
@@ -114,14 +114,14 @@ def place(text: str, file: str, to: int, line: int) -> Place:
 
 
 def _drawn_body(mechanism: Mechanism, name: str) -> str:
-    """Where a body is drawn in the description (`units.vertical.bodies.lever`)."""
+    """Address of a body's drawing in the description (`units.vertical.bodies.lever`)."""
     copy, _, own = name.rpartition("/")
     copies = unit_of_copy(mechanism)
     return f"units.{copies[copy]}.bodies.{own}" if copy in copies else f"bodies.{name}"
 
 
 def motion(text: str, file: str, to: int, revision: int) -> Motion:
-    """The linear maps between inputs, platform and gauges, with what bounds the stress of every link."""
+    """The linear maps between inputs, platform and gauges, with bounds of the stress of every link."""
     known, attempt = bench(text, file), Attempts()
     model = known.model
     inputs = model.actuators
@@ -142,12 +142,12 @@ def motion(text: str, file: str, to: int, revision: int) -> Motion:
 
 
 def posed(text: str, file: str, to: int, inputs: Mapping[str, float]) -> Posed:
-    """The stage at some strokes and forces, counted from the bias; what is beyond its limit is said."""
+    """The stage at some strokes and forces, relative to the bias, with exceeded limits."""
     known = bench(text, file)
     names, gauges = known.model.actuators, tuple(known.assembly.gauges)
     strange = [name for name in inputs if name not in names]
     if strange:
-        raise refuse(strange[0], "there is no actuator of this name", suggest_nearest(strange[0], names))
+        raise refuse(strange[0], "unknown actuator", suggest_nearest(strange[0], names))
     values = np.array([inputs.get(name, 0.0) for name in names])
     twist = static_gain(known.model, _PLATFORM, names).values @ values
     readings = static_gain(known.model, gauges, names).values @ values if gauges else np.zeros(0)
@@ -163,7 +163,7 @@ def posed(text: str, file: str, to: int, inputs: Mapping[str, float]) -> Posed:
 
 
 def slopes(text: str, file: str, to: int, revision: int) -> Slopes:
-    """What each number buys: exact derivatives of frequencies and losses, and what one per cent does to the worst requirement."""
+    """Sensitivities: exact derivatives of frequencies and losses, and the effect of one per cent on the worst requirement."""
     known = bench(text, file)
     found = sensitivities(known.mechanism, modes=12)
     platform = known.modes.platform
@@ -181,7 +181,7 @@ def slopes(text: str, file: str, to: int, revision: int) -> Slopes:
 
 
 def freedoms(text: str, file: str, to: int, revision: int) -> Freedoms:
-    """The platform's free motions as screws, redundant constraints, what nothing feels, what holds strokes."""
+    """The platform's free motions as screws, redundant constraints, free internal modes, locked strokes."""
     known = bench(text, file)
     found = known.kinematics
     reference = known.assembly.bodies["platform"].reference
@@ -190,9 +190,9 @@ def freedoms(text: str, file: str, to: int, revision: int) -> Freedoms:
         for column, name in enumerate(found.coordinates)
     )
     redundant = tuple(Fact(f"redundant {number}", ", ".join(each.constraints)) for number, each in enumerate(found.redundant, start=1))
-    idle = tuple(Fact(", ".join(each.bodies), f"moves by itself in {', '.join(each.links)}") for each in found.idle)
+    idle = tuple(Fact(", ".join(each.bodies), f"moves freely in {', '.join(each.links)}") for each in found.idle)
     blocked = tuple(
-        Fact(name, f"held by {', '.join(each.against)}; free {(' and ' if each.together else ' or ').join(each.free)}")
+        Fact(name, f"locked by {', '.join(each.against)}; free {(' and ' if each.together else ' or ').join(each.free)}")
         for name, each in found.blocked.items()
     )
     locked = tuple(_locked(found.motion, known))
@@ -200,7 +200,7 @@ def freedoms(text: str, file: str, to: int, revision: int) -> Freedoms:
 
 
 def clearances(text: str, file: str, to: int, revision: int) -> Clearances:
-    """Clashes and gaps between what is not joined, and what does not fit into opening and envelope."""
+    """Clashes and gaps between separate outlines, and violations of aperture and envelope."""
     found = design(text, file)
     rows = sorted(gaps(found, _WITHIN), key=lambda each: each.distance)[:_MOST_GAPS]
     told = tuple(Clash(each.first, each.second, each.distance, _gap_text(each.distance)) for each in rows)
@@ -213,7 +213,7 @@ def _gap_text(distance: float) -> str:
 
 def _six(link: PlacedLink | None, what: str) -> Matrix:
     if link is None or not isinstance(link.part, Elastic):
-        raise refuse("link", "it has no 6x6 of its own", "Ask for its stage")
+        raise refuse("link", "no 6x6", "Use the matrices of the stage")
     twist, wrench = tuple(COMPONENTS), tuple(FORCES)
     if what == "compliance":
         return matrix(
@@ -223,10 +223,10 @@ def _six(link: PlacedLink | None, what: str) -> Matrix:
 
 
 def _stress(known: Bench, name: str) -> tuple[float | None, float | None, float | None]:
-    """Peak stress over all strokes, what is allowed, and the safety between."""
+    """Peak stress over all strokes, its limit, and the safety."""
     found = known.stress
     if name not in found.links:
-        raise refuse(name, "its stress is not known: it has no section to check", "Stacks have limits of load instead")
+        raise refuse(name, "stress unknown without a section", "For stacks, use the load limits")
     index = found.links.index(name)
     return tuple(finite(np.ravel(each)[index]) for each in (found.peak, found.allowed, found.safety))  # type: ignore[return-value]
 
@@ -254,7 +254,7 @@ class Bearing:
         model = known.model
         self._known = sized_links(known.assembly)
         if not self._known:
-            raise refuse("stress", "no link has a section to check", "Stress is that of notches, necks, leaves and rods")
+            raise refuse("stress", "no link has a section", "Use notches, necks, leaves or rods")
         self.links = tuple(self._known)
         self.inputs = model.actuators
         outputs = tuple(f"{link}.{force}" for link in self.links for force in FORCES)
@@ -274,7 +274,7 @@ class Bearing:
         return Labelled(values, self.links, self.inputs, (units,) * len(self.links))
 
     def _bias(self, known: Bench) -> Array:
-        """Strokes (m,) at the bias, from none without voltage, at which hinges are relaxed."""
+        """Strokes (m,) at the bias, relative to zero voltage, at which hinges are relaxed."""
         limits = stroke_limits(known.mechanism) if known.assembly.strokes else None
         zero = {} if limits is None else dict(zip(limits.actuators, limits.low if limits.zero is None else limits.zero, strict=True))
         return np.array([-float(zero.get(name, 0.0)) for name in self.inputs])
@@ -304,7 +304,7 @@ def _bearing(text: str, file: str) -> Bearing:
 
 
 def _inputs(known: Bench) -> Matrix:
-    """Inputs per motion of the platform, elasticity made up for."""
+    """Inputs per motion of the platform, corrected for elasticity."""
     return matrix(known.force_workspace("platform").per_motion if known.forced else known.felt.lost.correction)
 
 
@@ -334,7 +334,7 @@ def _beyond_gauges(known: Bench, readings: Mapping[str, float]) -> Iterator[tupl
 
 
 def _margin_slopes(known: Bench, worst: Verdict | None, found: Sensitivities) -> dict[str, float | None]:
-    """Change of the worst requirement's margin by one per cent of each number, by complex step where the measure has a derivative."""
+    """Change of the worst requirement's margin by one per cent of each number, by complex step if the measure has a derivative."""
     if worst is None:
         return {}
     asked, names = worst.requirement, found.parameters
@@ -353,7 +353,7 @@ def _margin_slopes(known: Bench, worst: Verdict | None, found: Sensitivities) ->
         batch.command = known.command
         try:
             value = value_or_reason(batch, asked)
-        except (TypeError, ValueError):  # it takes no batch of such numbers (gravity)
+        except (TypeError, ValueError):  # no batch of such numbers is supported (gravity)
             value = ""
         if isinstance(value, str) or not np.iscomplexobj(value):
             result |= dict.fromkeys(own)
@@ -364,7 +364,7 @@ def _margin_slopes(known: Bench, worst: Verdict | None, found: Sensitivities) ->
 
 
 def _screw(name: str, twist: Array, reference: Array, length: float, links: tuple[str, ...]) -> Screw:
-    """A motion of a point [m] as a screw: the axis is where it moves along its direction alone."""
+    """A motion of a point [m] as a screw: on its axis, points move only along it."""
     moving, turning = twist[:3], twist[3:]
     rate = float(turning @ turning)
     if rate * length**2 < 1e-12 * float(moving @ moving):
@@ -386,7 +386,7 @@ def _bent(strains: Mapping[str, Array], column: int) -> tuple[str, ...]:
 
 
 def _locked(motion_: Array, known: Bench) -> Iterator[Screw]:
-    """What the links hold of the platform's motion: a basis of what is no ideal motion, at its reference."""
+    """The motions of the platform that the links lock: a basis of the complement of the ideal motions, at its reference."""
     free = first_design(motion_, 2)
     scale = np.array([1.0] * 3 + [known.kinematics.first_length] * 3)
     basis, sizes, _ = np.linalg.svd(free * scale[:, None], full_matrices=True)
@@ -394,4 +394,4 @@ def _locked(motion_: Array, known: Bench) -> Iterator[Screw]:
     reference = first_design(known.assembly.bodies["platform"].reference, 1)
     for number, twist in enumerate(basis[:, rank:].T, start=1):
         held = np.where(np.abs(twist) > 1e-12, twist, 0.0) / scale
-        yield _screw(f"held {number}", held, reference, known.kinematics.first_length, ())
+        yield _screw(f"locked {number}", held, reference, known.kinematics.first_length, ())

@@ -1,4 +1,4 @@
-"""Results of a design for the studio's panes, a stage at a time: figures, verdicts, what it reaches, what it looks like."""
+"""Results of a design for the studio's panes, one stage at a time: figures, verdicts, workspace, geometry."""
 
 from __future__ import annotations
 
@@ -59,36 +59,36 @@ if TYPE_CHECKING:
     from flexstage.show.viewer.data import StageData
 
 _SHOWN = 0.01
-"""Least share that is listed."""
+"""Smallest share in a list."""
 _LISTED = 12
-"""Modes that are listed, and above them those of the platform."""
+"""Number of listed modes, and above them those of the platform."""
 _POINTS = 400
-"""Frequencies of a response whose band is stated."""
+"""Number of frequencies of a response with a specified band."""
 
 Choice = tuple[tuple[str, ...], tuple[str, ...], float | None, float | None]
-"""Inputs, outputs and band [Hz] of the frequency responses that are shown; without names, those of the first actuator."""
+"""Inputs, outputs and band [Hz] of the shown frequency responses; without names, those of the first actuator."""
 
 
 class Timer:
-    """Processor time since it was made [ms]."""
+    """Processor time since its creation [ms]."""
 
     def __init__(self) -> None:
         self._start = time.process_time()
 
     @property
     def spent(self) -> float:
-        """So far."""
+        """Time spent."""
         return 1e3 * (time.process_time() - self._start)
 
 
 @SESSION.keep(8)
 def bench(text: str, file: str) -> Bench:
-    """What is known of a design."""
+    """Analysis of a design."""
     return bench_of(design(text, file))
 
 
 def figures(text: str, file: str, stored: str, revision: int, choice: Choice) -> Figures:
-    """Stiffness, modes, responses lost motion (of the loaded stage where its load is felt); `old` values are those of the stored text."""
+    """Stiffness, modes, responses, lost motion (of the loaded stage if its load is significant); `old` values are of the stored text."""
     timer, known, attempt = Timer(), bench(text, file), Attempts()
     stiff = attempt.of("stiffness", lambda: statics(known.felt.model))
     lost = attempt.of("loss", lambda: known.felt.lost)
@@ -119,21 +119,21 @@ def verdicts(text: str, file: str, stored: str, revision: int) -> Verdicts:
 
 
 def reach(text: str, file: str, stored: str, revision: int) -> Reach:
-    """Strokes of the platform, and how far hinges and columns are from their limits."""
+    """Strokes of the platform, and utilisation of hinges and columns."""
     timer, (found, missing) = Timer(), _reached(text, file)
     strokes = () if found[0] is None else tuple(_strokes(found[0]))
     return Reach(revision, tuple(_with_old(reach_figures(*found), "reach", stored, text, file)), strokes, missing, timer.spent)
 
 
 def errors(text: str, file: str) -> tuple[Problem, ...]:
-    """Findings of a description that can be read but not modelled: those of `flexstage check`."""
+    """Findings of a readable description without a model: those of `flexstage check`."""
     from flexstage.analysis.caveats import model_findings
 
     return problems_of(model_findings(design(text, file)), text, file)
 
 
 def warnings(text: str, file: str, revision: int) -> Warnings:
-    """What is doubtful or taken by default."""
+    """Warnings and default values."""
     return Warnings(revision, _doubts(text, file))
 
 
@@ -146,7 +146,7 @@ def _doubts(text: str, file: str) -> tuple[Problem, ...]:
 
 
 def scene(text: str, file: str) -> Mapping[str, Any]:
-    """What a viewer shows of a design, with its motions."""
+    """Data of a viewer for a design, with its motions."""
     return drawn(text, file).document()
 
 
@@ -175,20 +175,20 @@ def drawn(text: str, file: str) -> StageData:
 
 
 def matrix(found: Labelled) -> Matrix:
-    """A labelled matrix as a message has it."""
+    """A labelled matrix as a message."""
     said = found.to_json()
     unit = said["unit"] if isinstance(said["unit"], str) else tuple(map(tuple, said["unit"]))
     return Matrix(tuple(said["rows"]), tuple(said["columns"]), unit, tuple(map(tuple, said["values"])))
 
 
 def _loading(known: Bench) -> str:
-    """What is said where figures are those of the loaded stage; else empty."""
+    """Note on figures of the loaded stage; else empty."""
     return known.loaded.text if known.felt is not known and known.loaded is not None else ""
 
 
 @SESSION.keep(8)
 def judged(text: str, file: str) -> tuple[Verdict, ...]:
-    """The verdicts on a design. Raises `DesignError` where its text has errors."""
+    """The verdicts on a design. Raises `DesignError` for a text with errors."""
     known = bench(text, file)
     return judge(known.mechanism, known)
 
@@ -199,7 +199,7 @@ def _stored_verdicts(stored: str, file: str) -> tuple[Verdict, ...]:
 
 @SESSION.keep(8)
 def _reached(text: str, file: str) -> tuple[tuple[SingleAxis | None, HingeStress | None, Buckling | None], dict[str, str]]:
-    """Of the workspace what is shown: strokes, stress and buckling, as `workspace` has them; with reasons for what is not there."""
+    """The shown part of the workspace: strokes, stress and buckling, as in `workspace`; with reasons for missing ones."""
     known, attempt = bench(text, file), Attempts()
     strokes = attempt.of("workspace", lambda: single_strokes(known.mechanism, known.kinematics))
     if strokes is None:
@@ -212,7 +212,7 @@ def _reached(text: str, file: str) -> tuple[tuple[SingleAxis | None, HingeStress
 
 
 def _corrected(known: Bench) -> SingleAxis:
-    """Strokes along single axes, lost motion made up by command."""
+    """Strokes along single axes, lost motion corrected by command."""
     lost = known.felt.lost
     return single_axis(*with_stops(known.mechanism, known.kinematics, lost.correction, known.limits), provenance=lost.provenance)
 
@@ -308,7 +308,7 @@ def _key_results(known: Bench) -> tuple[tuple[str, Any], ...]:
 
 
 def all_figures(text: str, file: str) -> tuple[KeyFigure, ...]:
-    """Everything that designs are compared by, requirements first; nothing of a text with errors."""
+    """All figures for the comparison of designs, requirements first; nothing for a text with errors."""
     rows = (
         *requirement_figures(_stored_verdicts(text, file)),
         *_stored_figures("figures", text, file),

@@ -1,4 +1,4 @@
-"""The studio's server: pages and their socket on the loopback, for whoever has the token."""
+"""The studio's server: pages and their socket on the loopback, for clients with the token."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from flexstage.base.version import __version__
 
 HOST = "127.0.0.1"
 LARGEST = 8_000_000
-"""Bytes of the largest message of a page: a text of the largest design, with what JSON adds."""
+"""Bytes of the largest message of a page: a text of the largest design, with JSON overhead."""
 _PATIENCE = 10.0
-"""How long a page may take to say its token [s]."""
+"""Time limit for a page to send its token [s]."""
 _PAGES = 16
 _KEPT = (say.Welcome, say.Engine, say.State, say.Scene, say.Figures, say.Verdicts, say.Reach, say.Warnings, say.Jobs)
-"""Of what is pushed the newest alone is worth sending."""
+"""Pushed messages with only the newest sent."""
 _STUDIO, _SHOW = Path(__file__).with_name("static"), Path(show.__file__).with_name("static")
 _SCRIPT, _PLAIN = "text/javascript; charset=utf-8", "text/plain; charset=utf-8"
 _FILES: Mapping[str, tuple[Path, str]] = {
@@ -51,11 +51,11 @@ _REPORT_POLICY = (
     "sandbox allow-scripts allow-downloads allow-modals; default-src 'none'; script-src 'unsafe-inline'; "
     "style-src 'unsafe-inline'; img-src data: blob:; font-src data:"
 )
-"""Reports bring their own scripts, and reach neither the studio nor anything outside."""
+"""Reports contain their own scripts, and can access neither the studio nor the network."""
 
 
 class Studio:
-    """A server of one design. `url` is what a person opens; the token stands behind #, which browsers send to nobody."""
+    """A server of one design. `url` is the address to open; the token follows #, which browsers do not send."""
 
     def __init__(self, path: Path, port: int = 0) -> None:
         self.session = Session(Stored.read(path.resolve()), self._tell_all)
@@ -69,7 +69,7 @@ class Studio:
 
     @property
     def port(self) -> int:
-        """The port that it listens at."""
+        """The listening port."""
         return self._port
 
     @property
@@ -78,13 +78,13 @@ class Studio:
         return f"http://{HOST}:{self._port}/#{self.token}"
 
     async def start(self) -> None:
-        """Listen, and begin to compute. Raises `DesignError` where the port is taken."""
+        """Listen, and begin to compute. Raises `DesignError` if the port is in use."""
         try:
-            with contextlib.suppress(OSError):  # pages of a studio that was killed look for it there
+            with contextlib.suppress(OSError):  # pages of a killed studio use this port
                 self._server = await self._listen(self._last_port) if self._last_port and not self._port else None
             self._server = self._server or await self._listen(self._port)
         except OSError as error:
-            what = f"it cannot be listened at: {os.strerror(error.errno) if error.errno else error}"
+            what = f"cannot listen on this port: {os.strerror(error.errno) if error.errno else error}"
             raise refuse(f"--port {self._port}", what, "Choose another one, or leave it out") from None
         self._port = next(iter(self._server.sockets)).getsockname()[1]
         self.session.journal = Journal(self.session.stored.path, self._port, self.token)
@@ -113,17 +113,17 @@ class Studio:
                 await asyncio.wait_for(self._server.wait_closed(), _PATIENCE)
         await self.session.close()
 
-    # --- what is asked by GET ---
+    # --- GET requests ---
 
     def _request(self, _: ServerConnection, request: Request) -> Response | None:
         """The answer to a GET: a file of the table, a report, the socket (none), or a refusal."""
         hosts = {f"{HOST}:{self._port}", f"localhost:{self._port}"}
         if request.headers.get_all("Host") not in [[host] for host in hosts]:
-            return _answer(http.HTTPStatus.FORBIDDEN, "This server answers its own computer only.\n")
+            return _answer(http.HTTPStatus.FORBIDDEN, "This server accepts its own computer only.\n")
         path = request.path.partition("?")[0]
         if path == "/socket":
             if request.headers.get_all("Origin") not in [[f"http://{host}"] for host in hosts]:
-                return _answer(http.HTTPStatus.FORBIDDEN, "This socket answers the studio's own page only.\n")
+                return _answer(http.HTTPStatus.FORBIDDEN, "This socket accepts the page of the studio only.\n")
             if len(self._pages) >= _PAGES:
                 return _answer(http.HTTPStatus.SERVICE_UNAVAILABLE, f"{_PAGES} windows are open; close one.\n")
             return None
@@ -132,7 +132,7 @@ class Studio:
         if path == "/favicon.ico":
             return _answer(http.HTTPStatus.NO_CONTENT, b"")
         if path not in _FILES:
-            return _answer(http.HTTPStatus.NOT_FOUND, "There is no such page.\n")
+            return _answer(http.HTTPStatus.NOT_FOUND, "Page not found.\n")
         file, kind = _FILES[path]
         policy = _POLICY.format(host=request.headers["Host"])
         return _answer(http.HTTPStatus.OK, file.read_bytes(), kind, policy)
@@ -140,13 +140,13 @@ class Studio:
     def _report(self, name: str) -> Response:
         found = self.session.jobs.reports.get(name)
         if found is None or not found.is_file():
-            return _answer(http.HTTPStatus.NOT_FOUND, "There is no such report.\n")
+            return _answer(http.HTTPStatus.NOT_FOUND, "Report not found.\n")
         return _answer(http.HTTPStatus.OK, found.read_bytes(), "text/html; charset=utf-8", _REPORT_POLICY)
 
     # --- the socket ---
 
     async def _page(self, connection: ServerConnection) -> None:
-        """One window, from its token to its end."""
+        """Serve one window, from its token to its end."""
         if not await self._is_let_in(connection):
             return
         self._count += 1
@@ -183,7 +183,7 @@ class Studio:
         return False
 
     def _hear(self, text: str | bytes, page: int, outbox: Outbox) -> None:
-        """Begin to do what a page asks."""
+        """Start the handling of a page's request."""
         try:
             request = decode(text)
         except DesignError as error:
@@ -204,16 +204,16 @@ class Studio:
 
 
 class Outbox:
-    """What a page is still to be told: answers in order, of what is pushed the newest of each kind. A slow page holds up nobody."""
+    """Messages to a page: answers in order, of pushed ones the newest of each kind. A slow page delays no other."""
 
     def __init__(self) -> None:
         self._waiting: deque[say.Said] = deque()
         self._filled = asyncio.Event()
         self.sent = 0
-        """Bytes that went out."""
+        """Number of sent bytes."""
 
     def put(self, message: say.Said) -> None:
-        """Tell it when its turn comes."""
+        """Queue a message."""
         if isinstance(message, _KEPT):
             kept = [each for each in self._waiting if type(each) is not type(message)]
             if len(kept) < len(self._waiting):
@@ -222,7 +222,7 @@ class Outbox:
         self._filled.set()
 
     async def send(self, connection: ServerConnection) -> None:
-        """Send what waits, until the page goes."""
+        """Send queued messages, until the page closes."""
         with contextlib.suppress(ConnectionClosed):
             while True:
                 await self._filled.wait()
@@ -254,7 +254,7 @@ def _answer(
 
 
 async def run(path: Path, port: int, started: Any) -> None:
-    """Serve a design until it is interrupted; `started` is told the address."""
+    """Serve a design until an interruption; `started` is called with the address."""
     studio = Studio(path, port)
     await studio.start()
     try:

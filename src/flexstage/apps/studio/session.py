@@ -1,4 +1,4 @@
-"""A design that is open in the studio: what pages ask of it, what is computed of it, what they are told."""
+"""An open design in the studio: requests of pages, computations, and messages."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from flexstage.apps.studio.design.palette import snippets
 from flexstage.apps.studio.engine import Outcome, failure, problem
 from flexstage.apps.studio.helper import Helper, Urgency, nobody
 from flexstage.apps.studio.jobs import Jobs
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.finding import DesignError, refuse, suggest_nearest
 
 _QUIET = 0.3
-"""A computation of less time is not announced [s]."""
+"""Duration up to which a computation is not announced [s]."""
 _STALE = 3.0
-"""After so long what is computed of a text that is no more is ended with its process [s]."""
+"""Time after which a computation of an outdated text is ended with its process [s]."""
 _STAGES: tuple[tuple[str, str], ...] = (
     ("figures", "stiffness, lost motion, modes and responses"),
     ("verdicts", "requirements"),
@@ -30,7 +30,7 @@ _STAGES: tuple[tuple[str, str], ...] = (
     ("scene", "the geometry"),
     ("warnings", "warnings"),
 )
-"""What is computed of a design, in this order, and what it is called."""
+"""Computed stages of a design, in this order, and their names."""
 
 _TASKS: Mapping[type[Any], str] = {
     say.Part: "card",
@@ -40,32 +40,32 @@ _TASKS: Mapping[type[Any], str] = {
     say.Gaps: "clearances",
     say.Solid: "solid_modes",
 }
-"""Requests that one task answers."""
+"""Requests with one task as answer."""
 _PANES = ("stage", "motions", "reach")
 
 Tell = Callable[[say.Said], None]
 
 
 class RefusedError(Exception):
-    """What a process refused, with its problems."""
+    """A refusal by a process, with its problems."""
 
 
 class Session:
-    """One design for all pages. `tell` says something to all of them."""
+    """One design for all pages. `tell` sends a message to all of them."""
 
     def __init__(self, stored: Stored, tell: Tell) -> None:
         self.stored = stored
         self.journal = Journal(stored.path)
         self.drafts = self._found_drafts()
-        """Unsaved texts of studios that have ended, by the name of their journal."""
+        """Unsaved texts of ended studios, by the name of their journal."""
         self._unprotected = ""
         self.history = History(stored.text)
         self.reading: Reading | None = None
         self.problems: tuple[say.Problem, ...] = ()
         self.sound = ""
-        """The last text that was a design."""
+        """The last valid text."""
         self.shown: dict[type[say.Said], say.Said] = {}
-        """What a page that comes is told, by kind."""
+        """Messages to a new page, by kind."""
         self._tell = tell
         self._model = Helper(self._died)
         self._reader: Helper | None = None
@@ -80,17 +80,17 @@ class Session:
         """Errors of the computation by its stage."""
         self._pages: dict[int, tuple[str, ...]] = {}
         self._last: dict[str, tuple[Any, ...]] = {}
-        """What each stage was computed of last."""
+        """Last input of each stage."""
         self._took: dict[str, tuple[float, int]] = {}
         self._work: set[asyncio.Task[Any]] = set()
         self._changing, self._computing = asyncio.Lock(), asyncio.Lock()
         self.jobs = Jobs(stored.path, self._push, self._keep_optimum)
 
-    # --- beginning and end ---
+    # --- start and end ---
 
     async def open(self) -> None:
-        """Read the text and compute what it says."""
-        self._push(say.Engine("starts", "The process that computes starts", None))
+        """Read the text and compute its results."""
+        self._push(say.Engine("starts", "The computing process starts", None))
         await self._read()
 
     async def close(self) -> None:
@@ -103,12 +103,12 @@ class Session:
 
     @property
     def spent(self) -> float:
-        """Processor time of what was computed [s]."""
+        """Processor time of the computations [s]."""
         return sum(each.spent for each in self._helpers)
 
     @property
     def processes(self) -> tuple[int, ...]:
-        """Numbers of the processes that compute."""
+        """Numbers of the computing processes."""
         return tuple(each.process for each in self._helpers if each.process is not None)
 
     @property
@@ -118,25 +118,25 @@ class Session:
     # --- requests ---
 
     async def answer(self, request: Any, page: int, tell: Tell) -> None:
-        """Answer a request of a page, or refuse it, with `tell`; where there is nothing to say, that it is done."""
+        """Answer a request of a page, or refuse it, with `tell`; without a result, report that it is done."""
         try:
             told = await self._answers[type(request)](self, request, page, tell)
         except RefusedError as error:
             tell(say.Refusal(request.id, error.args[0]))
         except DesignError as error:
             tell(say.Refusal(request.id, tuple(map(problem, error.findings)), stale=isinstance(request, say.Edit | say.Save)))
-        except Exception as error:  # noqa: BLE001 (one request that fails is no reason to lose the others)
+        except Exception as error:  # noqa: BLE001 (a failed request must not stop the others)
             tell(say.Refusal(request.id, (failure(type(request).__name__.lower(), error),)))
         else:
             tell(told or say.Done(request.id, self.history.revision))
 
     async def _edit(self, request: say.Edit, page: int, _: Tell) -> None:
-        """Take the page's text; refused where another page changed it since this one knew it."""
+        """Accept the page's text; refused after a change by another page unknown to this one."""
         self.history.require_known(request.revision, page)
         self._take(self.history.change(request.text.replace("\r\n", "\n"), page))
 
     async def _set(self, request: say.Set | say.Rest, page: int, _: Tell) -> None:
-        """Write a number into the text. Where the text was changed meanwhile, nothing is written."""
+        """Write a number into the text; refused if the text was changed meanwhile."""
         value = request.text if isinstance(request, say.Set) else request.value
         async with self._changing:
             text, revision = self.history.text, self.history.revision
@@ -159,7 +159,7 @@ class Session:
         self._start(self._read())
 
     async def _reload(self, _: say.Reload, page: int, __: Tell) -> None:
-        """Take the text of the file, which may have changed; the one that was here stays in the history."""
+        """Read the text of the file, which may have changed; the present one remains in the history."""
         self.stored = Stored.read(self.stored.path)
         same = self.stored.text == self.history.text
         self._take(self.history.change(self.stored.text, page))
@@ -168,10 +168,10 @@ class Session:
             self._start(self._read())
 
     async def _recover(self, request: say.Recover, page: int, _: Tell) -> None:
-        """Take an unsaved text of a studio that has ended, or discard it; one that is taken is this studio's to protect from then on."""
+        """Restore an unsaved text of an ended studio, or discard it; this studio then protects a restored one."""
         draft = self.drafts.get(request.draft)
         if draft is None:
-            raise refuse(request.draft, "there is no unsaved text of this name", "Reload the page")
+            raise refuse(request.draft, "unknown unsaved text", "Reload the page")
         if request.keep:
             self.history = replace(self.history, pins={**draft.pins, **self.history.pins})
             self._take(self.history.change(draft.text, page))
@@ -183,7 +183,7 @@ class Session:
 
     async def _pin(self, request: say.Pin, *_: Any) -> None:
         if request.keep and request.name not in self.history.pins and len(self.history.pins) >= 12:
-            raise refuse(request.name, "twelve designs are pinned already", "Let one go first")
+            raise refuse(request.name, "twelve designs are pinned already", "Remove one first")
         self.history = self.history.pin(request.name, keep=request.keep)
         self._protect()
         self._push_state()
@@ -191,11 +191,11 @@ class Session:
     async def _recall(self, request: say.Recall, page: int, _: Tell) -> None:
         texts = {"": self.stored.text, **self.history.pins}
         if request.name not in texts:
-            raise refuse(request.name, "no design is pinned under this name", f"There are {', '.join(self.history.pins) or 'none'}")
+            raise refuse(request.name, "no design is pinned under this name", suggest_nearest(request.name, self.history.pins))
         self._take(self.history.change(texts[request.name], page))
 
     async def _compare(self, request: say.Compare, *_: Any) -> say.Said:
-        """Figures of the file, of all pinned designs and of the one that is shown."""
+        """Figures of the file, of all pinned designs and of the present one."""
         texts = {"file": self.stored.text, **self.history.pins, "now": self._design}
         tables = [await self._asked(self._model, "compared", text, self._file) for text in texts.values()]
         known = {each.name: each for table in tables for each in table}
@@ -205,7 +205,7 @@ class Session:
         return say.Comparison(request.id, tuple(texts), rows, values)
 
     async def _drag(self, request: say.Drag, *_: Any) -> say.Said | None:
-        """Frequencies where a slider is; of requests that come faster than they are answered, the newest."""
+        """Frequencies at a slider's position; for requests faster than the answers, the newest."""
         call = ("drag", self._design, self._file, request.address, request.value)
         outcome = await self._quick.ask(*call, wanted=self._is_newest(request))
         return outcome and say.Frequencies(request.id, request.address, request.value, outcome.value or (), outcome.problems)
@@ -214,13 +214,13 @@ class Session:
         return await self._asked_while(self._is_newest(request), self._model, "posed", request.id, request.inputs)
 
     async def _ask(self, request: Any, *_: Any) -> say.Said:
-        """What one task answers, of what the request says or of the design as it was computed."""
+        """The result of one task, for the request or the computed design."""
         helper = self._quick if isinstance(request, say.Line) else self._model
         _id, *own = vars(request).values()
         return await self._asked(helper, _TASKS[type(request)], self._design, self._file, request.id, *(own or [self._computed]))
 
     async def _respond(self, request: say.Respond, *_: Any) -> None:
-        """The choice of responses, from now on; refused where the stage has none of that name."""
+        """Change the choice of responses; refused if the stage has none of that name."""
         choice = (request.inputs, request.outputs, request.low, request.high)
         found = await self._asked(self._model, "figures", self._design, self._file, self.stored.text, self._computed, choice)
         if "response" in found.missing:
@@ -229,13 +229,13 @@ class Session:
         self._push(found)
 
     async def _derive(self, request: say.Derive, *_: Any) -> say.Said | None:
-        """In a process of its own, as it takes long; nothing of a text that is no more."""
+        """Run in a separate process, because of its duration; nothing for an outdated text."""
         self._slow = self._slow or Helper(self._died)
         revision = self._computed
         return await self._asked_while(lambda: self._computed == revision, self._slow, "slopes", request.id, revision)
 
     async def _travel(self, request: say.Travel, _: int, tell: Tell) -> say.Said:
-        """In a process of its own, as it takes long, and is ended with it when it is given up; a path that is computed gives way."""
+        """Run in a separate process, which ends with an abort, because of its duration; a new path replaces the running one."""
         self._far = self._far or Helper(self._died)
         self._far.start_anew()
         return await self._asked(self._far, "travelled", self._design, self._file, self._computed, request, heard=tell)
@@ -285,7 +285,7 @@ class Session:
     }
 
     def _take(self, history: History) -> None:
-        """Another text: it is read, then computed."""
+        """Accept another text: it is read, then computed."""
         changed = history.revision != self.history.revision
         self.history = history
         if changed:
@@ -293,7 +293,7 @@ class Session:
             self._start(self._read())
 
     def _protect(self) -> None:
-        """Bring what is not saved to the disk, before the change is acknowledged; where that cannot be, pages show it."""
+        """Write unsaved changes to the disk before they are acknowledged; pages show a failure."""
         try:
             if self.history.text == self.stored.text:
                 self.journal.clear()
@@ -304,7 +304,7 @@ class Session:
             self._unprotected = str(error)
 
     def _found_drafts(self) -> dict[str, Draft]:
-        """Texts that studios have left unsaved; a journal whose text the file has by now is removed."""
+        """Unsaved texts of earlier studios; a journal with the text of the file is removed."""
         found = drafts(self.stored.path)
         self._journals = {place.name: place for place in found}
         for place in [place for place, draft in found.items() if draft.text == self.stored.text]:
@@ -328,7 +328,7 @@ class Session:
             self._start(self._compute(revision, text))
 
     async def _compute(self, revision: int, text: str) -> None:
-        """All stages of a revision that somebody looks at, as long as it is the present one."""
+        """Compute all shown stages of a revision, until it is outdated."""
         if self._model.busy(Urgency.SOON) > _STALE:
             self._model.start_anew()
         async with self._computing:
@@ -352,10 +352,10 @@ class Session:
                 self._warnings = outcome.value.warnings
                 self._push_state()
             if stage == "figures" and self._reader is None:
-                self._reader = Helper(self._died)  # not before: it takes processor time to start
+                self._reader = Helper(self._died)  # not earlier, because its start takes processor time
 
     def _report(self, stage: str, problems: tuple[say.Problem, ...]) -> None:
-        """Show the errors of a stage of the computation, in place of those that it had before."""
+        """Show the errors of a stage of the computation, in place of its earlier ones."""
         if problems != self._failures.get(stage, ()):
             self._failures[stage] = problems
             self._push_state()
@@ -366,7 +366,7 @@ class Session:
         return self.problems or tuple(dict.fromkeys(each for found in self._failures.values() for each in found))
 
     def _work_of(self, stage: str, revision: int, text: str) -> tuple[Any, ...] | None:
-        """Task and arguments of a stage; nothing where no page shows what it gives."""
+        """Task and arguments of a stage; nothing if no page shows its result."""
         if stage == "figures":
             return stage, text, self._file, self.stored.text, revision, self._choice
         if stage == "errors":
@@ -379,19 +379,19 @@ class Session:
         return (stage, text, self._file, self.stored.text, revision) if stage == "verdicts" or self._looks("reach") else None
 
     def _looks(self, pane: str) -> bool:
-        """Whether a page shows it; before the first one comes, everything is computed."""
+        """Whether a page shows a pane; before the first page, everything is computed."""
         return not self._pages or any(pane in panes for panes in self._pages.values())
 
     def enter(self, page: int) -> None:
-        """A page comes; it shows everything until it says what."""
+        """Add a page; it shows everything until it sends its panes."""
         self._pages[page] = _PANES
 
     def leave(self, page: int) -> None:
-        """A page goes."""
+        """Remove a page."""
         self._pages.pop(page, None)
 
     async def _announced(self, called: str, stage: str, work: tuple[Any, ...], wanted: Callable[[], bool]) -> Outcome | None:
-        """A stage computed; told as it begins where it takes long, and that it is ready after that, a start or an end of the process."""
+        """Compute a stage; announce a long one at its start, and that it is ready after that, a start or an end of the process."""
         links = len(self.reading.links) if self.reading else 0
         left = expected(stage, links, self._took)
         if left > _QUIET:
@@ -432,15 +432,15 @@ class Session:
         self._tell(message)
 
     def _keep_optimum(self, text: str) -> None:
-        """A better design that a job found is pinned."""
+        """Pin a better design from a job."""
         self.history = replace(self.history, pins={**self.history.pins, "optimum": text})
         self._protect()
         self._push_state()
 
     def _died(self, words: str) -> None:
-        self._push(say.Engine("ended", f"The process that computes ended and is started anew: {words}", None))
+        self._push(say.Engine("ended", f"The computing process ended and is restarted: {words}", None))
 
-    # --- asking the processes ---
+    # --- requests to the processes ---
 
     @property
     def _file(self) -> str:
@@ -448,46 +448,46 @@ class Session:
 
     @property
     def _design(self) -> str:
-        """The text that is computed: the last one that was a design."""
+        """The computed text: the last valid one."""
         return self.sound or self.history.text
 
     @property
     def _quick(self) -> Helper:
-        """Who reads texts and computes what a slider asks."""
+        """The process for reading texts and for sliders."""
         return self._reader or self._model
 
     async def _asked(self, helper: Helper, *call: Any, heard: Callable[[Any], None] = nobody) -> Any:
-        """The value of a task; raises `RefusedError` where it is refused."""
+        """The value of a task; raises `RefusedError` after a refusal."""
         outcome = await helper.ask(*call, heard=heard)
         if outcome is None or outcome.problems:
             raise RefusedError(outcome.problems if outcome else ())
         return outcome.value
 
     async def _asked_while(self, wanted: Callable[[], bool], helper: Helper, task: str, *arguments: Any) -> Any:
-        """What a task answers of the design; nothing where that is no longer wanted when its turn comes."""
+        """The result of a task on the design; nothing if it is no longer wanted at its turn."""
         outcome = await helper.ask(task, self._design, self._file, *arguments, wanted=wanted)
         if outcome is not None and outcome.problems:
             raise RefusedError(outcome.problems)
         return outcome and outcome.value
 
     def _is_newest(self, request: Any) -> Callable[[], bool]:
-        """Whether no other request of this kind came since."""
+        """Whether no later request of this kind exists."""
         self._newest[type(request)] = request
         return lambda: self._newest[type(request)] is request
 
     def _start(self, work: Coroutine[Any, Any, None]) -> None:
-        """Work in the background, ended with the session."""
+        """Run in the background until the end of the session."""
         task = asyncio.create_task(work)
         self._work.add(task)
         task.add_done_callback(self._work.discard)
 
 
 _FIRST: Mapping[str, float] = {"figures": 0.1, "verdicts": 0.05, "reach": 0.1, "scene": 0.2, "warnings": 0.2, "errors": 0.1}
-"""Seconds that the stages of a design of thirty links take, before one was timed (benchmarks/studio.py)."""
+"""Duration of the stages of a design of thirty links before the first measurement [s] (benchmarks/studio.py)."""
 
 
 def expected(stage: str, links: int, took: Mapping[str, tuple[float, int]]) -> float:
-    """Seconds that a stage will take: as the last time, or as a small design, by the square of the number of links.
+    """Expected duration of a stage [s]: from the last time, or a small design, with the square of the number of links.
 
     >>> expected("figures", 300, {}), expected("figures", 10, {"figures": (2.0, 20)})
     (10.0, 0.5)

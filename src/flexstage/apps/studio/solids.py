@@ -1,4 +1,4 @@
-"""Finite elements beside theory in the studio, as far as a verification has left them in the cache: nothing is computed for it."""
+"""Finite elements compared with theory in the studio, from the cache of a verification: nothing is computed."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from flexstage.solid.results.modes import fea_modes_from_cache
 from flexstage.solid.show.sections import fea_motions
 from flexstage.spatial.frame import COMPONENTS
 
-_ABSENT = "The cache holds no finite elements of this stage as it is: Verify computes them"
+_ABSENT = "The cache contains no finite elements of this stage: Verify computes them"
 _VERIFIED = 0.01
-"""The accuracy that `verify` asks for unless it is told another one."""
+"""Default accuracy of `verify`."""
 
 
 def solid_modes(text: str, file: str, to: int, revision: int) -> SolidModes:
-    """The platform's modes by finite elements with those of theory they are paired with."""
+    """The platform's modes by finite elements with the paired ones of theory."""
     known = bench(text, file)
     found = fea_modes_from_cache(known.mechanism, Cache())
     if found is None:
@@ -60,13 +60,13 @@ def _modes(text: str, file: str, found: FeaModes, pairs: dict[int, Pair]) -> Ite
 
 
 def hinge_facts(mechanism: Mechanism, link: PlacedLink) -> tuple[Fact, ...]:
-    """The direct compliances of a link by beam theory over those by finite elements, where `verify` has left these; else nothing."""
+    """The direct compliances of a link by beam theory over those by finite elements, if `verify` has stored these; else nothing."""
     try:
         known = {name: each for name, each in distinct_hinges(mechanism).items() if link.drawn in each.links}
         jobs = hinge_jobs(turned_forms(known), accuracy_of(_VERIFIED, None))
         stored = {job.name: find(Cache(), job.key, job.name, HINGES) for job in jobs}
         return tuple(fact for name, each in known.items() for fact in _facts(link, stored[name], each))
-    except DesignError:  # a part without a shape, or one whose compliance theory does not give
+    except DesignError:  # a part without a shape, or without a compliance in theory
         return ()
 
 

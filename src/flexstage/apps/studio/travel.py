@@ -1,4 +1,4 @@
-"""Paths at large displacements that somebody asks of a design in the studio."""
+"""Paths at large displacements of a design in the studio."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from flexstage.show.viewer.animation import stroke_data
 
 _MOST = 201
 _FOUND = 0.1
-"""Share of the work that is done when the equilibria are found; the rest is what is asked of each."""
+"""Fraction of the work for the equilibria; the remainder is for results at each."""
 
 
 def travelled(text: str, file: str, revision: int, asked: Travel, tell: Callable[[Underway], None]) -> Travelled:
-    """A path of the design that a text says, counted from where the stage rests, as the viewer plays it; `tell` hears how far it is."""
+    """A path of the design in a text, relative to static equilibrium, for the viewer; `tell` receives its progress."""
     mechanism = design(text, file)
     model = nonlinear(mechanism)
     wanted = _stated(mechanism, asked.path) if asked.path else _own(model, asked)
@@ -44,14 +44,14 @@ def travelled(text: str, file: str, revision: int, asked: Travel, tell: Callable
 
 def _stated(mechanism: Mechanism, name: str) -> Course:
     if name not in mechanism.paths:
-        raise refuse(f"paths.{name}", "the design states no such path", suggest_nearest(name, mechanism.paths))
+        raise refuse(f"paths.{name}", "unknown path", suggest_nearest(name, mechanism.paths))
     return course(mechanism, name)
 
 
 def _own(model: Nonlinear, asked: Travel) -> Course:
-    """A path that the page states."""
+    """A path defined by the page."""
     if not 2 <= asked.points <= _MOST:
-        raise refuse("points", f"{asked.points} points were asked for", f"Ask for 2 to {_MOST}")
+        raise refuse("points", f"must be 2 to {_MOST} points (got {asked.points})", "Change the number of points")
     quantity = quantity_of(model, asked.drive)
     low, high = (parse(value, quantity, where=where) if value else 0.0 for value, where in ((asked.start, "from"), (asked.end, "to")))
     return Course(asked.drive, np.linspace(low, high, asked.points), loads_of(model, asked.loads), (), 1.0)

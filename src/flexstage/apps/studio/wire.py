@@ -1,4 +1,4 @@
-"""Messages of the studio as JSON text: written from their classes, and read back with every mistake told."""
+"""Messages of the studio as JSON text: written from their classes, and read back with all errors reported."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.base.finding import refuse
 _ADVICE = "Reload the page: it is of another version than its server"
 _Kinds: TypeAlias = Mapping[str, type]
 _LARGEST = 2**53 - 1
-"""The largest integer that a page and this server read alike."""
+"""The largest integer that is exact in a page and in this server."""
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
@@ -28,13 +28,13 @@ def encode(message: Said | Request) -> str:
 
 
 def decode(text: str | bytes, union: Any = Request) -> Any:
-    """The request in a text, or what the server said (`union`); raises `DesignError` where it is none."""
+    """The request in a text, or the server's message (`union`); raises `DesignError` for another text."""
     return _read(text, _kinds(union))
 
 
 def floats(values: Any) -> Floats:
-    """An array as it goes over the wire."""
-    import numpy as np  # the server, which computes nothing, loads none
+    """An array as a message."""
+    import numpy as np  # the server does not load numpy
 
     found = np.ascontiguousarray(values, dtype="<f8")
     return Floats(found.shape, base64.b64encode(found.tobytes()).decode("ascii"))
@@ -97,14 +97,14 @@ def _value(hint: Any, found: Any, where: str) -> Any:
 
 
 def _is_sound(found: Any) -> bool:
-    """Whether a value is what JSON has in any language: a finite float, an integer that a float holds exactly, text that is Unicode."""
+    """Whether a value is portable JSON: a finite float, an integer that a float represents exactly, text that is Unicode."""
     if isinstance(found, float):
         return math.isfinite(found)
     return abs(found) <= _LARGEST if isinstance(found, int) else not isinstance(found, str) or _SURROGATE.search(found) is None
 
 
 def _of_union(hints: tuple[Any, ...], found: Any, where: str) -> Any:
-    """The value by the one of a union's hints that its type fits, by the last one where none does."""
+    """The value by the first hint of a union that fits its type, or the last one."""
     if found is None and type(None) in hints:
         return None
     rest = [hint for hint in hints if hint is not type(None)]
@@ -123,11 +123,11 @@ def _record(kind: Any, found: Any, where: str) -> Any:
 
 
 def _wrong(where: str, found: Any) -> Any:
-    raise refuse(where, f"found {_shown(found)} where something else is expected", _ADVICE)
+    raise refuse(where, f"must be something else (got {_shown(found)})", _ADVICE)
 
 
 def _shown(found: Any) -> str:
-    """A value that its field cannot have: what is out of range by that, others by their kind."""
+    """A wrong value as text: an integer out of range by its length, others by their type."""
     if type(found) is int and abs(found) > _LARGEST:
         return f"an integer of {len(str(abs(found)))} digits"
     if isinstance(found, str) and not _is_sound(found):

@@ -1,7 +1,7 @@
-"""Jobs in processes beside the caller: what crashes, hangs or takes all memory there takes nothing with it.
+"""Jobs in worker processes, which isolate crashes, hangs and memory exhaustion from the caller.
 
-A `Worker` is a process that has one function and calls it as often as it is asked. It runs this very module, not a copy of the caller: that
-works alike from scripts without a guard, notebooks and tests. It ends with its caller, however that ends, and leaves no file.
+A `Worker` is a process that calls one function repeatedly. It runs this module, not a copy of the caller: valid in scripts without a guard,
+notebooks and tests. It ends with its caller in any case, and leaves no file.
 """
 
 from __future__ import annotations
@@ -32,16 +32,15 @@ from flexstage.base.finding import DesignError
 _ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NGS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 _KEPT = {"hugetlb": 1, "mmap_threshold": 2**25, "trim_threshold": 2**28}
 _MEMORY = {"GLIBC_TUNABLES": ":".join(f"glibc.malloc.{name}={value}" for name, value in _KEPT.items())}
-"""Where the C library is GNU's, large matrices come in pages of megabytes, of which there are fewer to hand out, and what is freed is kept
-for the next ones, up to a quarter of a gigabyte: fronts come and go by the thousand."""
+"""GNU C library: large pages for large matrices, and up to a quarter of a gigabyte of freed memory is kept for reuse (sparse fronts)."""
 _MAIN = "from flexstage.base.processes.jobs import main; main()"
 _LENGTH = struct.Struct("<Q")
 _LIVES = 3
-"""How many processes may die over one call before it is given up."""
+"""Number of processes that may fail in one call."""
 
 
 class Word(Enum):
-    """What is heard of a worker: something it tells on the way, the result, an exception that the function raised, its end."""
+    """Kind of a worker's message: intermediate, result, exception of the function, end of the process."""
 
     TOLD = "told"
     DONE = "done"
@@ -50,11 +49,11 @@ class Word(Enum):
 
 
 Heard: TypeAlias = "queue.SimpleQueue[tuple[Worker, Word, Any]]"
-"""Where workers are heard: what each tells, in order; with `ENDED` comes the exit code, negative for a signal."""
+"""Queue of workers' messages in order; `ENDED` has the exit code, negative for a signal."""
 
 
 def cores() -> int:
-    """Cores this process may use.
+    """Return the number of cores available to this process.
 
     >>> cores() >= 1
     True
@@ -63,7 +62,7 @@ def cores() -> int:
 
 
 def environment() -> dict[str, str]:
-    """The caller's environment for a process of one thread that finds this package where the caller found it, with large pages of memory.
+    """Return the environment of a single-threaded process with the caller's import path, and large pages.
 
     >>> environment()["OMP_NUM_THREADS"]
     '1'
@@ -74,9 +73,9 @@ def environment() -> dict[str, str]:
 
 
 class Worker:
-    """A process that calls `function(line, *arguments)`; what it says is put into `heard`. Raises `OSError` where it cannot be started.
+    """Process that calls `function(line, *arguments)`, with messages in `heard`. Raises `OSError` if it cannot be started.
 
-    `DesignError`, `MemoryError` and `OSError` come back as they are. Other exceptions end the process with code 1, and `last_words` tell.
+    `DesignError`, `MemoryError` and `OSError` are returned unchanged. Other exceptions end the process with code 1; see `last_words`.
 
     >>> worker = Worker(isinstance)
     >>> worker.call(Line), worker.end()
@@ -93,8 +92,8 @@ class Worker:
                 stdout=subprocess.PIPE,
                 stderr=self._log,
                 env=environment(),
-                cwd=tempfile.gettempdir(),  # for what libraries may leave there
-                start_new_session=True,  # an interruption from the keyboard reaches the caller alone, which ends the process
+                cwd=tempfile.gettempdir(),  # for files left by libraries
+                start_new_session=True,  # a keyboard interrupt reaches only the caller, which ends the process
             )
         except BaseException:
             self._log.close()
@@ -104,13 +103,13 @@ class Worker:
         self._send(function)
 
     def ask(self, *arguments: Any) -> None:
-        """Let it call its function, or answer what it waits for; heard at once where it has ended."""
+        """Start a call of its function, or answer its question; `ENDED` at once if it has ended."""
         self._send(arguments)
 
     def call(self, *arguments: Any) -> Any:
-        """The function's result, or the exception it raised, waited for by a worker that is heard by nobody else.
+        """Return the function's result, or raise its exception; for a worker without other listeners.
 
-        Raises `EOFError` where it crashed or was ended. The process has ended then, as it has after an interruption.
+        Raises `EOFError` if it crashed or was ended. The process has then ended, as after an interrupt.
         """
         try:
             self.ask(*arguments)
@@ -125,7 +124,7 @@ class Worker:
         return value
 
     def resident(self) -> float:
-        """Memory it has [bytes]; 0 where the system does not tell."""
+        """Resident memory [bytes]; 0 if unknown."""
         try:
             import psutil
 
@@ -134,13 +133,13 @@ class Worker:
             return 0.0
 
     def last_words(self) -> str:
-        """The last line it wrote to its standard error."""
+        """Last line of its standard error."""
         self._log.seek(0)
         lines = self._log.read().decode(errors="replace").strip().splitlines()
         return lines[-1][:300] if lines else "it said nothing"
 
     def end(self) -> None:
-        """End the process, whatever it does."""
+        """End the process at once."""
         self.process.kill()
         self._listener.join()
         with contextlib.suppress(OSError):
@@ -149,7 +148,7 @@ class Worker:
 
     def _send(self, value: Any) -> None:
         data = pickle.dumps(value)
-        with contextlib.suppress(OSError, ValueError):  # it died, or was ended by another thread: heard soon
+        with contextlib.suppress(OSError, ValueError):  # it died, or was ended by another thread: reported soon
             _write(_as_pipe(self.process.stdin), data)
 
     def _listen(self) -> None:
@@ -161,17 +160,17 @@ class Worker:
 
 @dataclass(frozen=True)
 class CallError(Exception):
-    """A call that failed: its arguments, and the exception; none where processes died over it again and again."""
+    """Failed call: its arguments, and the exception; none if processes died repeatedly."""
 
     arguments: tuple[Any, ...]
     error: Exception | None
 
 
 def results(function: Callable[..., Any], calls: Iterable[tuple[Any, ...]], workers: int) -> Iterator[tuple[tuple[Any, ...], Any]]:
-    """Arguments and result of each call of `function(line, *arguments)`, as it is done, by so many processes.
+    """Yield arguments and result of each call of `function(line, *arguments)` on completion, by several processes.
 
-    The function is sent to each process once, the arguments as they come. A process that dies gives its call to another. Raises `CallError`
-    where a call failed. When the iteration is left, all processes end.
+    The function is sent to each process once, arguments individually. The call of a dead process is repeated by another. Raises `CallError`
+    for a failed call. All processes end with the iteration.
 
     >>> sorted(result for _, result in results(isinstance, [(Line,), (int,)], 2))
     [False, True]
@@ -207,42 +206,42 @@ def results(function: Callable[..., Any], calls: Iterable[tuple[Any, ...]], work
             worker.end()
 
 
-# --- the process itself ---
+# --- worker process ---
 
 
 class Line:
-    """What a function has of its caller: it may tell something on the way, and wait for an answer."""
+    """Connection of a function to its caller: intermediate messages and answers."""
 
     def __init__(self, asked: queue.SimpleQueue[bytes], answers: IO[bytes]) -> None:
         self._asked, self._answers = asked, answers
 
     def tell(self, value: Any) -> None:
-        """Tell the caller."""
+        """Send a message to the caller."""
         self.say(Word.TOLD, value)
 
     def say(self, word: Word, value: Any) -> None:
-        """Tell the caller, and what it is."""
+        """Send a message of a kind to the caller."""
         _write(self._answers, pickle.dumps((word, value)))
 
     def hear(self) -> Any:
-        """What the caller sends next."""
+        """Return the next message of the caller."""
         return pickle.loads(self._asked.get())  # noqa: S301 (written by the caller, whose process this is)
 
 
 def limit_memory(most: float) -> None:
-    """Let this process fail at so much memory [bytes] rather than take the machine's; it leaves no core files."""
+    """Limit the memory of this process [bytes], without core files."""
     _limit("RLIMIT_CORE", 0)
     if most != float("inf"):
         _limit("RLIMIT_DATA", int(most))
 
 
 def limit_processor(seconds: float) -> None:
-    """Let the system end this process, by SIGXCPU, after so much more processor time [s]; a busy machine makes it live longer."""
+    """End this process by SIGXCPU after additional CPU time [s], independent of the machine's load."""
     _limit("RLIMIT_CPU", math.ceil(time.process_time() + seconds))
 
 
 def _limit(name: str, most: int) -> None:
-    """Not where the system sets no such limits, and not above one that others set."""
+    """Set a limit if the system supports it, not above an existing one."""
     with contextlib.suppress(ImportError, ValueError, OSError):
         import resource
 
@@ -251,7 +250,7 @@ def _limit(name: str, most: int) -> None:
 
 
 def main() -> None:
-    """Call as asked on standard input; what libraries print goes to standard error."""
+    """Serve calls from standard input; output of libraries goes to standard error."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     faulthandler.enable()
     asked: queue.SimpleQueue[bytes] = queue.SimpleQueue()
@@ -262,7 +261,7 @@ def main() -> None:
         _serve(line)
     except BaseException:  # noqa: BLE001 (whatever it is, this process is lost)
         traceback.print_exc()
-        os._exit(1)  # an orderly end would wait for the thread that listens
+        os._exit(1)  # a regular exit would wait for the listener thread
 
 
 def _serve(line: Line) -> None:
@@ -275,7 +274,7 @@ def _serve(line: Line) -> None:
 
 
 def _listen(asked: queue.SimpleQueue[bytes]) -> None:
-    """Pass on what is asked until standard input closes: then nobody waits, and this process ends whatever it does."""
+    """Forward messages until standard input closes; then end this process."""
     with contextlib.suppress(EOFError):
         while True:
             asked.put(_read_frame(sys.stdin.buffer))

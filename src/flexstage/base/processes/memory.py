@@ -1,4 +1,4 @@
-"""Memory: what may be planned with, and the refusal of what needs more, with the numbers compared, before it is taken."""
+"""Memory: available size, and refusal of larger requirements before allocation."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from pathlib import Path
 from flexstage.base.finding import refuse
 
 _USABLE = 0.9
-"""Share of what is left that may be planned with."""
+"""Usable share of free memory."""
 ALWAYS = 3e7
-"""Bytes that a process which runs has left, or is about to fail in any case."""
+"""Memory requirement [bytes] below which no check is made."""
 
 
 def require_memory(where: str, what: str, needed: float, fits: Callable[[float], str]) -> None:
-    """Refuse what needs more memory [bytes] than there is; `fits` says by the memory that is there what would fit into it.
+    """Refuse a memory requirement [bytes] above the available memory; `fits` returns a hint for the available memory.
 
     >>> require_memory("stage", "its matrices", 1e3, lambda there: f"{there / 1e6:.0f} bodies would fit")
     """
     if needed < ALWAYS:
-        return  # asking the machine takes longer than most such computations
+        return  # a query takes longer than most such computations
     there = available()
     if needed > there:
         raise refuse(where, f"{what} need about {gigabytes(needed)} of memory, and {gigabytes(there)} are there", fits(there))
 
 
 def gigabytes(size: float) -> str:
-    """A size of memory in words.
+    """Return a memory size as text.
 
     >>> gigabytes(1.5e9)
     '1.5 GB'
@@ -36,7 +36,7 @@ def gigabytes(size: float) -> str:
 
 
 def available() -> float:
-    """Memory a computation may plan with [bytes]: 90 % of what the machine, its control group and the limits on processes leave.
+    """Return the usable memory [bytes]: 90 % of the free memory of machine, control group and process limits.
 
     >>> available() > 0.0
     True
@@ -45,14 +45,14 @@ def available() -> float:
 
 
 def _machine_memory() -> Iterator[float]:
-    with suppress(ImportError, OSError):  # a system that does not tell
+    with suppress(ImportError, OSError):  # unknown on this system
         import psutil
 
         yield float(psutil.virtual_memory().available)
 
 
 def _control_group(root: Path = Path("/sys/fs/cgroup"), own: Path = Path("/proc/self/cgroup")) -> Iterator[float]:
-    """What is left to the control groups (version 2) this process is in, page cache not counted."""
+    """Free memory of the control groups (version 2) of this process, without page cache."""
     if not own.is_file():
         return
     paths = [line[3:].strip().lstrip("/") for line in own.read_text(encoding="utf-8").splitlines() if line.startswith("0::")]
@@ -81,7 +81,7 @@ def _process_limits() -> Iterator[float]:
         import resource
 
         import psutil
-    except ImportError:  # a system without limits
+    except ImportError:  # no limits on this system
         return
     for kind in (resource.RLIMIT_AS, resource.RLIMIT_DATA):
         soft, _ = resource.getrlimit(kind)

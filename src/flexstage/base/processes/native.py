@@ -1,7 +1,7 @@
-"""Kernels: C that does what numpy does faster, built when the package is installed (`hatch_build.py`), beside its sources.
+"""Compiled kernels: C equivalents of numpy code, built at installation (`hatch_build.py`) next to their sources.
 
-A kernel is built once for each width of vectors; the widest that this processor has is loaded. Each library carries the digest of the
-sources it was built from: of edited sources it is not loaded. This module needs nothing but the standard library, as installation uses it.
+A kernel is built for each vector width; the widest one supported by this processor is loaded. Each library has the digest of its sources:
+it is not loaded for edited sources. This module requires only the standard library, as installation uses it.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 SWITCH = "FLEXSTAGE_KERNEL"
-"""The variable that, at `off`, does without kernels, and else names their lanes."""
+"""Environment variable: `off` disables kernels, other values name their lanes."""
 PACKAGE = Path(__file__).parents[2]
 HEADERS = Path(__file__).parent
-"""Where the headers are that all kernels share."""
+"""Folder of shared headers of all kernels."""
 KERNELS = tuple(PACKAGE / "models" / model / "kernel.c" for model in ("batch", "nonlinear"))
 
 
 @dataclass(frozen=True)
 class Lanes:
-    """Vectors that kernels are compiled for: the architecture, the features a processor must have, and the flags that tell the compiler."""
+    """Vector lanes of kernels: architecture, required processor features, and compiler flags."""
 
     name: str
     machines: tuple[str, ...]
@@ -39,11 +39,11 @@ _LANES = (
     Lanes("sse2", _X86, frozenset(), ()),
     Lanes("neon", _ARM, frozenset(), ()),
 )
-"""Widest first: eight, four and two doubles."""
+"""Lanes, widest first: eight, four and two doubles."""
 
 
 def machine_lanes() -> tuple[Lanes, ...]:
-    """The lanes of this architecture, widest first; where none is known, two lanes as the compiler makes them.
+    """Return the lanes of this architecture, widest first; for an unknown one, two lanes by the compiler.
 
     >>> len(machine_lanes()) > 0
     True
@@ -52,7 +52,7 @@ def machine_lanes() -> tuple[Lanes, ...]:
 
 
 def processor_lanes() -> tuple[Lanes, ...]:
-    """The lanes that this processor has, asked now, widest first.
+    """Return the lanes of this processor, widest first.
 
     >>> set(processor_lanes()) <= set(machine_lanes())
     True
@@ -62,7 +62,7 @@ def processor_lanes() -> tuple[Lanes, ...]:
 
 
 def sources_digest(source: Path) -> str:
-    """The digest of a kernel's source and of the headers beside it and shared by all.
+    """Return the digest of a kernel's source, its headers and the shared headers.
 
     >>> len(sources_digest(KERNELS[0]))
     32
@@ -72,7 +72,7 @@ def sources_digest(source: Path) -> str:
 
 
 def library_path(source: Path, lanes: Lanes) -> Path:
-    """Where the library of a kernel for these lanes is.
+    """Return the path of a kernel's library for these lanes.
 
     >>> library_path(KERNELS[0], Lanes("sse2", (), frozenset(), ())).name
     'kernel-sse2.so'
@@ -81,14 +81,14 @@ def library_path(source: Path, lanes: Lanes) -> Path:
 
 
 def kernel_lanes() -> Lanes:
-    """The widest lanes of this processor, or those of them that FLEXSTAGE_KERNEL names; raises `DesignError` for others.
+    """Return the widest lanes of this processor, or those of FLEXSTAGE_KERNEL; raises `DesignError` for unsupported ones.
 
     >>> kernel_lanes() in processor_lanes()
     True
     """
     found, stated = {each.name: each for each in processor_lanes()}, os.environ.get(SWITCH, "")
     if stated and stated not in found:
-        from flexstage.base.finding import refuse  # which needs more than the standard library
+        from flexstage.base.finding import refuse  # requires more than the standard library
 
         what = f"it is {stated}, and kernels run here with {', '.join(found)}, or are off"
         raise refuse(SWITCH, what, "State one of these, or nothing for the fastest")
@@ -96,9 +96,9 @@ def kernel_lanes() -> Lanes:
 
 
 def kernel_library(source: Path) -> ctypes.CDLL | None:
-    """The library of a kernel; `None` where FLEXSTAGE_KERNEL is off, none was built, or it was built from other sources.
+    """Load the library of a kernel; `None` if FLEXSTAGE_KERNEL is off, or none was built from the current sources.
 
-    Raises `DesignError` where FLEXSTAGE_KERNEL names lanes that this processor has not.
+    Raises `DesignError` if FLEXSTAGE_KERNEL names unsupported lanes.
 
     >>> kernel_library(Path("no-such-kernel.c")) is None
     True
@@ -113,18 +113,18 @@ def kernel_library(source: Path) -> ctypes.CDLL | None:
 
 
 def library_sources(library: ctypes.CDLL) -> str:
-    """The digest of the sources that a library was built from."""
+    """Return the digest of the sources of a library."""
     return ctypes.c_char_p.in_dll(library, "flexstage_sources").value.decode()  # type: ignore[union-attr]
 
 
 def library_digest(source: Path) -> str:
-    """The lanes and the content of the library that is loaded: with equal ones, results are equal to the bit."""
+    """Return lanes and content digest of the loaded library: equal ones give bit-identical results."""
     path = library_path(source, kernel_lanes())
     return f"{path.stem.rpartition('-')[2]} {hashlib.sha256(path.read_bytes()).hexdigest()[:12]}"
 
 
 def _features() -> frozenset[str]:
-    """What the processor says it can do; nothing where the system does not tell."""
+    """Features of the processor; empty if unknown."""
     with suppress(OSError):
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
         return frozenset(next((line for line in lines if line.startswith(("flags", "Features"))), "").split())

@@ -1,4 +1,4 @@
-"""Progress of any long computation: where it stands, and how long it takes still."""
+"""Progress of long computations: completed fraction and remaining time."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 _MINUTES, _HOURS = 90.0, 2.0 * 3600.0
-"""From so many seconds on a time is told in minutes, in hours."""
+"""Times [s] from which minutes and hours are used."""
 
 LINES, LINE = "FLEXSTAGE_PROGRESS", "progress"
-"""Variable of the environment by which a program asks a command for lines, and the word that each of them begins with."""
+"""Environment variable for progress lines of a command, and the prefix of each line."""
 
 
 @dataclass(frozen=True)
 class Step:
-    """State of a computation: what is being done, the fraction that is done, and the seconds left (`None`: too early to say)."""
+    """State of a computation: activity, completed fraction, and remaining seconds (`None`: not yet known)."""
 
     text: str
     fraction: float
@@ -22,11 +22,11 @@ class Step:
 
 
 Progress = Callable[[Step], None]
-"""Told of every step, in the process and thread that called the computation; raising there stops it and cleans up."""
+"""Callback of every step, in the caller's process and thread; an exception stops the computation and cleans up."""
 
 
 def duration(seconds: float) -> str:
-    """A time that is known roughly, in words.
+    """Return an approximate time as text.
 
     >>> duration(0.2), duration(40.0), duration(90.0), duration(9000.0)
     ('1 s', '40 s', '2 minutes', '2.5 hours')
@@ -37,7 +37,7 @@ def duration(seconds: float) -> str:
 
 
 def seconds_left(fraction: float, elapsed: float) -> float | None:
-    """Time left if it goes on as it went, absent while too little is done to tell.
+    """Return the extrapolated remaining time; `None` while too early.
 
     >>> seconds_left(0.25, 10.0), seconds_left(0.01, 10.0)
     (30.0, None)

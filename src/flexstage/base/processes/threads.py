@@ -1,4 +1,4 @@
-"""Threads of linear algebra: one where many small matrices run, for a second one costs far more than it gives on a busy machine."""
+"""Threads of linear algebra: a single thread for many small matrices, faster on a busy machine."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _Found = TypeVar("_Found")
 
 
 def one_thread(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
-    """The function, with one thread for linear algebra while it runs; the caller's number of threads is restored when it is left.
+    """Decorate a function to run with one linear-algebra thread; the caller's number of threads is restored.
 
-    Sums over several threads are not the same to the bit from run to run: with one they are.
+    Sums over a single thread are bit-identical from run to run.
 
     >>> one_thread(divmod)(7, 2)
     (3, 1)
@@ -32,5 +32,5 @@ def one_thread(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
 
 @lru_cache(maxsize=1)
 def _libraries(_modules: int) -> ThreadpoolController:
-    """The libraries of linear algebra that this process has: looked for anew, which takes a millisecond, only after further imports."""
+    """Linear-algebra libraries of this process, updated (in a millisecond) only after further imports."""
     return ThreadpoolController()

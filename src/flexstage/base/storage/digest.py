@@ -1,4 +1,4 @@
-"""Frozen description values compared by content."""
+"""Content digests and comparison of frozen descriptions."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from flexstage.base.register import origin
 from flexstage.base.session import SESSION
 
 DOCUMENT_ONLY = {"physics": False}
-"""Field metadata: the field (a name, tags, sources) does not count in the physics digest."""
+"""Field metadata: the field (a name, tags, sources) is not in the physics digest."""
 
 WHERE_STATED = {"where_stated": True}
-"""Field metadata: the field counts only where it holds something, so that descriptions without it keep the digests they had before it."""
+"""Field metadata: an empty field is not in digests, so that older digests stay valid."""
 
 KEY = "key"
-"""Field metadata: what a file, and so an address, calls the field, where that word is one of Python's own."""
+"""Field metadata: key of the field in files and addresses, if it is a Python keyword."""
 
 _KEPT = "_digests"
 _MANY = 64
@@ -33,10 +33,10 @@ T = TypeVar("T")
 
 
 class Description(CheckedFields):
-    """Base of every frozen value that describes a stage: immutable, compared and hashed by content.
+    """Base of descriptions: immutable, compared and hashed by content.
 
-    Two digests exist: `digest(value)` covers the whole document; `digest(value, physics=True)` leaves out fields marked `DOCUMENT_ONLY`.
-    Floats are compared by their bits. Classes of other packages count with their package's version.
+    Two digests exist: `digest(value)` covers the whole document; `digest(value, physics=True)` omits fields marked `DOCUMENT_ONLY`. Floats
+    are compared by their bits. Classes of other packages include their package's version.
     """
 
     __slots__ = ()
@@ -53,9 +53,9 @@ class Description(CheckedFields):
 
 
 def keep(function: Callable[P, T]) -> Callable[P, T]:
-    """A function of descriptions, its last 64 results kept by their content; not those of batches, which are large.
+    """Decorate a function of descriptions to cache its last 64 results by content, except for batches.
 
-    Many designs in a row differ in one part: what is known of the others need not be worked out again. Arrays that are kept are read-only.
+    Successive designs often differ in one part: results of other parts are reused. Cached arrays are read-only.
 
     >>> counted = []
     >>> double = keep(lambda value: counted.append(value) or 2.0 * value)
@@ -81,7 +81,7 @@ def keep(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def _is_single(value: Any) -> bool:
-    """Whether there is one number in every place."""
+    """Whether it is a single design."""
     if isinstance(value, Description):
         return all(_is_single(getattr(value, field.name)) for field in fields(value))  # type: ignore[arg-type]
     if isinstance(value, (tuple, list)):
@@ -90,7 +90,7 @@ def _is_single(value: Any) -> bool:
 
 
 def digest(value: Any, *, physics: bool = False) -> str:
-    """Return the SHA-256 of a description's content; with `physics`, of what its mechanics depend on.
+    """Return the SHA-256 of a description's content; with `physics`, of fields that affect its mechanics.
 
     >>> digest(1.0) == digest(1.0), digest(1.0) == digest(1)
     (True, False)
@@ -103,7 +103,7 @@ def digest(value: Any, *, physics: bool = False) -> str:
 
 
 def _own(value: Description, *, physics: bool) -> bytes:
-    """The digest of one description, kept with it: a design varied in one number shares all other parts with the one it came from."""
+    """Digest of one description, cached with it: varied designs share unchanged parts."""
     known: dict[bool, bytes] = value.__dict__.setdefault(_KEPT, {})
     if physics not in known:
         pieces = [b"D" + type(value).__name__.encode() + origin(type(value).__module__).encode()]
@@ -147,6 +147,6 @@ def _scalar(value: Any) -> bytes:
 
 @functools.cache
 def _counted_fields(cls: type, *, physics: bool) -> tuple[tuple[str, bytes, bool], ...]:
-    """Names of the fields that count, with what they feed, and whether they count where they are empty."""
+    """Names of the digest fields, with their data, and whether empty ones are included."""
     counted = [field for field in fields(cls) if not (physics and field.metadata.get("physics") is False)]  # type: ignore[arg-type]
     return tuple((field.name, _scalar(field.name), not WHERE_STATED.items() <= field.metadata.items()) for field in counted)

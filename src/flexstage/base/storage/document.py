@@ -1,6 +1,6 @@
-"""Documents: results as plain JSON values for machines (described in `docs/json.md`).
+"""Documents: results as plain JSON values (`docs/json.md`).
 
-Matrices are {rows, columns, unit, values}; a scalar's unit stands in its key (`frequency_hz`). Numbers that are not finite become null,
+Matrices are {rows, columns, unit, values}; a scalar's unit is in its key (`frequency_hz`). Numbers that are not finite become null,
 with the reason under `reasons`.
 """
 
@@ -21,7 +21,7 @@ Document: TypeAlias = dict[str, Any]
 
 
 def plain(result: Any) -> Document:
-    """A result, or a mapping with results in it, in plain values: what is null has its reason by path under `reasons`.
+    """Convert a result, or a mapping of results, to plain values; null values have a reason by path under `reasons`.
 
     >>> plain({"gain": float("inf")})
     {'gain': None, 'reasons': {'gain': 'infinite'}}
@@ -34,7 +34,7 @@ def plain(result: Any) -> Document:
 
 
 def as_text(result: Any) -> str:
-    """The document as JSON text: finite numbers only, every other one null with its reason under `reasons`.
+    """Return the document as JSON text: finite numbers, others null with a reason under `reasons`.
 
     >>> print(as_text({"gain": float("nan")}))
     {
@@ -49,19 +49,19 @@ def as_text(result: Any) -> str:
 
 
 def _escape(letter: str) -> str:
-    """A letter as it stands in JSON; what is not printable as its escape, which means the same and steers no terminal."""
+    """A character in JSON; unprintable ones as escapes."""
     return letter if letter.isprintable() else json.dumps(letter)[1:-1]
 
 
 def _plain(value: Any, where: str, reasons: dict[str, str]) -> Any:
-    """Plain JSON values; what is not finite is noted in `reasons` under its path (`modes.3.frequency_hz`)."""
+    """Plain JSON values; values that are not finite get a reason under their path (`modes.3.frequency_hz`)."""
     if isinstance(value, Mapping):
         return {str(key): _plain(item, f"{where}.{key}" if where else str(key), reasons) for key, item in value.items()}
     if isinstance(value, np.ndarray):
         return _plain(value.tolist(), where, reasons)
     if isinstance(value, (list, tuple)):
         if all(type(item) is float and math.isfinite(item) for item in value):
-            return [item + 0.0 for item in value]  # responses are long
+            return [item + 0.0 for item in value]  # fast path for long responses
         return [_plain(item, f"{where}.{number}", reasons) for number, item in enumerate(value)]
     if isinstance(value, Enum):
         return value.value

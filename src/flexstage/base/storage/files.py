@@ -1,8 +1,7 @@
-"""Files that others wrote: only regular ones; HDF5 and MAT files in a process of their own, with limits of processor time and memory.
+"""Foreign files: only regular ones; HDF5 and MAT files in a separate process, with limits of CPU time and memory.
 
-The libraries that read these files can crash, run in circles beyond the reach of any exception, or take all memory. They run in a worker,
-which serves many files; one that dies, hangs or is interrupted is replaced. Limits are kept by the system, where it has them. Data that
-stand in other files are refused.
+Their libraries may crash, hang without an exception, or exhaust memory. They run in a worker for many files, which is replaced if it dies,
+hangs or is interrupted. The system enforces limits if supported. Data in other files are refused.
 """
 
 from __future__ import annotations
@@ -29,20 +28,20 @@ from flexstage.base.processes.memory import gigabytes, require_memory
 
 Attribute: TypeAlias = str | float | tuple[str, ...]
 PATIENCE = 8.0
-"""Processor time that one question about a file may take [s], and `_SLOW` more for every byte of what is asked."""
+"""CPU time limit of one request [s], plus `_SLOW` per requested byte."""
 MEMORY = 1_000_000_000
-"""What the worker may take beside what is asked of it [B]."""
+"""Memory limit of the worker in addition to requested data [B]."""
 _SLOW = 1e-7
 _COPIES = 3
 _TEXTS = 100_000
 _FULL = 4000
-"""Rows of sparse arrays that are read in full."""
+"""Largest number of rows of sparse arrays read as dense."""
 _NUMBERS = "fiub"
 _COMPLEX_FIELDS = (("r", "i"), ("real", "imag"))
 
 
 def require_regular(path: Path) -> None:
-    """Raise `DesignError` where there is no file, or what is there is a folder, a device, a pipe: reading such may never end.
+    """Raise `DesignError` for a missing file, a folder, a device or a pipe: reading may never end.
 
     >>> require_regular(Path("/dev/null"))
     Traceback (most recent call last):
@@ -51,7 +50,7 @@ def require_regular(path: Path) -> None:
     try:
         mode = path.stat().st_mode
     except FileNotFoundError:
-        raise refuse(str(path), "there is no such file", "Check the path") from None
+        raise refuse(str(path), "file not found", "Check the path") from None
     except (OSError, ValueError) as error:
         raise refuse(str(path), f"it cannot be read ({_error_text(error)})", "Name a file that can be read") from None
     if stat.S_ISREG(mode):
@@ -63,10 +62,10 @@ def require_regular(path: Path) -> None:
 
 @dataclass(frozen=True, eq=False)
 class HdfArray:
-    """An array of an HDF5 file: its path, its shape, the kind of its numbers (as numpy's, `t` for texts, `r` for references).
+    """Array of an HDF5 file: path, shape, kind of numbers (as numpy's, `t` for texts, `r` for references).
 
-    `size` bytes has a number, `columns` are kinds by name where it is a table; `attributes` its own;
-    `texts` what it says; `references` paths of what it refers to.
+    `size` is bytes per number, `columns` are kinds by name for a table, `attributes` its attributes, `texts` its texts, `references` paths
+    of referenced objects.
     """
 
     name: str
@@ -81,7 +80,7 @@ class HdfArray:
 
 @dataclass(frozen=True, eq=False)
 class Hdf:
-    """What an HDF5 file holds: attributes of groups by their paths ("" is the file), arrays by theirs, in the order of the file."""
+    """Content of an HDF5 file: attributes of groups by path ("" is the file), arrays by path, in file order."""
 
     path: Path
     groups: Mapping[str, Mapping[str, Attribute]]
@@ -89,11 +88,11 @@ class Hdf:
 
     @property
     def attributes(self) -> Mapping[str, Attribute]:
-        """The attributes of the file."""
+        """Attributes of the file."""
         return self.groups[""]
 
     def read(self, name: str, spans: Sequence[tuple[int, int]] = (), column: str = "") -> Array:
-        """An array or one column of a table, or what spans (start, stop) of its first axes hold; pairs of numbers as complex ones."""
+        """Read an array or a column of a table, or spans (start, stop) of its first axes; pairs of numbers as complex ones."""
         array = self.arrays[name]
         lengths = [max(0, min(stop, length) - max(start, 0)) for (start, stop), length in zip(spans, array.shape, strict=False)]
         needed = math.prod((*lengths, *array.shape[len(lengths) :])) * array.size
@@ -101,12 +100,12 @@ class Hdf:
         return _ask(_one_array, self.path, needed, name, tuple(spans), column)
 
     def texts(self, name: str, column: str = "") -> tuple[str, ...]:
-        """An array of texts, or one column of a table."""
+        """Read an array of texts, or a column of a table."""
         return tuple(_ask(_some_texts, self.path, self.path.stat().st_size, name, column))
 
 
 def hdf(path: Path) -> Hdf:
-    """What an HDF5 file holds; no numbers are read. Raises `DesignError` where it is none, breaks off, is damaged or needs other files.
+    """Return the content of an HDF5 file without numbers. Raises `DesignError` for invalid, truncated or damaged files, or external data.
 
     >>> import h5py, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -123,13 +122,13 @@ def hdf(path: Path) -> Hdf:
 
 @dataclass(frozen=True)
 class Opaque:
-    """An object of a class in a MAT file: only MATLAB knows what is in it."""
+    """Object of a class in a MAT file, readable only by MATLAB."""
 
     kind: str
 
 
 def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | Opaque]]:
-    """Arrays, texts and objects of a MAT file of version 4 or 5, those of structures by their paths (`test.u`). Raises `DesignError`.
+    """Read arrays, texts and objects of a MAT file of version 4 or 5; structures by path (`test.u`). Raises `DesignError`.
 
     >>> import scipy.io, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -149,9 +148,9 @@ def _advise_less(there: float) -> str:
 
 @contextlib.contextmanager
 def new_hdf(place: Path, size: int) -> Generator[Any]:
-    """An HDF5 file to fill, at most `size` bytes, whose room is taken first: on a full disk the library takes its process down.
+    """Open a new HDF5 file of at most `size` bytes, allocated first: on a full disk the library would crash.
 
-    Raises `OSError` where there is no room, or where it cannot be written.
+    Raises `OSError` without enough space, or if it cannot be written.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -175,13 +174,13 @@ def new_hdf(place: Path, size: int) -> Generator[Any]:
         yield file
     finally:
         try:
-            file.close()  # room that is not used is given back
-        except RuntimeError as error:  # of what was left to write
+            file.close()  # release unused space
+        except RuntimeError as error:  # during the final write
             raise OSError(str(error)) from None
 
 
 class Child:
-    """The worker of this process that answers questions about files; started by the first one, and anew after one that ended it."""
+    """Worker process for file requests; started by the first request, restarted after a failure."""
 
     def __init__(self) -> None:
         self._worker: Worker | None = None
@@ -189,7 +188,7 @@ class Child:
         self._lock = threading.Lock()
 
     def ask(self, read: Callable[..., Any], path: Path, arguments: tuple[Any, ...], seconds: float, memory: float) -> Any:
-        """The answer; raises as `Worker.call` does, and the next question finds a new worker then."""
+        """Return the answer; raises as `Worker.call`, and the next request starts a new worker."""
         with self._lock:
             known = self._worker
             if known is None or self._owner != os.getpid() or known.process.poll() is not None:
@@ -198,7 +197,7 @@ class Child:
             return known.call(read, path, arguments, seconds, memory)
 
     def code(self) -> int:
-        """How the last worker ended."""
+        """Exit code of the last worker."""
         return self._worker.process.returncode if self._worker is not None else 0
 
     def end(self) -> None:
@@ -208,17 +207,17 @@ class Child:
 
 
 CHILD = Child()
-"""The one child of this process: starting it takes half a second, and so does its libraries' loading."""
+"""Single worker of this process: its start takes half a second, as does the import of its libraries."""
 atexit.register(CHILD.end)
 
 
 def _ask(read: Callable[..., Any], asked: Path, size: int, *arguments: Any) -> Any:
-    """What the worker says about a file, at most `size` bytes of numbers; raises `DesignError` with what keeps it from being read."""
+    """Answer of the worker about a file, at most `size` bytes of numbers; raises `DesignError` if unreadable."""
     path, seconds = str(asked), PATIENCE + _SLOW * size
     try:
         answer = CHILD.ask(read, asked.absolute(), arguments, seconds, MEMORY + _COPIES * size)
     except EOFError:
-        raise refuse(path, f"it is damaged: {_how_it_ended(CHILD.code(), seconds)}", "Copy or export it anew") from None
+        raise refuse(path, f"it is damaged: {_how_it_ended(CHILD.code(), seconds)}", "Copy or export it again") from None
     if isinstance(answer, _WrongError):
         where, what, advice = answer.args
         raise refuse(f"{path}: {where}" if where else path, what, advice)
@@ -226,27 +225,27 @@ def _ask(read: Callable[..., Any], asked: Path, size: int, *arguments: Any) -> A
 
 
 def _how_it_ended(code: int, seconds: float) -> str:
-    """How reading a file ended that gave no answer."""
+    """Reason of a failed request without an answer."""
     if -code == getattr(signal, "SIGXCPU", None):
         return f"reading it took more than {seconds:.3g} s of the processor"
     return "the library that reads it crashed" + (f" (signal {-code})" if code < 0 else "")
 
 
-# --- the worker itself ---
+# --- worker process ---
 
 
 class _WrongError(Exception):
-    """What is wrong: where in the file, what, and what to do."""
+    """Error: position in the file, problem, and hint."""
 
 
 def _answer(_line: Line, read: Callable[..., Any], path: Path, arguments: tuple[Any, ...], seconds: float, memory: float) -> Any:
-    """The answer to a question, or what is wrong: damaged files make the libraries stumble in ways of all kinds."""
+    """Answer to a request, or its error: damaged files raise exceptions of all kinds."""
     limit_processor(seconds)
     limit_memory(memory)
     try:
         return read(path, *arguments)
     except MemoryError:
-        return _WrongError("", f"reading it takes more than {gigabytes(memory)} of memory", "Export it anew, or in parts")
+        return _WrongError("", f"reading it takes more than {gigabytes(memory)} of memory", "Export it again, or in parts")
     except Exception as error:  # noqa: BLE001
         return _answer_to_error(error, path, is_mat=read is _mat)
 
@@ -261,15 +260,15 @@ def _answer_to_error(error: Exception, path: Path, *, is_mat: bool) -> _WrongErr
     said = _error_text(error)
     if is_mat:
         size = path.stat().st_size
-        advice = "It breaks off or is damaged: copy or save it anew (MAT files of version 5 cannot be read in part)"
+        advice = "It breaks off or is damaged: copy or save it again (MAT files of version 5 cannot be read in part)"
         return _WrongError("", f"it cannot be read as a MAT file ({said}); it has {size} bytes", advice)
     if "truncated file" in said:
         numbers = said.partition("truncated file: ")[2].rstrip(")") or said
-        return _WrongError("", f"the file breaks off ({numbers})", "HDF5 cannot be read in part: copy or export it anew")
-    return _WrongError("", f"it cannot be read as HDF5 ({said})", "Check the file, or export it anew")
+        return _WrongError("", f"the file breaks off ({numbers})", "HDF5 cannot be read in part: copy or export it again")
+    return _WrongError("", f"it cannot be read as HDF5 ({said})", "Check the file, or export it again")
 
 
-_ELSEWHERE = "its data stand in another file", "Only the file that is named is read: copy all data into it"
+_ELSEWHERE = "its data are in another file", "Only the file that is named is read: copy all data into it"
 
 
 @contextlib.contextmanager
@@ -281,7 +280,7 @@ def _open(path: Path) -> Generator[Any]:
 
 
 def _look(path: Path) -> tuple[dict[str, dict[str, Attribute]], dict[str, HdfArray]]:
-    """All groups and arrays of a file, each once."""
+    """All groups and arrays of a file, without repetition."""
     with _open(path) as file:
         groups: dict[str, dict[str, Attribute]] = {}
         found: dict[str, HdfArray] = {}
@@ -314,7 +313,7 @@ def _members(name: str, group: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _array(file: Any, name: str, data: Any) -> HdfArray:
-    """An array: everything but its numbers. Raises where they stand in other files."""
+    """An array without its numbers. Refuses external data."""
     if data.external or data.is_virtual:
         raise _WrongError(name, *_ELSEWHERE)
     kind, columns = _kind(data)
@@ -325,7 +324,7 @@ def _array(file: Any, name: str, data: Any) -> HdfArray:
 
 
 def _kind(data: Any) -> tuple[str, dict[str, str]]:
-    """The kind of an array, "" for what is of none; kinds of the columns of a table."""
+    """Kind of an array ("" if unsupported), and kinds of the columns of a table."""
     import h5py
 
     kind = data.dtype
@@ -348,7 +347,7 @@ def _attributes(thing: Any) -> dict[str, Attribute]:
 
 
 def _plain(value: Any) -> Attribute | None:
-    """A text, a number, several texts; None for others."""
+    """A text, a number, or several texts; else None."""
     if isinstance(value, (bytes, str)):
         return _text(value)
     array = np.asarray(value)
@@ -373,7 +372,7 @@ def _one_array(path: Path, name: str, spans: tuple[tuple[int, int], ...], column
     names = values.dtype.names
     if names in _COMPLEX_FIELDS:
         whole = np.empty(values.shape, dtype=complex)
-        np.real(whole)[...], np.imag(whole)[...] = values[names[0]], values[names[1]]  # to the bit: a sum would lose the sign of zeros
+        np.real(whole)[...], np.imag(whole)[...] = values[names[0]], values[names[1]]  # exact: a sum would lose the sign of zeros
         values = whole
     return _numbers(values)
 
@@ -397,13 +396,13 @@ def _mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | Opaque]]:
 
 
 def _opaque(name: str, value: Any) -> tuple[str, Opaque]:
-    """An object by its name, which stands within it where it is a variable of its own, and its class."""
+    """An object by its name (stored within it for a variable), and its class."""
     inner, _, kind = (bytes(value.ravel()[0][key]).decode("latin-1") if key in value.dtype.names else "" for key in ("s0", "s1", "s2"))
     return inner if name == "None" and inner else name, Opaque(kind)
 
 
 def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Arrays, texts, lists of texts and objects, by their paths in structures; sparse arrays in full; nothing of what else there is."""
+    """Arrays, texts, lists of texts and objects by path in structures; sparse arrays as dense; others omitted."""
     sparse = scipy.sparse.issparse(value) and max(value.shape) <= _FULL
     array = value.toarray() if sparse else np.asarray(value)
     if isinstance(value, scipy.io.matlab.MatlabOpaque):

@@ -1,7 +1,7 @@
-"""Results in parts, each a labelled matrix or a sheet of rows and columns: what CSV, pandas, xarray, MATLAB and notebooks are made from.
+"""Decomposition of results into labelled matrices and sheets, for CSV, pandas, xarray, MATLAB and notebooks.
 
-A part stands under its path in the document (`docs/json.md`). Records in a sequence or mapping are rows of one sheet, records within them
-rows of another that repeats the names of the first; arrays along names are a row a name, bare arrays a row an entry.
+A part has its path in the document (`docs/json.md`). Records in a sequence or mapping are rows of one sheet; nested records are rows of
+another sheet that repeats the names of the first. Arrays along names have one row per name, bare arrays one row per entry.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ _Row: TypeAlias = tuple[Any, ...]
 
 
 class _Sort(Enum):
-    """What a value is that no cell holds: a record, or names or numbers with values."""
+    """Kind of a value that does not fit a cell: a record, or names or numbers with values."""
 
     MATRIX, RECORD, CELL, NAMES, NUMBERS = range(5)
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """Rows and columns: `names` that tell the rows apart, by their head (none of a single row), and a value a row of every field."""
+    """Sheet: `names` of rows by column head (none for a single row), and the values of every field by row."""
 
     names: Mapping[str, tuple[Any, ...]]
     columns: Mapping[Field, tuple[Any, ...]]
 
     @property
     def heads(self) -> Mapping[str, tuple[Any, ...]]:
-        """All columns by their heads: names of rows, then fields with their SI units, as keys of the document."""
+        """All columns by head: names of rows, then fields with SI units, as keys of the document."""
         fields = {each.key: values for each, values in self.columns.items()}
         return {f"{head}_name" if head in fields else head: values for head, values in self.names.items()} | fields
 
@@ -49,7 +49,7 @@ _Part: TypeAlias = tuple[str, Sheet | Matrix]
 
 
 def parts(result: Any) -> Iterator[_Part]:
-    """The parts of a result, or of a document, each with a path of its own.
+    """Return the parts of a result or a document by path.
 
     >>> from flexstage.base.labelled import Matrix
     >>> found = dict(parts({"gain": 2.0, "modes": [{"frequency_hz": 100.0}, {"frequency_hz": 200.0}]}))
@@ -63,7 +63,7 @@ def parts(result: Any) -> Iterator[_Part]:
 
 
 def rows_of(source: Any) -> Sheet:
-    """A mapping or sequence of records as rows, or the arrays of a record that stand along the first of its fields of names."""
+    """Return a mapping or sequence of records as rows, or the arrays of a record along its first name field."""
     if isinstance(source, Mapping):
         return Sheet(owner_names(source), _columns([_record(each) for each in source.values()]))
     if isinstance(source, Sequence):
@@ -72,7 +72,7 @@ def rows_of(source: Any) -> Sheet:
 
 
 def owner_names(source: Any) -> dict[str, tuple[Any, ...]]:
-    """Names of the rows of a mapping, none of anything else; a key of several names is a column each.
+    """Return names of the rows of a mapping, else none; one column for each name of a key.
 
     >>> owner_names({("raster", "B1"): 0, ("raster", "B2"): 0})
     {'name': ('raster', 'raster'), 'name 2': ('B1', 'B2')}
@@ -91,7 +91,7 @@ def _columns(records: Sequence[Record]) -> dict[Field, tuple[Any, ...]]:
 
 
 def _split_complex(field: Field, values: tuple[Any, ...]) -> Iterator[tuple[Field, tuple[Any, ...]]]:
-    """A column, or of complex values two: their real and their imaginary parts."""
+    """A column, or two for complex values: real and imaginary parts."""
     if any(isinstance(each, complex) for each in values):
         for part, of in (("real", np.real), ("imaginary", np.imag)):
             yield replace(field, name=f"{field.name}_{part}"), tuple(None if each is None else of(each) for each in values)
@@ -119,9 +119,9 @@ def _join_path(path: str, key: str) -> str:
 
 
 def _inner(path: str, field: Field, heads: tuple[str, ...], rows: Sequence[_Row], *, entries: bool = False) -> Iterator[_Part]:
-    """The parts of a field that a cell cannot hold; a row is the names of its owner and its value.
+    """Parts of a field that does not fit a cell; a row is the names of its owner and its value.
 
-    `entries`: the values are those of a list or mapping, where a mapping is a record.
+    `entries`: values of a list or mapping, with mappings as records.
     """
     for sort, alike in _sorted(rows, entries=entries):
         if sort is _Sort.MATRIX:
@@ -160,7 +160,7 @@ def _name_rows(heads: Iterable[str], rows: Sequence[tuple[Any, ...]]) -> dict[st
 
 
 def _rows_along(names: Mapping[str, tuple[Any, ...]], records: Sequence[Record]) -> Iterator[tuple[str, Sheet]]:
-    """A sheet for the arrays along the same axes, a row for each name, or combination of names, on these."""
+    """A sheet for arrays along equal axes, with a row for each combination of names."""
     for axes in dict.fromkeys(field.axes for record in records for field in record if field.axes):
         rows, found = list[tuple[Any, ...]](), list[Record]()
         heads = tuple(_head(records[0], name) for name in axes)
@@ -190,7 +190,7 @@ def _entry(value: Any, place: tuple[int, ...]) -> Any:
 
 
 def _matrix(value: Any) -> Matrix | None:
-    """The matrix that a value is, or tells in a document."""
+    """Matrix of a value, or of its document form."""
     if isinstance(value, Mapping) and set(value) == _MATRIX:
         unit = value["unit"] if isinstance(value["unit"], str) else tuple(map(tuple, value["unit"]))
         return Matrix(np.array(value["values"], dtype=float), tuple(value["rows"]), tuple(value["columns"]), unit)
@@ -206,7 +206,7 @@ def _items(value: Any) -> Iterable[tuple[Any, Any]]:
 
 
 def is_cell(value: Any) -> bool:
-    """Whether one cell can hold the value: nothing, a number, a word, or a few words.
+    """Return whether a value fits a cell: nothing, a number, a word, or a few words.
 
     >>> is_cell(None), is_cell(np.array(1.0)), is_cell(("a", "b")), is_cell(np.ones(2)), is_cell({})
     (True, True, True, False, False)
@@ -217,7 +217,7 @@ def is_cell(value: Any) -> bool:
 
 
 def plain_cell(value: Any) -> Any:
-    """A cell in Python's own numbers and words.
+    """Return a cell as plain Python numbers and texts.
 
     >>> plain_cell(np.float64(2.0)), plain_cell(("a", "b"))
     (2.0, 'a, b')

@@ -1,7 +1,7 @@
-"""What is kept on disk: the cache's folder, atomic writes, temporary folders; and what killed processes left of these.
+"""Disk storage: cache folder, atomic writes, temporary folders, and clean-up after killed processes.
 
-A file is written under another name beside its target and renamed once it is whole. Such names, and those of temporary folders, say which
-process of which machine they belong to: whoever writes there next removes those whose process is gone.
+A file is written under another name next to its target and renamed on completion. Such names, and those of temporary folders, identify
+their process and machine: the next writer in the folder removes those of ended processes.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from flexstage.base.finding import DesignError, refuse
 
 FOLDER_VARIABLE = "FLEXSTAGE_CACHE"
 _LONGEST = 15
-"""Characters of a file's name, of four bytes at most, that a temporary one beside it has."""
+"""Number of characters (of four bytes at most) of a file's name in its temporary name."""
 _PART = ".part"
 _OURS = re.compile(r"(?:\..*\.|flexstage-)(?P<place>[0-9a-f]{8})-(?P<process>[0-9]{1,9})-[^.-]+(?P<part>\.part)?", re.DOTALL)
 _TICK = 2.0
-"""How far the clocks of files and of processes may lie apart [s]."""
+"""Largest difference between clocks of files and of processes [s]."""
 _DAY = 86400.0
-"""Age of a half-written file of another machine [s] whose writer must be gone."""
+"""Age of an abandoned partial file of another machine [s]."""
 
 
 def cache_folder() -> Path:
-    """The folder named by the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches; it need not be there.
+    """Return the folder in the environment variable FLEXSTAGE_CACHE, else flexstage in the user's cache folder; it may be missing.
 
-    Raises `DesignError` where it cannot be told.
+    Raises `DesignError` if unknown.
 
     >>> cache_folder().is_absolute()
     True
@@ -48,39 +48,39 @@ def cache_folder() -> Path:
     try:
         place = Path(stated).expanduser().absolute() if stated else user_cache_path("flexstage", appauthor=False, opinion=False)
     except (RuntimeError, OSError) as error:
-        raise refuse(FOLDER_VARIABLE, f'the folder "{stated}" cannot be told ({error})', "Name the folder by its whole path") from None
-    if not place.is_absolute():  # nobody knows the user's home
+        raise refuse(FOLDER_VARIABLE, f'unknown folder "{stated}" ({error})', "Name the folder by its whole path") from None
+    if not place.is_absolute():  # the user's home is unknown
         raise refuse(FOLDER_VARIABLE, "it is not set, and the user's home is not known", "Name a folder for what may be computed again")
     return place
 
 
 @dataclass(frozen=True)
 class PendingFile:
-    """A file written, or to be written, at `place` beside its `target`, where it is not yet; `where` is how the user named it."""
+    """File written, or to be written, at `place` next to its future `target`; `where` is the user's name for it."""
 
     place: Path
     target: Path
     where: str
 
     def flush(self) -> None:
-        """Bring it to the disk, with the rights of the file it replaces; raises `DesignError` if that cannot be."""
+        """Flush it to the disk, with the permissions of the replaced file; raises `DesignError` on failure."""
         try:
             with self.place.open("rb+") as stream:
-                os.fsync(stream.fileno())  # a disk may report only now that it is full
+                os.fsync(stream.fileno())  # a full disk may be reported only here
             if self.target.exists():
                 self.place.chmod(self.target.stat().st_mode & 0o777)
         except OSError as error:
             raise _write_error(self.where, error) from None
 
     def rename(self) -> None:
-        """Rename it onto its target; raises `DesignError` if that cannot be."""
+        """Rename it to its target; raises `DesignError` on failure."""
         try:
             self.place.replace(self.target)
         except OSError as error:
             raise _write_error(self.where, error) from None
 
     def put(self) -> Path:
-        """Rename it onto its target, on the disk before it is there; raises `DesignError` if that cannot be."""
+        """Flush it and rename it to its target; raises `DesignError` on failure."""
         try:
             self.flush()
             self.rename()
@@ -89,16 +89,16 @@ class PendingFile:
         return self.target
 
     def drop(self) -> None:
-        """Remove it, where it has not been put."""
+        """Remove it unless renamed."""
         with contextlib.suppress(OSError):
             self.place.unlink()
 
 
 @contextmanager
 def atomic_write(path: str | os.PathLike[str]) -> Generator[Path]:
-    """A path beside `path` to write to; renamed to it when the block ends, removed where it fails.
+    """Provide a temporary path for writing, renamed to `path` at the end of the block, removed on failure.
 
-    Raises `DesignError` where the folder is missing, the file is none or write-protected, or the disk refuses.
+    Raises `DesignError` for a missing folder, a write-protected or irregular file, or a disk error.
 
     >>> with temporary_folder() as folder:
     ...     with atomic_write(folder / "a.txt") as place:
@@ -117,7 +117,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Generator[Path]:
 
 
 def write(path: str | os.PathLike[str], content: str | bytes) -> Path:
-    """Write a whole file, or none; raises `DesignError` if that cannot be.
+    """Write a file atomically; raises `DesignError` on failure.
 
     >>> with temporary_folder() as folder:
     ...     write(folder / "stage.toml", "name = 'a'").read_text()
@@ -127,7 +127,7 @@ def write(path: str | os.PathLike[str], content: str | bytes) -> Path:
 
 
 def write_temporary(path: str | os.PathLike[str], content: str | bytes) -> PendingFile:
-    """Write beside `path`, to be put there later, together with others; raises `DesignError` if it cannot be written.
+    """Write a temporary file for `path`, to be renamed later together with others; raises `DesignError` on failure.
 
     >>> with temporary_folder() as folder:
     ...     waiting = write_temporary(folder / "stage.toml", "name = 'a'")
@@ -147,10 +147,10 @@ def write_temporary(path: str | os.PathLike[str], content: str | bytes) -> Pendi
 
 
 def move_all(files: Iterable[PendingFile]) -> None:
-    """Put all files or none: where one cannot be put, those before it are as they were.
+    """Rename all files or none: on failure, previous ones are restored.
 
-    All are on the disk before the first is renamed, and only renames lie between the first and the last: a process that is killed within
-    these few microseconds leaves files that are whole, some of them new.
+    All are flushed before the first rename, and only renames follow: a process killed within these few microseconds leaves complete files,
+    some of them new.
 
     >>> with temporary_folder() as folder:
     ...     move_all(write_temporary(folder / name, "whole") for name in ("a.c", "a.h"))
@@ -180,7 +180,7 @@ def move_all(files: Iterable[PendingFile]) -> None:
 
 
 def _keep_aside(waiting: PendingFile) -> Path | None:
-    """The file that is to be replaced under another name; nothing where there is none."""
+    """Backup of the file to be replaced; `None` without one."""
     target = waiting.target
     if not target.exists():
         return None
@@ -188,7 +188,7 @@ def _keep_aside(waiting: PendingFile) -> Path | None:
     try:
         try:
             place.hardlink_to(target)
-        except (OSError, NotImplementedError):  # a disk without second names
+        except (OSError, NotImplementedError):  # no hard links on this disk
             shutil.copy2(target, place)
     except OSError as error:
         raise _write_error(waiting.where, error) from None
@@ -203,7 +203,7 @@ def _open_temporary(path: str | os.PathLike[str]) -> PendingFile:
             raise refuse(where, "this is a directory", "Name a file in it")
         if target.exists() and not target.is_file():
             raise refuse(where, "this is no regular file", "Name a file")
-        if target.exists() and not os.access(target, os.W_OK):  # renaming would replace even that
+        if target.exists() and not os.access(target, os.W_OK):  # renaming would replace it
             raise PermissionError(errno.EACCES, "the file is write-protected")
         remove_leftovers(target.parent)
         return PendingFile(target.with_name(_part_name(target)), target, where)
@@ -214,7 +214,7 @@ def _open_temporary(path: str | os.PathLike[str]) -> PendingFile:
 
 
 def _part_name(target: Path) -> str:
-    """A new name for a file beside another: its own, cut so that no disk finds it too long, and whose it is."""
+    """Temporary name for a file: its name, truncated, and the mark of this process."""
     return f".{target.name[:_LONGEST]}.{process_mark()}-{os.urandom(4).hex()}{_PART}"
 
 
@@ -224,7 +224,7 @@ def _write_error(where: str, error: Exception) -> DesignError:
 
 
 def make_temporary_folder() -> Path:
-    """A new folder for temporary files, to be removed by the caller. Raises `DesignError` where none can be made.
+    """Create a folder for temporary files, to be removed by the caller. Raises `DesignError` on failure.
 
     >>> make_temporary_folder().rmdir()
     """
@@ -238,7 +238,7 @@ def make_temporary_folder() -> Path:
 
 @contextmanager
 def temporary_folder() -> Generator[Path]:
-    """A new folder for temporary files that is gone when the block ends. Raises `DesignError` where none can be made.
+    """Provide a folder for temporary files, removed at the end of the block. Raises `DesignError` on failure.
 
     >>> with temporary_folder() as folder:
     ...     folder.is_dir()
@@ -254,7 +254,7 @@ def temporary_folder() -> Generator[Path]:
 
 
 def remove_leftovers(folder: Path) -> None:
-    """Remove what killed processes left in a folder: half-written files and folders for temporary files of this user.
+    """Remove leftovers of killed processes in a folder: partial files and temporary folders of this user.
 
     >>> remove_leftovers(Path("nowhere"))
     """
@@ -268,13 +268,13 @@ def remove_leftovers(folder: Path) -> None:
 
 
 def remove_temporary_leftovers() -> None:
-    """The same in the folder for temporary files, where there is one."""
+    """Remove leftovers in the folder for temporary files, if there is one."""
     with contextlib.suppress(OSError):
         remove_leftovers(Path(tempfile.gettempdir()))
 
 
 def _is_abandoned(entry: os.DirEntry[str], ours: re.Match[str]) -> bool:
-    """Whether the process that made a file or folder is gone."""
+    """Whether the process of a file or folder has ended."""
     try:
         state = entry.stat(follow_symlinks=False)
     except OSError:
@@ -287,7 +287,7 @@ def _is_abandoned(entry: os.DirEntry[str], ours: re.Match[str]) -> bool:
 
 
 def process_mark() -> str:
-    """The name of this process among those of all machines that share a disk.
+    """Return a mark of this process, unique among machines with a shared disk.
 
     >>> has_ended(process_mark(), time.time())
     False
@@ -296,13 +296,13 @@ def process_mark() -> str:
 
 
 def has_ended(mark: str, since: float) -> bool:
-    """Whether the process of a `process_mark` that wrote at a time [s since 1970] is gone; of another machine that is taken as true."""
+    """Return whether the process of a `process_mark` that wrote at a time [s since 1970] has ended; true for another machine."""
     host, _, number = mark.partition("-")
     return host != _host() or not number.isdecimal() or not _is_running(int(number), since)
 
 
 def _is_running(number: int, since: float) -> bool:
-    """Whether the process of a number that wrote at a time still runs; one that began later has taken over the number."""
+    """Whether the process with a number that wrote at a time still runs; a later one has reused the number."""
     try:
         import psutil
 
@@ -316,7 +316,7 @@ def _is_running(number: int, since: float) -> bool:
 
 @functools.cache
 def _host() -> str:
-    """The machine, or the container, in which numbers of processes mean something."""
+    """Machine or container of process numbers."""
     try:
         space = Path("/proc/self/ns/pid").stat().st_ino
     except OSError:

@@ -1,6 +1,6 @@
-"""Size and dimension of a unit's text.
+"""Size and dimension of units.
 
-Names and prefixes are defined in two short tables; the angle is a dimension of its own. A unit is a product or quotient of
+Names and prefixes are defined in two tables; the angle is a separate dimension. A unit is a product or quotient of
 names with small powers, read from left to right: `N m/rad`, `nm/Hz^0.5`, `um/m/K`, `1/K`, `m/(N m)`. Sizes are exact fractions.
 """
 
@@ -67,13 +67,13 @@ _LONGEST = 60
 
 @dataclass(frozen=True)
 class Dimension:
-    """A unit's size in kilogram, metre, second, ... and the powers of its base dimensions, sorted by name."""
+    """Size of a unit in kilogram, metre, second, ..., and the powers of its base dimensions, sorted by name."""
 
     size: Fraction
     powers: tuple[tuple[str, Fraction], ...] = ()
 
     def times(self, other: Dimension, power: Fraction) -> Dimension:
-        """The product with a power of another unit.
+        """Return the product with a power of another unit.
 
         >>> Dimension(Fraction(2)).times(Dimension(Fraction(4)), Fraction(-1)).size
         Fraction(1, 2)
@@ -86,7 +86,7 @@ class Dimension:
 
 @functools.lru_cache(maxsize=512)
 def dimension_of(unit: str) -> Dimension:
-    """Return the size and dimension of a unit; raises `ValueError` with what is wrong with it.
+    """Return the size and dimension of a unit; raises `ValueError` with its error.
 
     >>> dimension_of("N m").powers == dimension_of("J").powers, dimension_of("N/um").size / dimension_of("N/m").size
     (True, Fraction(1000000, 1))
@@ -117,7 +117,7 @@ _ONE = Dimension(Fraction(1))
 
 
 def common_spelling(text: str) -> str:
-    """The text with other signs of products, powers and degrees in their common form.
+    """Return the text with common signs of products, powers and degrees.
 
     >>> common_spelling("kg·m²")
     'kg m^2'
@@ -152,7 +152,7 @@ _UNITS = _SINGULAR | {f"{name}s": meaning for name, meaning in _SINGULAR.items()
 
 @functools.cache
 def _dimension_of_name(name: str) -> Dimension:
-    """The dimension of a name, perhaps with a prefix."""
+    """Dimension of a name with an optional prefix."""
     meaning = _UNITS.get(name, "")
     if meaning.startswith("["):
         return Dimension(Fraction(1), ((meaning, Fraction(1)),))

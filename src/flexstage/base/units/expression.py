@@ -1,7 +1,7 @@
-"""Expressions of numbers with units and of named numbers: + - * / ( ), sqrt, sin, cos, tan, and nothing else.
+"""Expressions of numbers with units and of named numbers: + - * / ( ), sqrt, sin, cos, tan only.
 
-A unit belongs to the number before it, as far as what follows are names of units: `10 um/V` is one number, `10 um/arm` a quotient.
-Values are floats, complex numbers or arrays; dimensions go along with them, the angle being one of its own.
+A unit belongs to the number before it, up to the last name of a unit: `10 um/V` is one number, `10 um/arm` a quotient.
+Values are floats, complex numbers or arrays with dimensions; the angle is a separate dimension.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from flexstage.base.finding import suggest_nearest
+from flexstage.base.finding import list_choices, suggest_nearest
 from flexstage.base.number import freeze
 from flexstage.base.units.dimension import Dimension, common_spelling, dimension_of
 from flexstage.base.units.unit import ANGLE_POWERS, number_with_unit, quantity_of_dimension
@@ -34,7 +34,7 @@ _ZERO = Fraction(0)
 
 
 class ExpressionError(ValueError):
-    """What is wrong with an expression, and what to do."""
+    """Error in an expression, with a hint."""
 
     def __init__(self, what: str, advice: str) -> None:
         self.what, self.advice = what, advice
@@ -43,13 +43,13 @@ class ExpressionError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Amount:
-    """A value in coherent SI units and its dimension (of size 1)."""
+    """Value in coherent SI units and its dimension (of size 1)."""
 
     value: Any
     dimension: Dimension
 
     def noun(self) -> str:
-        """What it is: a length, a ratio, a quantity in m^2.
+        """Return its kind: a length, a ratio, a quantity in m^2.
 
         >>> evaluate(parse_expression("2 mm * 3 mm"), {}).noun()
         'a quantity in m^2'
@@ -58,18 +58,18 @@ class Amount:
 
 
 Scope = Mapping[str, Amount | None]
-"""Amounts by name; `None` for one whose own text is wrong, which has been told."""
+"""Amounts by name; `None` for one with a reported error."""
 
 
 class UnknownAmountError(Exception):
-    """An amount that an expression refers to is not known, and somebody else says why."""
+    """Unknown amount in an expression, with an error reported elsewhere."""
 
 
 @dataclass(frozen=True, eq=False)
 class Expression:
-    """An arithmetic expression: the named numbers it refers to, and its amount; a `literal` is one number with its unit.
+    """Arithmetic expression: its named numbers and its amount; a `literal` is one number with its unit.
 
-    `amount` raises `ExpressionError` for unlike dimensions, names there are none of, and values that no number holds.
+    `amount` raises `ExpressionError` for inconsistent dimensions, unknown names, and values out of range.
     """
 
     names: frozenset[str]
@@ -79,7 +79,7 @@ class Expression:
 
 def _named(name: str, scope: Scope) -> Amount:
     if name not in scope:
-        raise ExpressionError(f'there is no number "{name}"', _name_advice(name, scope))
+        raise ExpressionError(f'unknown number "{name}"', _name_advice(name, scope))
     found = scope[name]
     if found is None:
         raise UnknownAmountError(name)
@@ -132,7 +132,7 @@ _ONE = Dimension(Fraction(1))
 
 @functools.lru_cache(maxsize=1024)
 def parse_expression(text: str) -> Expression:
-    """Return the expression that a text states; raises `ExpressionError`.
+    """Parse an expression; raises `ExpressionError`.
 
     >>> sorted(parse_expression("2*arm + sqrt(half*arm) - 1 mm").names)
     ['arm', 'half']
@@ -145,7 +145,7 @@ def parse_expression(text: str) -> Expression:
 
 
 def evaluate(expression: Expression, scope: Scope) -> Amount:
-    """Return the amount of an expression; raises `ExpressionError`, also for a value that is not finite.
+    """Evaluate an expression; raises `ExpressionError`, also for a value that is not finite.
 
     >>> arm = Amount(0.026, dimension_of("m"))
     >>> round(evaluate(parse_expression("arm/2 + 1 mm"), {"arm": arm}).value, 12)
@@ -159,7 +159,7 @@ def evaluate(expression: Expression, scope: Scope) -> Amount:
 
 
 def is_plain(text: str) -> bool:
-    """Whether a text has the form of one number, perhaps with a unit, right or wrong.
+    """Return whether a text has the form of one number with an optional unit, valid or not.
 
     >>> is_plain("25,4 mm"), is_plain("3 m^-2"), is_plain("2*arm"), is_plain("arm"), is_plain("1 mm + 2 mm")
     (True, True, False, False, False)
@@ -168,7 +168,7 @@ def is_plain(text: str) -> bool:
 
 
 class _Parser:
-    """Reads a text from left to right: sums of products of signed atoms."""
+    """Recursive-descent parser: sums of products of signed atoms."""
 
     def __init__(self, text: str) -> None:
         self.text, self.at, self.depth = text, 0, 0
@@ -212,7 +212,7 @@ class _Parser:
             raise self.unexpected()
         if self.sign("("):
             if name not in FUNCTIONS:
-                raise ExpressionError(f'there is no function "{name}"', f"There are {', '.join(FUNCTIONS)}")
+                raise ExpressionError(f'unknown function "{name}"', f"Use {list_choices([*FUNCTIONS])}")
             inner = self.inside()
             return Expression(inner.names, partial(_call, name, inner, self.text[start : self.at].strip()))
         return Expression(frozenset([name]), partial(_named, name))
@@ -232,11 +232,11 @@ class _Parser:
         return found
 
     def sign(self, signs: str) -> str:
-        """The sign that stands next, if it is one of these."""
+        """Next sign, if it is one of these."""
         return self.match(re.compile(rf"[{re.escape(signs)}]")) or ""
 
     def match(self, pattern: re.Pattern[str]) -> str | None:
-        """What stands next, past blanks, if it fits."""
+        """Next token after blanks, if it matches."""
         blank = len(self.text) - len(self.text[self.at :].lstrip())
         found = pattern.match(self.text, blank)
         if found is None:
@@ -245,7 +245,7 @@ class _Parser:
         return found[0]
 
     def unexpected(self) -> ExpressionError:
-        """What cannot stand where it stands."""
+        """Error of an unexpected token."""
         before, rest = self.text[: self.at].strip(), self.text[self.at :].strip()
         if not rest:
             return ExpressionError(f'"{self.text.strip()}" ends too early', "Complete it")
@@ -258,11 +258,11 @@ class _Parser:
             return ExpressionError(f'found "^" {after}', "Powers are written as products, arm*arm, and roots as sqrt(arm)")
         if rest[0] == ",":
             return ExpressionError(f'found "," {after}', "The decimal sign is a point")
-        return ExpressionError(f'found "{rest[0]}" {after}', "There are + - * / ( ), sqrt, sin, cos, tan, numbers with units, and names")
+        return ExpressionError(f'found "{rest[0]}" {after}', "Use + - * / ( ), sqrt, sin, cos, tan, numbers with units, and names")
 
 
 def unit_end(text: str, at: int) -> int:
-    """Where the unit ends that begins at a place in a text: the place itself where there is none.
+    """Return the end of the unit that begins at an index of a text; the index without one.
 
     >>> unit_end("10 um/arm", 2), unit_end("10 um/V", 2)
     (5, 7)
@@ -273,7 +273,7 @@ def unit_end(text: str, at: int) -> int:
 
 
 def _unit(text: str, at: int) -> int | None:
-    """Where a product or quotient of names of units ends; nothing where none begins."""
+    """End of a product or quotient of unit names; `None` without one."""
     end = _factor(text, at)
     while end is not None:
         between = _BETWEEN.match(text, end)
@@ -294,7 +294,7 @@ def _factor(text: str, at: int) -> int | None:
 
 
 def is_unit(name: str) -> bool:
-    """Whether a name, perhaps with a power, is that of a unit.
+    """Return whether a name, with an optional power, is a unit.
 
     >>> is_unit("mm"), is_unit("arm")
     (True, False)

@@ -1,7 +1,7 @@
-"""Physical quantities: the metadata of a field that says its dimension, its SI unit and the unit it is shown in.
+"""Physical quantities: metadata of a field with its dimension, SI unit and display unit.
 
-A description field is written `thickness: Annotated[Number, LENGTH, POSITIVE]`; that metadata alone supplies the parsing of a file,
-the JSON Schema, the tables and the checks of sign.
+A description field is written `thickness: Annotated[Number, LENGTH, POSITIVE]`; this metadata supplies file parsing, JSON Schema, tables
+and checks of sign.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Quantity:
-    """A physical quantity: its name, its coherent SI unit and the unit the field shows it in.
+    """Physical quantity: name, coherent SI unit and display unit.
 
-    `example` is a text as it may stand in a design file. `also` are units of another form that mean the same (m/(N m) for rad/N).
+    `example` is an example text of a design file. `also` are equivalent units of another form (m/(N m) for rad/N).
     """
 
     name: str
@@ -25,7 +25,7 @@ class Quantity:
 
     @property
     def noun(self) -> str:
-        """The name with its article.
+        """Name with its article.
 
         >>> ANGLE.noun, LENGTH.noun
         ('an angle', 'a length')
@@ -35,7 +35,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Bound:
-    """The interval a number must lie in; `low` is excluded when `open_low`, and so on."""
+    """Interval of a number; `low` is excluded if `open_low`, `high` if `open_high`."""
 
     low: float = float("-inf")
     high: float = float("inf")
@@ -43,7 +43,7 @@ class Bound:
     open_high: bool = False
 
     def text(self) -> str:
-        """Say the interval in words.
+        """Return the interval in words.
 
         >>> POSITIVE.text()
         'greater than 0'
@@ -56,7 +56,7 @@ class Bound:
         return " and ".join(words)
 
     def whole(self) -> str:
-        """Say which whole numbers lie in it.
+        """Return the range of whole numbers in words.
 
         >>> Bound(low=2.0).whole(), Bound(low=2.0, high=9.0).whole()
         ('2 or more', '2 to 9')
@@ -70,7 +70,7 @@ POISSON_RANGE = Bound(low=-1.0, high=0.5, open_low=True, open_high=True)
 
 RATIO = Quantity("ratio", "1", "1", "0.3")
 SHARE = Quantity("share", "1", "%", "30 %")
-LENGTH = Quantity("length", "m", "mm", "1.54 mm")
+LENGTH = Quantity("length", "m", "mm", "2 mm")
 DISPLACEMENT = Quantity("displacement", "m", "um", "150 um")
 ANGLE = Quantity("angle", "rad", "deg", "30 deg")
 ROTATION = Quantity("rotation", "rad", "urad", "100 urad")
@@ -120,7 +120,7 @@ COUPLING = Quantity("coupling compliance", "rad/N", "urad/N", "4.59 urad/N", als
 ROTATIONAL_COMPLIANCE = Quantity("rotational compliance", "rad/(N m)", "urad/(N m)", "4590 urad/(N m)")
 
 DIRECTION = Quantity("direction", "1", "1", "x")
-"""Three components of a direction of any length: bare numbers, or `"x"`, `"-y"` and so on in a file."""
+"""Direction of any length: three bare numbers, or `"x"`, `"-y"`, ... in a file."""
 
 DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
     "x": (1.0, 0.0, 0.0),
@@ -130,13 +130,13 @@ DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
     "z": (0.0, 0.0, 1.0),
     "-z": (0.0, 0.0, -1.0),
 }
-"""Directions that have a name in a file."""
+"""Named directions in files."""
 
 COMPLIANCE_MATRIX = Quantity("compliance matrix", "mixed", "mixed", "2.91 um/N")
-"""A 6x6 whose blocks are `COMPLIANCE`, `COUPLING` and `ROTATIONAL_COMPLIANCE`."""
+"""6x6 with blocks `COMPLIANCE`, `COUPLING` and `ROTATIONAL_COMPLIANCE`."""
 
 ANY = Quantity("number", "mixed", "mixed", "26 mm")
-"""A number of the quantity that stands beside it."""
+"""Number of a quantity specified in another field."""
 
 STIFFNESS_MATRIX = Quantity("stiffness matrix", "mixed", "mixed", "17 N/um")
-"""A 6x6 whose blocks are `STIFFNESS`, `COUPLING_STIFFNESS` and `ROTATIONAL_STIFFNESS`."""
+"""6x6 with blocks `STIFFNESS`, `COUPLING_STIFFNESS` and `ROTATIONAL_STIFFNESS`."""

@@ -1,7 +1,7 @@
-"""Units at the border: text with units to SI numbers and back. Inside the package every number is SI.
+"""Conversion of text with units to SI numbers and back. Inside the package every number is SI.
 
-The angle is a dimension of its own, so that degrees are never taken for ratios and rad/s never for Hz. All arithmetic is exact (fractions);
-a text is rounded once, to the float nearest to what it says, so that "1.54 mm" is the float 0.00154.
+The angle is a separate dimension, so that degrees are distinct from ratios and rad/s from Hz. All arithmetic is exact (fractions); a text
+is rounded once, to the nearest float, so that "1.54 mm" is the float 0.00154.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ _LONGEST = 60
 
 
 def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
-    """Return the SI value of a text with a unit.
+    """Parse a text with a unit and return its SI value.
 
     A ratio is a bare number or has "%". Zero needs no unit. Raises `DesignError` at `where` for a missing or unknown unit, a wrong
-    dimension (both are named), a temperature scale with an offset, or a number that is not finite.
+    dimension, a temperature scale with an offset, or a number that is not finite.
 
     >>> from flexstage.base.units.quantity import ANGLE, LENGTH, STIFFNESS
     >>> parse("1.54 mm", LENGTH), parse("17 N/um", STIFFNESS), parse("5 %", RATIO)
@@ -44,9 +44,9 @@ def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
 
 
 def show(value: Number, quantity: Quantity, unit: str | None = None, *, digits: int | None = None) -> str:
-    """Return an SI value as text in `unit` (absent: the quantity's shown unit).
+    """Return an SI value as text in `unit` (default: the quantity's display unit).
 
-    Without `digits`: the shortest text that `parse` takes back to the same bits. An array shows its range and size.
+    Without `digits`: the shortest text that `parse` reads back to the same bits. An array shows its range and size.
 
     >>> from flexstage.base.units.quantity import LENGTH, STIFFNESS
     >>> show(0.00154, LENGTH), show(1.03e7, STIFFNESS, "N/mm"), show(2.0 / 3.0, LENGTH, digits=4)
@@ -64,7 +64,7 @@ def show(value: Number, quantity: Quantity, unit: str | None = None, *, digits: 
 
 
 def convert(value: Number, quantity: Quantity, unit: str | None = None) -> Number:
-    """Return an SI value (float or array) in `unit` (absent: the quantity's shown unit).
+    """Return an SI value (float or array) in `unit` (default: the quantity's display unit).
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> convert(0.002, LENGTH), convert(0.0254, LENGTH, "in")
@@ -78,18 +78,18 @@ def convert(value: Number, quantity: Quantity, unit: str | None = None) -> Numbe
 
 
 def missing_unit(found: Any, quantity: Quantity, *, where: str) -> DesignError:
-    """The error of a number that has no unit.
+    """Return the error of a number without a unit.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> str(missing_unit(1.54, LENGTH, where="parts.neck.thickness"))
-    'parts.neck.thickness: found 1.54 without a unit. Write for example "1.54 mm".'
+    'parts.neck.thickness: unit missing (got 1.54). Use a length, e.g. "2 mm".'
     """
     shown = f'"{found}"' if isinstance(found, str) else f"{found}"
-    return refuse(where, f"found {shown} without a unit", f'Write for example "{quantity.example}"')
+    return refuse(where, f"unit missing (got {shown})", f"Use {quantity.noun}, e.g. {example(quantity)}")
 
 
 def number_with_unit(number: str, unit: str) -> tuple[float, Dimension]:
-    """The value in coherent SI units of a number's text with a unit (none: a ratio), and its dimension.
+    """Return the value in coherent SI units of a number's text with a unit (none: a ratio), and its dimension.
 
     >>> number_with_unit("26", "mm")[0], number_with_unit("5", "%")[0], number_with_unit("3", "kN")[0]
     (0.026, 0.05, 3000.0)
@@ -99,7 +99,7 @@ def number_with_unit(number: str, unit: str) -> tuple[float, Dimension]:
 
 
 def split_unit(text: str) -> tuple[str, str]:
-    """The number that a text begins with (empty: none) and what follows it, its unit.
+    """Split a text into its leading number (or empty) and its unit.
 
     >>> split_unit("26 mm"), split_unit("0.3"), split_unit("arm / 2")
     (('26', 'mm'), ('0.3', '1'), ('', 'arm / 2'))
@@ -110,7 +110,7 @@ def split_unit(text: str) -> tuple[str, str]:
 
 
 def quantity_of_dimension(dimension: Dimension, unit: str = "") -> Quantity:
-    """The first known quantity of a dimension, shown in `unit` if that is given; of another dimension one that is named by its SI unit.
+    """Return the first known quantity of a dimension, displayed in `unit`; for another dimension, one named by its SI unit.
 
     >>> quantity_of_dimension(dimension_of("mm"), "mm").noun, quantity_of_dimension(dimension_of("mm^3")).si
     ('a length', 'm^3')
@@ -128,7 +128,7 @@ def _quantity(powers: tuple[tuple[str, Fraction], ...], unit: str) -> Quantity:
 
 
 def quantity_of_unit(unit: str) -> Quantity:
-    """The quantity that a unit is one of, shown in it; raises `ValueError` for what is no unit.
+    """Return the quantity of a unit, displayed in it; raises `ValueError` for an unknown unit.
 
     >>> quantity_of_unit("mm").noun, quantity_of_unit("mm").shown
     ('a length', 'mm')
@@ -150,7 +150,7 @@ def _si_text(powers: tuple[tuple[str, Fraction], ...]) -> str:
 
 
 def _coherent_size(dimension: Dimension) -> Fraction:
-    """The size of the coherent SI unit of a dimension: a kilogram is a thousand of the base unit gram."""
+    """Size of the coherent SI unit of a dimension: a kilogram is 1000 of the base unit gram."""
     return Fraction(1000 ** dict(dimension.powers).get("[mass]", Fraction(0)))
 
 
@@ -171,18 +171,26 @@ def _split(text: str, quantity: Quantity, where: str) -> tuple[str, str]:
 
 def _no_number(text: str, quantity: Quantity, where: str) -> DesignError:
     shown = text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
-    example = f'Write for example "{quantity.example}"'
     if re.match(r"[+-]?(nan|inf)", text, re.IGNORECASE):
-        return refuse(where, f'found "{shown}", which is not finite', example)
-    if re.match(r"[+-]?\d+,\d", text):
-        return refuse(where, f'found "{shown}" with a comma', f"The decimal sign is a point. {example}")
-    return refuse(where, f'found "{shown}" where {quantity.noun} is expected', example)
+        return refuse(where, f'must be finite (got "{shown}")', f"Use e.g. {example(quantity)}")
+    if re.match(r"[+-]?\d+,\d+(?![\d.,])", text):
+        return refuse(where, f'decimal comma (got "{shown}")', f'Use a decimal point: "{shown.replace(",", ".")}"')
+    return refuse(where, f'must be {quantity.noun} (got "{shown}")', f"Use e.g. {example(quantity)}")
+
+
+def example(quantity: Quantity) -> str:
+    """An example of a quantity as it is typed: a ratio without quotes.
+
+    >>> example(RATIO)
+    '0.3'
+    """
+    return quantity.example if quantity is RATIO else f'"{quantity.example}"'
 
 
 def _round(exact: Fraction, text: str, where: str) -> float:
     value = _to_float(exact)
     if not np.isfinite(value) or (value == 0.0 and exact != 0):
-        raise refuse(where, f'found "{text}", which no double-precision number can hold', "Check the exponent and the unit")
+        raise refuse(where, f'outside the range of double precision (got "{text}")', "Check the exponent and the unit")
     return value
 
 
@@ -195,18 +203,18 @@ def _to_float(exact: Fraction) -> float:
 
 def _unit_scale(unit: str, quantity: Quantity, where: str, text: str) -> Fraction:
     """The unit's size in the quantity's SI unit, after checking its dimension."""
-    example = f'Write for example "{quantity.example}"'
+    hint = f"Use e.g. {example(quantity)}"
     if unit == quantity.si:
         return Fraction(1)
     try:
         dimension = dimension_of(unit)
     except ValueError as error:
-        raise refuse(where, f'found "{text}": {error}', example) from None
+        raise refuse(where, f'{error} (got "{text}", expected {quantity.noun})', hint) from None
     for form in (quantity.si, *quantity.also):
         expected = dimension_of(form)
         if dimension.powers == expected.powers:
             return dimension.size / expected.size
-    raise refuse(where, f'found "{text}", {_dimension_name(unit, dimension)}, where {quantity.noun} is expected', example)
+    raise refuse(where, f'must be {quantity.noun} (got "{text}", {_dimension_name(unit, dimension)})', hint)
 
 
 def _dimension_name(unit: str, dimension: Dimension) -> str:
@@ -235,7 +243,7 @@ def _shortest_text(value: float, scale: Fraction) -> str:
 
 
 def _decimal(value: Fraction, digits: int) -> str:
-    """The fraction rounded to `digits` significant digits: plain, or with an exponent that is a multiple of three."""
+    """Fraction rounded to `digits` significant digits: plain, or with an exponent that is a multiple of three."""
     with localcontext() as context:
         context.prec = digits
         rounded = (Decimal(value.numerator) / Decimal(value.denominator)).normalize()

@@ -1,1 +1,1 @@
-"""Commands of the control wing, a module each."""
+"""Commands of the package `control`, one module each."""

@@ -1,4 +1,4 @@
-"""The command `hysteresis`: a stack's hysteresis and creep from records of volts and stroke."""
+"""The command `hysteresis`: identify hysteresis and creep of a stack from records of voltage and stroke."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ def hysteresis(  # noqa: PLR0913 (its options)
         typer.Argument(help="File of the test: universal file, MAT, HDF5 or CSV.", metavar="RECORD", show_default=False),
     ],
     *,
-    volts: Annotated[str | None, text_option("--volts", "NAME", "Channel of the volts. Default: the one in volts.")] = None,
-    stroke: Annotated[str | None, text_option("--stroke", "NAME", "Channel of the stroke. Default: the one in a length.")] = None,
-    step: Annotated[Path | None, text_option("--step", "RECORD", "Record of a step of the volts, for creep.")] = None,
+    volts: Annotated[str | None, text_option("--volts", "NAME", "Voltage channel. Default: the channel in volts.")] = None,
+    stroke: Annotated[str | None, text_option("--stroke", "NAME", "Stroke channel. Default: the channel in a length.")] = None,
+    step: Annotated[Path | None, text_option("--step", "RECORD", "Record of a voltage step, for creep.")] = None,
     limits: Annotated[
-        tuple[str, str] | None, text_option("--limits", "LOW HIGH", 'Volts of the stack, e.g. --limits "0 V" "1000 V".')
+        tuple[str, str] | None, text_option("--limits", "LOW HIGH", 'Voltage range of the stack, e.g. --limits "0 V" "1000 V".')
     ] = None,
     units: Units = None,
     rate: Rate = None,
     arrays: Arrays = None,
-    output: Annotated[Path | None, output_option("STACK.TOML", "Hysteresis file to write, for the loop.")] = None,
+    output: Annotated[Path | None, output_option("STACK.TOML", "Hysteresis file to write, for `loop`.")] = None,
 ) -> CommandResult:
     """Identify the hysteresis of a stack.
 
-    From a record of volts and stroke: a Prandtl-Ishlinskii model that has an inverse, sized on parts of the record that are not fitted.
+    From a record of voltage and stroke: an invertible Prandtl-Ishlinskii model, its size chosen on segments that are not fitted.
 
-    With the record of a step, its creep.
+    With the record of a voltage step, also creep.
     """
     records = [record] if step is None else [record, step]
     between = None if limits is None else _volts(limits)
@@ -60,12 +60,16 @@ def hysteresis(  # noqa: PLR0913 (its options)
 def _open(path: Path, reader: RecordTexts) -> Record:
     (found,) = open_records([path], reader.options())
     if not isinstance(found, Record):
-        raise refuse(str(path), "it holds frequency responses, which show no hysteresis", "Give a record of volts and stroke over time")
+        raise refuse(
+            str(path), "record contains frequency responses, which show no hysteresis", "Use a record of voltage and stroke over time"
+        )
     return found
 
 
 def _volts(limits: tuple[str, str]) -> tuple[float, float]:
     low, high = (parse(text, VOLTAGE, where="--limits") for text in limits)
     if low >= high:
-        raise refuse("--limits", f"{limits[0]} to {limits[1]} is no range", "Give the lower voltage first")
+        raise refuse(
+            "--limits", f"no range (got {limits[0]} to {limits[1]}, expected the lower voltage first)", "Exchange the two voltages"
+        )
     return low, high

@@ -1,4 +1,4 @@
-"""The command `loop`: the control loop of a stage, from a commanded pose to nanometres, and its controller out."""
+"""The command `loop`: analyse the control loop of a stage and export its controller."""
 
 from __future__ import annotations
 
@@ -30,6 +30,7 @@ from flexstage.show.command.displaced import Footing, Place, footing
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import (
     FEA,
+    Full,
     text_option,
 )
 from flexstage.show.command.output import announce, require_writable, write
@@ -69,6 +70,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     hardware: Annotated[
         Path | None, text_option("--hardware", "FILE.c", "Write the controller for a processor of its own: FILE.c, FILE.h, FILE_test.c.")
     ] = None,
+    full: Full = False,
     float32: Annotated[bool, typer.Option("--float32", help="32-bit numbers in the code of --hardware, instead of 64-bit.")] = False,
     example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Write a commented set-up file to start from, and stop.")] = None,
 ) -> CommandResult | None:
@@ -76,8 +78,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
 
     Tunes a controller, judges its stability and margins, simulates steps or a trajectory, and says whose the remaining noise is.
 
-    With nothing else given: the lumped model, a PI controller with notches, as fast as a margin of 6 dB lets it be, at 10 kHz, one
-    sample late. Where forces drive the stage, a PID controller.
+    With nothing else given: the lumped model, a PI controller with notches, optimised within a margin of 6 dB, at 10 kHz, one
+    sample late. Where forces drive the stage, a PID controller. --quick tunes it without optimisation.
 
     With --at, --load, --fixed or --temperature: about that operating point.
 
@@ -113,11 +115,11 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         write_export(found, target)
     if hardware is not None:
         write_hardware(found, hardware, Precision.SINGLE if float32 else Precision.DOUBLE)
-    return _closed(found, stands, model)
+    return _closed(found, stands, model, full=full)
 
 
 def _identified(record: list[Path] | None, texts: RecordTexts, tell: Told) -> Identification | None:
-    """The modes of the records, all of one test."""
+    """Modes identified from the records, all of one test."""
     if not record:
         return None
     reader = texts.options()
@@ -126,7 +128,7 @@ def _identified(record: list[Path] | None, texts: RecordTexts, tell: Told) -> Id
 
 
 def _compared(rivals: Comparison, asked: forms.LoopSetup, stands: Footing, model: Model | None) -> CommandResult:
-    """Controllers side by side."""
+    """Result of several controllers on one plant."""
     return CommandResult(
         stands.mechanism,
         lambda: rivals,
@@ -138,12 +140,12 @@ def _compared(rivals: Comparison, asked: forms.LoopSetup, stands: Footing, model
     )
 
 
-def _closed(found: LoopStudy, stands: Footing, model: Model | None) -> CommandResult:
-    """One loop."""
+def _closed(found: LoopStudy, stands: Footing, model: Model | None, *, full: bool) -> CommandResult:
+    """Result of one loop."""
     return CommandResult(
         stands.mechanism,
         lambda: stands.body(found) if stands.operating_point is not None else found,
-        lambda: [*stands.tables(), *_tables(found)],
+        lambda: [*stands.tables(), *(_tables(found) if full else tables.short_tables(found))],
         lambda: pages.loop_report(found),
         model,
         (*stands.warnings, *found.warnings),
@@ -151,29 +153,23 @@ def _closed(found: LoopStudy, stands: Footing, model: Model | None) -> CommandRe
 
 
 def _fea_findings(where: Place, model: Model | None) -> Iterator[Finding]:
-    """What asks for another model than finite elements of the drawn stage."""
+    """Options that contradict a finite-element plant of the nominal stage."""
     if where:
-        yield Finding(
-            "--fea", f"finite elements are of the stage as drawn, and {where.options} brings it elsewhere", "Leave one of them out"
-        )
+        yield Finding("--fea", f"finite elements need the nominal stage (got {where.options})", "Omit one of them")
     if model is not None:
-        yield Finding("--fea", f"--model {model.value} asks for another model of the plant", "Leave one of them out")
+        yield Finding("--fea", f"contradicts --model {model.value}, another plant model", "Omit one of them")
 
 
 def _require_comparable(asked: forms.LoopSetup, written: Mapping[str, bool]) -> None:
-    """Refuse what belongs to one controller."""
+    """Refuse options that belong to one controller."""
     said = {
         **written,
         "controller.kind": asked.controller.kind is not None,
         **{f"controller.{name}": True for name in asked.controller.stated if getattr(asked.controller, name) is not None},
         "controller.loops": bool(asked.controller.loops),
     }
-    advice = "Leave it out of a comparison, which tunes each kind itself"
-    require(
-        Finding(name, "it belongs to one controller, and --compare lays several side by side", advice)
-        for name, is_said in said.items()
-        if is_said
-    )
+    advice = "Omit it: a comparison tunes each kind itself"
+    require(Finding(name, "belongs to one controller, but --compare uses several", advice) for name, is_said in said.items() if is_said)
 
 
 def _write_example(design: Path, example: Path) -> None:

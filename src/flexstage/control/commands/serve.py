@@ -1,4 +1,4 @@
-"""The command `serve`: a stage under its loop that a program of a laboratory drives over a socket."""
+"""The command `serve`: a simulated closed-loop stage that laboratory programs control over a socket."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Controllers: from the error of the pose to the actuators' commands."""
+"""Controllers: from pose error to actuator commands."""

@@ -1,4 +1,4 @@
-"""Decentralised control: a law and notches for every loop, and the reference fed forward."""
+"""Decentralised control: one controller with notch filters per loop, and reference feedforward."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from flexstage.control.systems.system import System, select
 
 @dataclass(frozen=True, eq=False)
 class Decentralised(CheckedFields):
-    """One law for each of the loops, each followed by its notches; strokes = drive times the loops' commands + `feedforward` reference.
+    """Decentralised controller: one law with notches per loop; strokes = drive times the loops' commands + `feedforward` reference.
 
-    `laws` and `notches` are as many as `loops` has names. `feedforward` (n, f) are the strokes by which the reference is fed forward: R_a,
-    or the gains that correct lost motion; absent, nothing. `prefilters`, as many, shape the reference of each loop, also where it is fed
-    forward; absent, it is taken as it is. Raises `DesignError` where the numbers do not fit.
+    `laws` and `notches` have one entry per name of `loops`. `feedforward` (n, f) are feedforward strokes per reference coordinate: R_a, or
+    gains that correct lost motion; default: no feedforward. `prefilters`, one per loop, shape its reference, feedforward included; default:
+    none. Raises `DesignError` for sizes that do not match.
     """
 
     loops: Loops
@@ -36,15 +36,14 @@ class Decentralised(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        """Refuse numbers that do not fit."""
         require(_findings(self))
 
     def system(self, step: float | None = None) -> System:
-        """The controller as a system.
+        """Return the controller as a linear system.
 
-        Inputs `error.<c>`, `pose.<c>` (only where a law wants it), `reference.<c>` (with `feedforward` or `prefilters`) and
-        `applied.<actuator>`, what it was given less what was commanded; outputs `command.<actuator>`. Raises `DesignError` for what cannot
-        be sampled this slowly.
+        Inputs `error.<c>`, `pose.<c>` (only if a law uses it), `reference.<c>` (with `feedforward` or `prefilters`) and
+        `applied.<actuator>`, the applied less the commanded input. Outputs `command.<actuator>`. Raises `DesignError` for a law too fast
+        for the sampling rate.
 
         >>> from flexstage.control.controllers.pi import PI
         >>> from flexstage.control.controllers.loops import platform_loops
@@ -62,7 +61,7 @@ class Decentralised(CheckedFields):
         entries = [scipy.linalg.block_diag(*(each.B[:, [column]] for each in chains)) for column in range(3)]
         exit_ = scipy.linalg.block_diag(*(each.C for each in chains))
         direct = [np.diag([each.D[0, column] for each in chains]) for column in range(3)]
-        # what was applied, seen by the loops; the loops' commands are less than the actuators' where these are redundant
+        # applied strokes, projected on the loops: redundant actuators outnumber the loops
         seen = (loops.sense, loops.sense, np.linalg.pinv(loops.drive))
         found = System(
             A=A,
@@ -79,7 +78,7 @@ class Decentralised(CheckedFields):
 
 
 def loop_systems(control: Decentralised, step: float | None = None) -> tuple[System, ...]:
-    """Every loop's law and notches in a row: inputs `error`, `pose`, `applied`, output `command`, in metres.
+    """Law and notches of each loop in series: inputs `error`, `pose`, `applied`, output `command`, in metres.
 
     >>> from flexstage.control.controllers.pi import PI
     >>> from flexstage.control.controllers.loops import platform_loops
@@ -92,7 +91,7 @@ def loop_systems(control: Decentralised, step: float | None = None) -> tuple[Sys
     0.0
     """
     rows = tuple(zip(control.laws, control.notches or ((),) * len(control.laws), strict=True))
-    alike = {(id(law), id(filters)): (law, filters) for law, filters in rows}  # a symmetric stage has the same row several times
+    alike = {(id(law), id(filters)): (law, filters) for law, filters in rows}  # a symmetric stage repeats the same row
     made = {key: _in_series(law, filters, step) for key, (law, filters) in alike.items()}
     return tuple(made[id(law), id(filters)] for law, filters in rows)
 
@@ -105,7 +104,7 @@ def _in_series(law: Law, notches: tuple[Notch, ...], step: float | None) -> Syst
 
 
 def filtered(law: System, notch: System) -> System:
-    """A law whose command passes a notch: what is wired here is always the same, `connect` finds out what is.
+    """Law in series with a notch on its command, with fixed wiring (not by `connect`).
 
     >>> from flexstage.control.controllers.pi import PI
     >>> law = PI(integral=200.0).system()
@@ -119,7 +118,7 @@ def filtered(law: System, notch: System) -> System:
 
 
 def with_feedforward(control: System, gains: Array | None, coordinates: Coordinates) -> System:
-    """The controller whose commands have `gains` (n, f) times the reference added; inputs `reference.<c>` before what was applied.
+    """Controller with `gains` (n, f) times the reference added to its commands; inputs `reference.<c>` precede `applied`.
 
     >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.control.systems.system import static
@@ -154,8 +153,10 @@ def _findings(control: Decentralised) -> Iterator[Finding]:
     count = len(control.loops.names)
     for kind, given in (("laws", control.laws), ("sets of notches", control.notches), ("prefilters", control.prefilters)):
         if len(given) != count and (given or kind == "laws"):
-            yield Finding("controller", f"{len(given)} {kind} for {count} loops ({', '.join(control.loops.names)})", "Give one for each")
+            yield Finding(
+                "controller", f"{len(given)} {kind} for {count} loops ({', '.join(control.loops.names)})", "Use one for each loop"
+            )
     shape = (len(control.loops.coordinates.actuators), len(control.loops.coordinates.names))
     if control.feedforward is not None and np.shape(control.feedforward) != shape:
-        what = f"the fed-forward gains are {np.shape(control.feedforward)}, where actuators and coordinates make them {shape}"
-        yield Finding("controller", what, "Give strokes by coordinate, as R_a")
+        what = f"feedforward gains of wrong shape (got {np.shape(control.feedforward)}, expected {shape}: actuators, coordinates)"
+        yield Finding("controller", what, "Use strokes per coordinate, as R_a")

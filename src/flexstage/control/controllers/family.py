@@ -1,4 +1,4 @@
-"""Kinds of controllers made of single loops: families of laws, of which tuning takes the best. Other packages offer theirs."""
+"""Families of single-loop controllers from which tuning selects the best. Other packages register further ones."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.control.controllers.law import Law
 
 @dataclass(frozen=True)
 class Place:
-    """Where a law shall pass: the loop's complex `gain` at `frequency` [Hz] with notches; its `static` gain, first `resonance` [Hz]."""
+    """Plant at a crossover: complex `gain` at `frequency` [Hz] with notches, `static` gain, first `resonance` [Hz]."""
 
     frequency: float
     gain: complex
@@ -22,11 +22,11 @@ class Place:
 
 @dataclass(frozen=True)
 class Family:
-    """A kind of controller by its `name` in words: its `laws` with |C g| = 1 at a place, sampled every so many seconds (None: not).
+    """Controller family with a `name`: its `laws` with |C g| = 1 at a crossover, for a sampling interval [s] (None: continuous).
 
-    Of them tuning takes, loop by loop, the one with the lowest peak of S. `notched`: notches behind it are placed on modes that need them.
-    `others`: what to try where it does not reach what is wanted. `steps` are the ratios of bandwidths tried in turn, above 0.05 of the
-    first mode and below, where less depends on them.
+    Tuning selects, per loop, the law with the lowest peak of S. `notched`: notches are added on modes that need them. `others`: kinds to
+    suggest if the specification is not reached. `steps`: ratios of the bandwidths tried in turn, above 0.05 of the first mode, and coarser
+    below.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Family:
 
 
 def tracking_gain(place: Place, turning: float, feedback: complex) -> float | None:
-    """The integral gain k [1/s] with |k/s - Q| |g| = 1 for feedback Q of the pose at a place, s = j `turning`; None where there is none.
+    """Integral gain k [1/s] with |k/s - Q| |g| = 1 for pose feedback Q at s = j `turning`; None without a solution.
 
     >>> round(tracking_gain(Place(1.0, 0.5 + 0.0j, 1.0, None), 2.0, 0.0j), 9)
     4.0
@@ -49,5 +49,5 @@ def tracking_gain(place: Place, turning: float, feedback: complex) -> float | No
 
 
 def warped(frequency: float, step: float | None) -> float:
-    """The angular frequency [1/s] at which a continuous law is what its samples by Tustin's rule are at a frequency [Hz]."""
+    """Prewarped angular frequency [1/s] of a frequency [Hz] sampled by Tustin's rule."""
     return 2.0 * np.pi * frequency if step is None else float(2.0 / step * np.tan(np.pi * frequency * step))

@@ -1,4 +1,4 @@
-"""In which coordinates single loops are closed: actuators, motions of the platform, modes."""
+"""Coordinates of single loops: actuators, platform motions, or modes."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _DEPENDENT = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Loops:
-    """k single loops: their errors are `sense` (k, f) times those of the coordinates, strokes `drive` (n, k) times their commands.
+    """Coordinates of k single loops: loop errors = `sense` (k, f) times coordinate errors, strokes = `drive` (n, k) times loop commands.
 
-    All loops are in metres: at rest a loop's pose is its command, but for lost motion.
+    All loops are in metres: in static equilibrium a loop's pose equals its command, except for lost motion.
     """
 
     names: tuple[str, ...]
@@ -31,9 +31,9 @@ class Loops:
 
 @check_arguments
 def actuator_loops(coordinates: Coordinates) -> Loops:
-    """One loop for each actuator: sense = R_a, drive = I.
+    """Define one loop for each actuator: sense = R_a, drive = I.
 
-    Raises `DesignError` for more actuators than motions: an integrator each would be more than the gauges can hold.
+    Raises `DesignError` for more actuators than coordinates: the gauges cannot observe all the integrators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -43,16 +43,16 @@ def actuator_loops(coordinates: Coordinates) -> Loops:
     """
     actuators, motions = len(coordinates.actuators), len(coordinates.names)
     if actuators > motions:
-        what = f"{actuators} actuators move {motions} coordinates: {actuators - motions} of their integrators would see no error"
+        what = f"more actuators than coordinates (got {actuators} for {motions}): {actuators - motions} integrators are unobservable"
         raise refuse("actuator coordinates", what, "Close the loops in platform or modal coordinates")
     return Loops(coordinates.actuators, coordinates.strokes, np.eye(actuators), coordinates)
 
 
 @check_arguments
 def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Loops:
-    """One loop for each motion of the platform, rotations times the stage's length: sense = S, drive = R_a S^-1.
+    """Define one loop for each motion of the platform, rotations times the stage's length: sense = S, drive = R_a S^-1.
 
-    `strokes` (n, f) takes the place of R_a, for example the gains that correct lost motion.
+    `strokes` (n, f) replaces R_a, for example by gains that correct lost motion.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -66,10 +66,10 @@ def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Lo
 
 
 def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
-    """The modes that a stage's loops hold: as many as coordinates, those that yield most under static load along them.
+    """Select the modes for modal loops: one per coordinate, the most compliant under static load along the coordinates.
 
-    A mode's part of the platform's compliance is |S phi|^2 / omega^2 (rotations as lengths); modes are taken from the largest down, each
-    time by what is not motion of those taken before. Indices ascend. Raises `DesignError` where too few modes are given.
+    A mode's part of the platform's compliance is |S phi|^2 / omega^2 (rotations as lengths). Modes are selected from the largest down, each
+    by its component independent of those selected before. Indices ascend. Raises `DesignError` for too few modes.
 
     >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.analysis.dynamics.modes import modes
@@ -94,18 +94,17 @@ def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
         left = left - np.outer(direction, direction @ left)
     if len(chosen) == len(rows):
         return tuple(sorted(chosen))
-    what = f"{len(found.names)} modes show {len(chosen)} independent motions of the {len(rows)} coordinates"
-    raise refuse("modal coordinates", what, "Give more modes, or close the loops in platform coordinates")
+    what = f"too few independent modes (got {len(chosen)} of {len(found.names)} modes, expected {len(rows)})"
+    raise refuse("modal coordinates", what, "Compute more modes, or close the loops in platform coordinates")
 
 
 @check_arguments
 def modal_loops(coordinates: Coordinates, shapes: Array, strokes: Array | None = None) -> Loops:
-    """One loop for each of the platform's modes: sense = Phi^-1, drive = R_a Phi.
+    """Define one loop for each of the platform's modes: sense = Phi^-1, drive = R_a Phi.
 
-    `shapes` (6, f) are the platform's twists in these modes, columns of `Modes.platform_shapes` (`loop_modes` picks them); their size does
-    not matter. With massless links the loops are exactly decoupled, each an oscillator of static gain 1 (Phi^T K Phi = Omega^2); what
-    units' own masses and lost motion leave, the crosstalk tells. `strokes` (n, f) takes the place of R_a. Raises `DesignError` for
-    shapes that do not span the coordinates.
+    `shapes` (6, f) are the platform's twists in these modes, columns of `Modes.platform_shapes` (`loop_modes` selects them), of any scale.
+    With massless links the loops are exactly decoupled, each an oscillator of static gain 1 (Phi^T K Phi = Omega^2). Unit masses and lost
+    motion cause the remaining crosstalk. `strokes` (n, f) replaces R_a. Raises `DesignError` for shapes that do not span the coordinates.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -117,13 +116,13 @@ def modal_loops(coordinates: Coordinates, shapes: Array, strokes: Array | None =
     rows = [COMPONENTS.index(name) for name in coordinates.names]
     scaled = np.asarray(shapes, dtype=float)[rows] * coordinates.scale[:, None]
     if scaled.shape[1] != len(rows):
-        what = f"{scaled.shape[1]} modes are given for {len(rows)} coordinates ({', '.join(coordinates.names)})"
-        raise refuse("modal coordinates", what, "Give as many modes of the platform, for example the lowest in which it moves")
+        what = f"wrong number of modes (got {scaled.shape[1]}, expected {len(rows)}: {', '.join(coordinates.names)})"
+        raise refuse("modal coordinates", what, "Use as many platform modes as coordinates, for example the lowest")
     scaled = scaled / np.max(np.abs(scaled), axis=0)
     values = np.linalg.svd(scaled, compute_uv=False)
     if not values[-1] > _DEPENDENT * values[0]:
         what = f"the platform's motions in these modes are not independent: the smallest singular value is {values[-1] / values[0]:.2g}"
-        raise refuse("modal coordinates", f"{what} of the largest", "Take other modes, or close the loops in platform coordinates")
+        raise refuse("modal coordinates", f"{what} of the largest", "Use other modes, or close the loops in platform coordinates")
     drive = coordinates.strokes if strokes is None else strokes
     names = tuple(f"mode{number + 1}" for number in range(len(rows)))
     return Loops(names, np.linalg.inv(scaled) * coordinates.scale, drive / coordinates.scale @ scaled, coordinates)

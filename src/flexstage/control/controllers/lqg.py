@@ -1,4 +1,4 @@
-"""Linear-quadratic control with integrators, and a Kalman filter that knows the gauges' noise."""
+"""Linear-quadratic-Gaussian (LQG) control with integrators, and a Kalman filter designed with the gauges' noise."""
 
 from __future__ import annotations
 
@@ -16,16 +16,15 @@ from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
 DOUBLINGS, _SETTLED = 30, 1e-15
-"""Rounds of doubling, 2^30 samples: a day at 10 kHz; and what the last may still add, a rounding."""
+"""Rounds of doubling, 2^30 samples: a day at 10 kHz; and the relative change at which doubling stops."""
 
 
 @dataclass(frozen=True)
 class Weights:
-    """What the regulator minimises: the integral of w^2 |z|^2 + p |y|^2 + |u|^2, with z' = the loop's error.
+    """Weights of the regulator's cost: the integral of w^2 |z|^2 + p |y|^2 + |u|^2, with z' = the loop's error.
 
-    y is the pose in lengths (rotations times the stage's length), u the strokes, w = 2 pi `bandwidth` [Hz] and p = `pose` [1], one for all
-    coordinates or one for each. Around a plant of gain 1 without dynamics the loop's gain passes 1 exactly at `bandwidth`
-    (u' = w e).
+    y is the pose in lengths (rotations times the stage's length), u the strokes. w = 2 pi `bandwidth` [Hz] and p = `pose` [1], one for all
+    coordinates or one for each. With a static plant of gain 1 the gain crossover is exactly `bandwidth` (u' = w e).
     """
 
     bandwidth: float | tuple[float, ...]
@@ -34,7 +33,7 @@ class Weights:
 
 @dataclass(frozen=True)
 class Disturbances:
-    """What the observer expects: `strokes` [m/Hz^(1/2)] white noise of every command, `gauges` the noise density of every reading."""
+    """Noise densities assumed by the observer: `strokes` [m/Hz^(1/2)] of every command (white), `gauges` of every reading."""
 
     strokes: float
     gauges: Mapping[str, float]
@@ -42,12 +41,13 @@ class Disturbances:
 
 @dataclass(frozen=True, eq=False)
 class LQG:
-    """Integral linear-quadratic control of a model: u = -K x^ + K_z z + N r.
+    """LQG controller with integrators, for a model: u = -K x^ + K_z z + N r.
 
-    Sampled: x^ = x- + M (y - C x-), x- = A x^ + B u, z+ = z + T e. Continuous: x^' = A x^ + B u + L (y - C x^ - D u), z' = e. `model` goes
-    from `command.<actuator>` to `pose.<c>`; `regulator` K (n, s), `integral` K_z (n, f), `observer` M or L (s, f), `feedforward` (n, f)
-    the strokes at rest for a reference, absent: nothing is fed forward. `tracking` [s] is the time in which integrators follow what was
-    applied; the observer knows it at once. `weights` are those it was designed by, `expected` what its observer expects, where known.
+    Sampled: x^ = x- + M (y - C x-), x- = A x^ + B u, z+ = z + T e. Continuous: x^' = A x^ + B u + L (y - C x^ - D u), z' = e. `model` has
+    inputs `command.<actuator>` and outputs `pose.<c>`. `regulator` is K (n, s), `integral` K_z (n, f), `observer` M or L (s, f).
+    `feedforward` (n, f) are static strokes for a reference; default: no feedforward. `tracking` [s] is the anti-windup time of the
+    integrators; the observer uses the applied strokes directly. `weights` are the design weights, `expected` the observer's assumed
+    disturbances, if known.
     """
 
     model: System
@@ -61,22 +61,22 @@ class LQG:
     expected: Disturbances | None = None
 
     def system(self, step: float | None = None) -> System:
-        """The controller: inputs `error.<c>`, `pose.<c>`, `reference.<c>` (with `feedforward`), `applied.<actuator>`.
+        """Return the controller: inputs `error.<c>`, `pose.<c>`, `reference.<c>` (with `feedforward`), `applied.<actuator>`.
 
-        Raises `DesignError` for another step than the model's.
+        Raises `DesignError` for a step other than the model's.
         """
         if step != self.model.step:
             model, asked = ("continuous" if each is None else f"sampled every {each:g} s" for each in (self.model.step, step))
-            raise refuse("LQG", f"its model is {model}, and the controller is to be {asked}", "Design it on a model sampled alike")
+            raise refuse("LQG", f"the model is {model} (expected {asked})", "Design it on a model with the same sampling")
         return with_feedforward_states(_sampled_system(self), self)
 
 
 def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Disturbances, feedforward: Array | None = None) -> LQG:
-    """The regulator of least cost and the observer of least variance for a `model` from commands to pose (`pose_plant`).
+    """Design the regulator of least cost and the observer of least variance for a `model` from commands to pose (`pose_plant`).
 
-    K and K_z from the algebraic Riccati equation of the model with the integrators of the error, the observer from that of the model with
-    its noises (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972). One-sided densities G hold over the whole band, so that a sample
-    has the variance G^2/(2 T). Raises `DesignError` for gauges without noise and a model of which nothing can be controlled.
+    K and K_z solve the algebraic Riccati equation of the model with integrators of the error. The observer solves the equation of the model
+    with its noises (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972). One-sided densities G apply to the whole band, so that a
+    sample has the variance G^2/(2 T). Raises `DesignError` for gauges without noise and for an uncontrollable model.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -136,7 +136,7 @@ def observer_gain(model: System, coordinates: Coordinates, expected: Disturbance
     state, cross = entry @ entry.T, entry @ (D * expected.strokes).T
     output = pose @ pose.T + expected.strokes**2 * D @ D.T
     # Of the order 1e-20 m^2: made numbers of order one, which the solver's tolerances need. Only ratios of noises count, so that
-    # densities stand for the variances G^2/(2 T).
+    # sample variance G^2/(2 T) of a one-sided density G
     unit = np.trace(output) / len(output)
     state, output, cross = state / unit, output / unit, cross / unit
     solution = _riccati(model.A.T, C.T, state, output, cross)
@@ -144,7 +144,7 @@ def observer_gain(model: System, coordinates: Coordinates, expected: Disturbance
 
 
 def estimator(model: System, observer: Array) -> System:
-    """What the observer of a model takes its states to be, x^, of what it reads, y, and of the commands, u.
+    """Kalman filter: estimated states x^ of a model from readings y and commands u.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -162,7 +162,7 @@ def estimator(model: System, observer: Array) -> System:
 
 def _step(model: System) -> float:
     if model.step is None:
-        raise refuse("LQG", "its model is continuous", "State a rate: linear-quadratic control is sampled")
+        raise refuse("LQG", "the model is continuous", "Specify a rate: linear-quadratic control is sampled")
     return model.step
 
 
@@ -170,21 +170,22 @@ def _riccati(A: Array, B: Array, cost: Array, effort: Array, cross: Array) -> Ar
     if (doubled := _doubled(A, B, cost, effort, cross)) is not None:
         return doubled
     try:
-        with np.errstate(invalid="ignore"):  # of weights out of all proportion, whose solution is not finite
+        with np.errstate(invalid="ignore"):  # badly scaled weights can make the solution infinite
             found = scipy.linalg.solve_discrete_are(A, B, cost, effort, s=cross)
         if not np.all(np.isfinite(found)):
             raise np.linalg.LinAlgError
     except np.linalg.LinAlgError as error:
-        what = "the Riccati equation has no stabilising solution: something that does not decay is neither moved nor seen"
-        raise refuse("LQG", what, "Keep fewer modes, or damp all of them") from error
+        what = "the Riccati equation has no stabilising solution: an undamped mode is neither controllable nor observable"
+        raise refuse("LQG", what, "Retain fewer modes, or damp all of them") from error
     return 0.5 * (found + found.T)
 
 
 def _doubled(A: Array, B: Array, cost: Array, effort: Array, cross: Array) -> Array | None:
-    """The solution of the sampled equation by doubling, four times as fast as by a generalised Schur form; `None`: it does not settle.
+    """Doubling solution of the discrete Riccati equation; `None` without convergence.
 
-    H after k rounds is the cost of 2^k samples (Anderson, International Journal of Control 28 (1978) 295; Chu, Fan, Lin & Wang,
-    International Journal of Control 77 (2004) 767): where the best loop is stable it converges quadratically.
+    Four times as fast as a generalised Schur form. H after k rounds is the cost of 2^k samples (Anderson, International Journal of Control
+    28 (1978) 295; Chu, Fan, Lin & Wang, International Journal of Control 77 (2004) 767). Converges quadratically if the best loop is
+    stable.
     """
     back = np.linalg.solve(effort, np.hstack([B.T, cross.T]))
     through, moved, left = B @ back[:, : len(A)], A - B @ back[:, len(A) :], cost - cross @ back[:, len(A) :]
@@ -225,7 +226,7 @@ def _sampled_system(control: LQG) -> System:
 
 
 def with_feedforward_states(control: System, given: LQG) -> System:
-    """The controller with the reference fed forward: strokes F r at rest and K x(F r) for the states they bring along.
+    """Controller with reference feedforward: static strokes F r, and K x(F r) for the states they cause.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -242,6 +243,6 @@ def with_feedforward_states(control: System, given: LQG) -> System:
     found = with_feedforward(control, gain, given.coordinates)
     columns = [number for number, name in enumerate(found.input_names) if name.startswith("reference.")]
     entry = found.B.copy()
-    # the observer knows the whole command
+    # the observer uses the whole command
     entry[: len(model.A), columns] += model.B @ gain
     return replace(found, B=entry)

@@ -1,4 +1,4 @@
-"""Notch filters, placed on a stage's modes."""
+"""Notch filters at a stage's modes."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ _FAR = 0.1
 class Notch(CheckedFields):
     """N(s) = (s^2 + 2 d zeta w s + w^2) / (s^2 + 2 zeta w s + w^2): gain d = `depth` at w = 2 pi `frequency`, 1 far from it.
 
-    `damping` zeta is that of the poles: the gain is below 1/sqrt(2) over about 2 zeta of the frequency. A mode of ratio zeta_m is cancelled
-    by depth zeta_m / zeta, its poles replaced by those of the notch. Raises `DesignError` for numbers that cannot be.
+    `damping` zeta belongs to the poles: the gain is below 1/sqrt(2) over a bandwidth of about 2 zeta of the frequency. Depth zeta_m / zeta
+    cancels a mode of ratio zeta_m and replaces its poles by the notch's. Raises `DesignError` for invalid numbers.
 
     >>> from flexstage.control.controllers.notch import Notch
     >>> gains = Notch(frequency=110.9, depth=0.02).system().transfer(np.array([0.0, 110.9]))
@@ -38,20 +38,19 @@ class Notch(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        """Refuse numbers that cannot be."""
         where, found = f"notch at {self.frequency:g} Hz", []
         if not 0.0 < self.frequency < np.inf:
-            found.append(Finding(where, "that is no frequency", "Give a positive one: that of a mode"))
+            found.append(Finding(where, "must be a positive frequency", "Give a positive one: that of a mode"))
         if not 0.0 <= self.depth <= 1.0:
-            found.append(Finding(where, f"its depth is {self.depth:g}", "Give the gain that is left: 0 (all taken) to 1 (nothing)"))
+            found.append(Finding(where, f"its depth is {self.depth:g}", "Use the gain at the notch: from 0 to 1 (no notch)"))
         if not 0.0 < self.damping < np.inf:
-            found.append(Finding(where, f"the damping of its poles is {self.damping:g}", "Give a positive ratio, for example 0.7"))
+            found.append(Finding(where, f"the damping of its poles is {self.damping:g}", "Use a positive ratio, for example 0.7"))
         require(found)
 
     def system(self, step: float | None = None) -> System:
-        """Input `raw`, output `notched`; with a step by Tustin's rule, prewarped: the gain at the notch is kept exactly.
+        """Return the filter from `raw` to `notched`, by Tustin's rule, prewarped: the gain at the notch is exact.
 
-        Raises `DesignError` for a notch that is not below half the sampling rate.
+        Raises `DesignError` for a notch above half the sampling rate.
         """
         omega = 2.0 * np.pi * self.frequency
         change = 2.0 * (self.depth - 1.0) * self.damping * omega
@@ -62,15 +61,15 @@ class Notch(CheckedFields):
             return found
         if self.frequency >= 0.5 / step:
             what = f"half the sampling rate is {0.5 / step:g} Hz"
-            require([Finding(f"notch at {self.frequency:g} Hz", what, f"Sample above {2.0 * self.frequency:g} Hz, or leave the notch out")])
+            require([Finding(f"notch at {self.frequency:g} Hz", what, f"Sample above {2.0 * self.frequency:g} Hz, or omit the notch")])
         return bilinear(found, step, self.frequency)
 
 
 @check_arguments
 def notch_of_mode(frequency: float, ratio: float, damping: float = _WIDTH) -> Notch:
-    """The notch whose zeros cancel a mode of this `frequency` [Hz] and damping `ratio`: depth ratio / `damping`.
+    """Compute the notch whose zeros cancel a mode of this `frequency` [Hz] and damping `ratio`: depth ratio / `damping`.
 
-    A mode better damped than the notch's poles needs none: its depth is then 1.
+    A mode with more damping than the notch's poles needs no notch: depth 1.
 
     >>> notch_of_mode(110.9, 0.01).depth.__round__(4)
     0.0143
@@ -79,10 +78,10 @@ def notch_of_mode(frequency: float, ratio: float, damping: float = _WIDTH) -> No
 
 
 def notch_findings(notches: Iterable[Notch], frequencies: Iterable[float]) -> list[Finding]:
-    """Notches that are on no mode: further than a tenth from all of `frequencies` [Hz], named with the modes on both sides.
+    """Findings for notches more than a tenth away from every mode of `frequencies` [Hz]. Each names the modes on both sides.
 
     >>> [str(each) for each in notch_findings([Notch(135.0)], [106.0, 106.0, 150.0])]
-    ['notch at 135 Hz: it is on no mode: between those at 106 Hz and 150 Hz. Place it on the one that limits the loop, or leave it out.']
+    ['notch at 135 Hz: it is at no mode: between those at 106 Hz and 150 Hz. Move it to the mode that limits the loop, or omit it.']
     """
     modes = sorted(frequencies)
     found = []
@@ -94,6 +93,6 @@ def notch_findings(notches: Iterable[Notch], frequencies: Iterable[float]) -> li
         side = f"above the highest, {below[-1]:g} Hz" if below else "there are none"
         if above:
             side = f"between those at {below[-1]:g} Hz and {above[0]:g} Hz" if below else f"below the lowest, {above[0]:g} Hz"
-        advice = "Place it on the one that limits the loop, or leave it out"
-        found.append(Finding(f"notch at {each.frequency:g} Hz", f"it is on no mode: {side}", advice))
+        advice = "Move it to the mode that limits the loop, or omit it"
+        found.append(Finding(f"notch at {each.frequency:g} Hz", f"it is at no mode: {side}", advice))
     return found

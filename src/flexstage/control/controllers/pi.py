@@ -18,9 +18,9 @@ from flexstage.control.systems.system import System
 class PI(CheckedFields):
     """C(s) = k_p + k_i / s from a loop's error [m] to its command [m]: `proportional` k_p [1], `integral` k_i [1/s].
 
-    Where an actuator saturates, the integrator follows what was applied within `tracking` T_t [s], x' = k_i e + (applied - commanded)/T_t
-    (back-calculation; Astrom and Haegglund, Advanced PID Control, 2006, section 3.5); absent, (1 + k_p)/k_i, the time constant of the
-    loop around a plant of gain 1, but at least one sample. Raises `DesignError` for negative gains.
+    Under saturation the integrator follows the applied input within `tracking` T_t [s], x' = k_i e + (applied - commanded)/T_t
+    (back-calculation; Astrom and Haegglund, Advanced PID Control, 2006, section 3.5). Default: (1 + k_p)/k_i, the time constant of the loop
+    around a plant of gain 1, but at least one sample. Raises `DesignError` for negative gains.
 
     >>> control = PI(proportional=0.5, integral=100.0)
     >>> control.tracking_time, control.system().transfer(np.array([100.0 / (2.0 * np.pi)]))[0, 0, 0].round(12)  # 0.5 + 100/(100j)
@@ -33,19 +33,18 @@ class PI(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        """Refuse gains that cannot be."""
         gains = {"proportional": (self.proportional, ""), "integral": (self.integral, " 1/s")}
         require([*gain_findings("PI", gains), *tracking_findings("PI", self.tracking)])
 
     @property
     def tracking_time(self) -> float:
-        """T_t [s]; infinite without an integral part."""
+        """Tracking time T_t [s]; infinite without an integral part."""
         if self.tracking is not None:
             return self.tracking
         return (1.0 + self.proportional) / self.integral if self.integral else np.inf
 
     def system(self, step: float | None = None) -> System:
-        """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for samples slower than the tracking."""
+        """Return the linear system (see `Law`), by Tustin's rule. Raises `DesignError` for a tracking time below one sample."""
         require(slow_tracking_findings("PI", self.tracking, step))
         direct = np.array([[self.proportional, 0.0, 0.0]])
         entry = np.array([[self.integral, 0.0, tracking_rate(self.tracking_time, step)]])
@@ -53,11 +52,11 @@ class PI(CheckedFields):
 
 
 def tracking_findings(kind: str, tracking: float | None) -> list[Finding]:
-    """A tracking time that cannot be.
+    """Findings for a tracking time that is not positive.
 
     >>> [each.what for each in tracking_findings("PI", 0.0)]
-    ['tracking time is 0 s']
+    ['tracking time must be positive (got 0 s)']
     """
     if tracking is None or tracking > 0.0:
         return []
-    return [Finding(kind, f"tracking time is {tracking:g} s", "Give a positive time, or leave it out")]
+    return [Finding(kind, f"tracking time must be positive (got {tracking:g} s)", "Use a positive time, or omit it")]

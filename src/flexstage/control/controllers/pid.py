@@ -37,21 +37,20 @@ class PID(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        """Refuse gains that cannot be."""
         gains = {"proportional": (self.proportional, ""), "integral": (self.integral, " 1/s"), "derivative": (self.derivative, " s")}
         found = list(gain_findings("PID", gains))
         if not 0.0 < self.filter < np.inf:
-            what = f"the derivative's filter is at {self.filter:g} Hz"
-            found.append(Finding("PID", what, "Give a positive corner, for example ten times the bandwidth"))
+            what = f"derivative filter without a positive corner (got {self.filter:g} Hz)"
+            found.append(Finding("PID", what, "Use a positive corner, for example ten times the bandwidth"))
         require([*found, *tracking_findings("PID", self.tracking)])
 
     @property
     def tracking_time(self) -> float:
-        """T_t [s], as for `PI`."""
+        """Anti-windup tracking time T_t [s], as for `PI`."""
         return PI(self.proportional, self.integral, self.tracking).tracking_time
 
     def system(self, step: float | None = None) -> System:
-        """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for a filter above half the sampling rate."""
+        """Return the linear system (see `Law`), by Tustin's rule. Raises `DesignError` for a filter above half the sampling rate."""
         require(slow_tracking_findings("PID", self.tracking, step))
         require(corner_findings("PID", "the derivative's filter at", self.filter, step, ", or lower the filter") if self.derivative else ())
         corner = 2.0 * np.pi * self.filter

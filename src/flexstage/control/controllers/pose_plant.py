@@ -1,4 +1,4 @@
-"""The plant as a controller sees it: from its commands to the pose that the gauges tell."""
+"""The plant between the controller's commands and the pose estimated from the gauges."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from flexstage.control.systems.system import System, reachable, select
 
 
 def pose_plant(plant: Plant, offset: float = 0.0) -> System:
-    """From `command.<actuator>` [m] to `pose.<c>` [m, rad]: stage, amplifiers, gauges, hold and delay; continuous where the loop is.
+    """Return the plant from `command.<actuator>` [m] to `pose.<c>` [m, rad]: stage, amplifiers, gauges, hold and delay.
 
-    All modes are higher by a relative `offset`: time that runs faster, lags and delays with it.
+    Continuous for a continuous loop. A relative `offset` raises all modes: it scales time, lags and delays included.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = pose_plant(integral_loop().plant)

@@ -1,4 +1,4 @@
-"""Positive position and positive velocity feedback: a resonant filter beside an integrator damps the mode that it is tuned to."""
+"""Positive position feedback (PPF) and positive velocity feedback: a resonant filter damps one mode, inside an integral loop."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ _OF_RATE = 0.4
 
 @dataclass(frozen=True)
 class PositiveFeedback:
-    """u = (v s + b w^2) / (s^2 + 2 z w s + w^2) y + (k_t / s) e: positive feedback of the pose y through a filter, an integrator around it.
+    """Positive position and velocity feedback around an integrator: u = (v s + b w^2) / (s^2 + 2 z w s + w^2) y + (k_t / s) e.
 
     `position` b [1], `velocity` v [1/s], `frequency` w / (2 pi) [Hz], `damping` z, `tracking` k_t [1/s]. Without v it is positive position
-    feedback (Fanson & Caughey, AIAA J. 28 (1990) 717), stable around an undamped mode of static gain g where b g < 1; with it, positive
+    feedback (Fanson & Caughey, AIAA J. 28 (1990) 717), stable around an undamped mode of static gain g if b g < 1. With v it is positive
     velocity and position feedback (Bhikkaji, Ratnam, Fleming & Moheimani, IEEE Trans. Control Syst. Technol. 15 (2007) 853). Raises
-    `DesignError` for numbers that cannot be.
+    `DesignError` for invalid numbers.
 
     >>> control = PositiveFeedback(position=0.8, frequency=100.0, damping=0.8)
     >>> control.system().transfer(np.array([1e-3]))[0, 0, 1].real.round(6).item()  # b at rest
@@ -43,15 +43,14 @@ class PositiveFeedback:
     tracking: Annotated[float, RATE, FIVE_DIGITS] = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse numbers that cannot be."""
         require(
-            Finding("positive feedback", f"its {name} is {value:g}", "Give a positive number")
+            Finding("positive feedback", f"its {name} is {value:g}", "Use a positive number")
             for name, value in (("frequency", self.frequency), ("damping", self.damping))
             if not value > 0.0
         )
 
     def system(self, step: float | None = None) -> System:
-        """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for samples slower than its filter."""
+        """Return the linear system (see `Law`), by Tustin's rule. Raises `DesignError` for a filter above half the sampling rate."""
         require(corner_findings("positive feedback", "its filter at", self.frequency, step))
         w = 2.0 * np.pi * self.frequency
         A = np.array([[0.0, 1.0, 0.0], [-(w**2), -2.0 * self.damping * w, 0.0], [0.0, 0.0, 0.0]])
@@ -61,16 +60,15 @@ class PositiveFeedback:
         return law_system(A, B, C, np.zeros((1, 3)), step, kept=[True, True, self.tracking != 0.0])
 
     def feedback(self, rate: complex) -> complex:
-        """What it feeds back of the pose at a complex rate s [1/s]."""
+        """Positive feedback of the pose at a complex rate s [1/s]."""
         w = 2.0 * np.pi * self.frequency
         return (self.velocity * rate + self.position * w**2) / (rate**2 + 2.0 * self.damping * w * rate + w**2)
 
 
 def place_poles(frequency: float, damping: float, static: float = 1.0) -> PositiveFeedback:
-    """Positive velocity and position feedback that moves an undamped mode into (s^2 + 2 sigma s + sigma^2 + w^2)^2, sigma = `damping` w.
+    """Place the poles of an undamped mode at (s^2 + 2 sigma s + sigma^2 + w^2)^2, sigma = `damping` w, by velocity and position feedback.
 
-    Mode w^2 g / (s^2 + w^2) and filter both keep their frequency, and decay as fast (Bhikkaji et al. 2007: four numbers place four
-    poles).
+    Mode w^2 g / (s^2 + w^2) and filter keep their frequency and have one decay rate (Bhikkaji et al. 2007: four numbers place four poles).
 
     >>> law = place_poles(100.0, 0.2)
     >>> w = 200.0 * np.pi
@@ -89,7 +87,7 @@ def place_poles(frequency: float, damping: float, static: float = 1.0) -> Positi
 
 
 def position_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
-    """Positive position feedback around the first resonance, of several shares of its static gain, frequencies and dampings."""
+    """Positive position feedback of the first resonance, for several shares of its static gain, frequencies and damping ratios."""
     if place.resonance is None or not place.static > 0.0:
         return []
     filters = [
@@ -102,14 +100,14 @@ def position_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
 
 
 def velocity_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
-    """Positive velocity and position feedback that places the first resonance at several dampings."""
+    """Positive velocity and position feedback of the first resonance, for several damping ratios."""
     if place.resonance is None or not place.static > 0.0:
         return []
     return list(_tracking([place_poles(place.resonance, damping, place.static) for damping in _PLACED], place, step))
 
 
 def _tracking(filters: list[PositiveFeedback], place: Place, step: float | None) -> Iterator[PositiveFeedback]:
-    """Those that an integrator makes pass 1 at the place."""
+    """Laws whose integrator reaches |C g| = 1 at the crossover."""
     turning = warped(place.frequency, step)
     for each in filters:
         if step is not None and each.frequency > _OF_RATE / step:

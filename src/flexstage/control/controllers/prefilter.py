@@ -1,4 +1,4 @@
-"""Prefilters: what a loop is asked to follow, of what was commanded."""
+"""Prefilters of the reference: the second degree of freedom of a loop."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _PORTS = (Channel("reference", "m"),), (Channel("shaped", "m"),)
 
 @dataclass(frozen=True)
 class Prefilter(CheckedFields):
-    """F(s) = (1 + s/w_l) / (1 + 2 zeta s/w + s^2/w^2), w = 2 pi `frequency`, zeta = `damping`, w_l = 2 pi `lead`; without a lead, 1 above.
+    """Reference prefilter F(s) = (1 + s/w_l) / (1 + 2 zeta s/w + s^2/w^2), w = 2 pi `frequency`, zeta = `damping`, w_l = 2 pi `lead`.
 
-    The second degree of freedom of a loop (Astrom and Haegglund, Advanced PID Control, 2006, section 3.4): a law with strong integrators
-    has a zero at k_i/k_p, which makes steps overshoot; F takes from the command what would ring, and leaves S, margins and noise as they
-    are. Gain 1 at rest. Raises `DesignError` for numbers that cannot be.
+    Numerator 1 without a lead. Second degree of freedom of a loop (Astrom and Haegglund, Advanced PID Control, 2006, section 3.4). A law
+    with strong integrators has a zero at k_i/k_p, which causes overshoot. F removes the oscillatory part of the command, and does not
+    change S, margins and noise. Static gain 1. Raises `DesignError` for invalid numbers.
 
     >>> gains = Prefilter(frequency=90.0, damping=1.0).system().transfer(np.array([0.0, 90.0]))
     >>> abs(gains.ravel()).round(12).tolist()  # 1/(2 zeta) there
@@ -39,16 +39,15 @@ class Prefilter(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        """Refuse numbers that cannot be."""
         given = {"frequency": self.frequency, "damping": self.damping, "lead": self.lead}
         require(
-            Finding("prefilter", f"its {name} is {value:g}", "Give a positive number")
+            Finding("prefilter", f"its {name} is {value:g}", "Use a positive number")
             for name, value in given.items()
             if value is not None and not 0.0 < value < np.inf
         )
 
     def system(self, step: float | None = None) -> System:
-        """Input `reference`, output `shaped`; with a step by Tustin's rule, prewarped at its frequency where that is sampled."""
+        """Return the filter from `reference` to `shaped`, by Tustin's rule, prewarped at its frequency if below half the sampling rate."""
         omega = 2.0 * np.pi * self.frequency
         A = np.array([[0.0, omega], [-omega, -2.0 * self.damping * omega]])
         slope = 0.0 if self.lead is None else self.frequency / self.lead
@@ -59,9 +58,9 @@ class Prefilter(CheckedFields):
 
 
 def with_prefilters(control: System, filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Coordinates) -> System:
-    """The controller behind prefilters, one a loop: it is given e + (S^+ F S - 1) r for e, and S^+ F S r for r, S = `sense` (k, f).
+    """Return the controller with one prefilter per loop: e + (S^+ F S - 1) r replaces e, S^+ F S r replaces r, with S = `sense` (k, f).
 
-    Inputs `reference.<c>` are added where the controller has none.
+    Adds inputs `reference.<c>` if the controller has none.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -86,14 +85,14 @@ def with_prefilters(control: System, filters: tuple[Prefilter | None, ...], sens
 
 
 def _inputs(control: System, coordinates: Coordinates) -> tuple[Channel, ...]:
-    """Those of the controller, with the reference before what was applied."""
+    """Inputs of the controller, with the reference before `applied`."""
     rest = [each for each in control.inputs if not each.name.startswith("reference.")]
     before = [each for each in rest if not each.name.startswith("applied.")]
     return (*before, *coordinates.motions("reference."), *rest[len(before) :])
 
 
 def _shaped(filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Coordinates, step: float | None) -> System:
-    """References of the coordinates, shaped loop by loop."""
+    """References of the coordinates, filtered loop by loop."""
     parts = [static(np.eye(1), *_PORTS, step) if each is None else each.system(step) for each in filters]
     A, B, C, D = block_matrices(parts)
     back, ends = np.linalg.pinv(sense), (coordinates.motions("asked."), coordinates.motions("shaped."))

@@ -1,4 +1,4 @@
-"""Integral resonant control: an integrator around a fed-through plant damps its resonance."""
+"""Integral resonant control: an integrator around the plant with feed-through damps its resonance."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from flexstage.control.systems.system import System
 
 @dataclass(frozen=True)
 class IntegralResonant(CheckedFields):
-    """u = Q(s) y + (k_t / s) e, Q(s) = k / (s + k d): the resonance is damped by positive feedback, an integrator tracks around it.
+    """Integral resonant control u = Q(s) y + (k_t / s) e, Q(s) = k / (s + k d): damping by positive feedback, tracking by an integrator.
 
-    An integrator -k/s around the plant with feed-through G - d is the same as Q around the plant alone (Aphale, Fleming & Moheimani 2007;
+    An integrator -k/s around the plant with feed-through G - d is equivalent to Q around the plant (Aphale, Fleming & Moheimani 2007;
     Fleming, Aphale & Moheimani 2010). `gain` k [1/s], `feedthrough` d [1], positive here and subtracted, `tracking` k_t [1/s]. y is the
-    loop's pose [m], e its error, u its command. At rest Q is 1/d: stable only where d is above the plant's static gain. The integrator
-    follows what was applied within 1/k_t, or within `tracking_time` [s]. Raises `DesignError` for negative gains, and without feed-through.
+    loop's pose [m], e its error, u its command. The static value of Q is 1/d: stable only if d exceeds the plant's static gain. The
+    anti-windup time is 1/k_t, or `tracking_time` [s]. Raises `DesignError` for negative gains, and without feed-through.
 
     >>> control = IntegralResonant(gain=1000.0, feedthrough=2.0, tracking=100.0)
     >>> control.system().transfer(np.array([0.0001]))[0, 0, 1].real.round(6).item()  # 1/d at rest
@@ -37,15 +37,14 @@ class IntegralResonant(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        """Refuse gains that cannot be."""
         found = list(gain_findings("integral resonant control", {"gain": (self.gain, " 1/s"), "tracking": (self.tracking, " 1/s")}))
         if not 0.0 < self.feedthrough < np.inf:
-            advice = "Give a positive one, above the plant's static gain: twice that is usual"
-            found.append(Finding("integral resonant control", f"its feed-through is {self.feedthrough:g}", advice))
+            advice = "Use a positive one, above the plant's static gain: twice that gain is usual"
+            found.append(Finding("integral resonant control", f"feed-through must be positive (got {self.feedthrough:g})", advice))
         require(found)
 
     def system(self, step: float | None = None) -> System:
-        """The law, as `Law` says; Tustin's rule with a step. Raises `DesignError` for samples slower than its gains."""
+        """Return the linear system (see `Law`), by Tustin's rule. Raises `DesignError` for a corner above half the sampling rate."""
         pole = self.gain * self.feedthrough
         require(slow_tracking_findings("integral resonant control", self.tracking_time, step))
         require(corner_findings("integral resonant control", "its corner k d / (2 pi) =", pole / (2.0 * np.pi), step))
@@ -60,7 +59,7 @@ class IntegralResonant(CheckedFields):
 
 
 def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
-    """The gains that give an undamped mode at `frequency` [Hz] this `damping` ratio, the most for their feed-through.
+    """Compute the gains that give an undamped mode at `frequency` [Hz] the damping `ratio`, the maximum for their feed-through.
 
     d = g (1 + 2 zeta)^2 / ((1 + 2 zeta)^2 - 1), k d = w_p sqrt(w_p/w_z) (Namavar, Fleming & Aphale 2014); the damped pair is at sqrt(w_p
     w_z). g = `static` is the plant's static gain, `tracking` [1/s] as for the law. Raises `DesignError` for numbers that are not positive.
@@ -71,7 +70,7 @@ def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking
     """
     numbers = {"frequency": frequency, "damping": damping, "static gain": static}
     wrong = [name for name, value in numbers.items() if not value > 0.0]
-    require(Finding("resonance", f"its {name} is {numbers[name]:g}", "Give a positive number") for name in wrong)
+    require(Finding("resonance", f"its {name} is {numbers[name]:g}", "Use a positive number") for name in wrong)
     ratio = 1.0 + 2.0 * damping
     feedthrough = static * ratio**2 / (ratio**2 - 1.0)
     return IntegralResonant(2.0 * math.pi * frequency * math.sqrt(ratio) / feedthrough, feedthrough, tracking)

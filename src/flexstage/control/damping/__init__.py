@@ -1,1 +1,1 @@
-"""Active damping: loops of low authority in the legs, around which the loop of the pose is closed."""
+"""Active damping: inner loops in the legs (low authority), inside the pose loop (high authority)."""

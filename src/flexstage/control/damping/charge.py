@@ -1,4 +1,4 @@
-"""Stacks held at their charge: stiffer than at constant volts, down to the corner below which the charge leaks away."""
+"""Charge drive of piezo stacks: higher stiffness than at constant voltage, above the leakage corner frequency."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from flexstage.models.linear.model import Channel, LinearModel
 
 @dataclass(frozen=True, eq=False)
 class ChargedStacks:
-    """The `actuators` whose stacks are held at their charge, each `stiffer` by 1/(1 - k^2) (n,) above its corner.
+    """Stacks at constant charge: `actuators`, each `stiffer` by 1/(1 - k^2) (n,) above its corner.
 
-    `corners` (n,) [Hz] are those below which the drive is one of volts, `residual_hysteresis` (n,) the shares of
-    hysteresis and creep above them. The
-    plant's modes are at `by_volts` (k,) [Hz] with volts held, and at `by_charge` (k,) [Hz] with charge.
+    `corners` (n,) [Hz] are the corner frequencies below which the drive acts as a voltage drive. `residual_hysteresis` (n,) are the shares
+    of hysteresis and creep above them. The plant's modes are at `by_volts` (k,) [Hz] with constant voltage, and at `by_charge` (k,) [Hz]
+    with constant charge.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -49,11 +49,11 @@ class ChargedStacks:
 
 
 def at_constant_charge(model: LinearModel, legs: tuple[Leg, ...], drives: Mapping[str, ChargeDrive]) -> LinearModel:
-    """The model with the stacks of those legs as stiff as at constant charge, k / (1 - kappa^2).
+    """Model with the stacks of those legs at constant-charge stiffness, k / (1 - kappa^2).
 
-    Of elongation u, tension F, volts V and charge Q of a stack u = F/k + d V and Q = d F + C V (Preumont, Vibration Control of Active
-    Structures, 2018, ch. 4); with kappa^2 = d^2 k / C, u = (1 - kappa^2) F/k + (d/C) Q: stiffer, with the same free stroke for the charge
-    that those volts give a stack without load.
+    A stack has elongation u, tension F, voltage V, charge Q: u = F/k + d V and Q = d F + C V (Preumont, Vibration Control of Active
+    Structures, 2018, ch. 4). With kappa^2 = d^2 k / C, u = (1 - kappa^2) F/k + (d/C) Q. The stiffness is higher; the free stroke equals the
+    one that the same voltage causes without load.
     """
     stiffness, output, through = dict(model.stiffness), np.array(model.output, dtype=float), np.array(model.feedthrough, dtype=float)
     for each in legs:
@@ -70,12 +70,12 @@ def at_constant_charge(model: LinearModel, legs: tuple[Leg, ...], drives: Mappin
 
 
 def leak_charge(given: Plant, legs: tuple[Leg, ...], drives: Mapping[str, ChargeDrive], kept: tuple[str, ...] = ()) -> Plant:
-    """The plant of stacks at constant charge whose charge leaks away below a corner w_0: exact for every frequency.
+    """Return the plant of stacks at constant charge with leakage below a corner w_0: exact at every frequency.
 
-    The drive lets the current I = (s C + 1/R) v of a stack without load pass, whatever its volts become (Fleming & Leang, Design, Modeling
-    and Control of Nanopositioning Systems, 2014, ch. 12), hence u = F/k (1 - kappa^2 s/(s + w_0)) + d v, w_0 = 1/(R C). To the stroke at
-    constant charge that adds kappa^2 w_0/(s + w_0) F/k. `legs` have the stiffness k at constant volts; of the links' forces, which `given`
-    has, it has those `kept`.
+    The drive imposes the current I = (s C + 1/R) v of an unloaded stack at any voltage (Fleming & Leang, Design, Modeling and Control of
+    Nanopositioning Systems, 2014, ch. 12). Hence u = F/k (1 - kappa^2 s/(s + w_0)) + d v, w_0 = 1/(R C): kappa^2 w_0/(s + w_0) F/k is added
+    to the stroke at constant charge. `legs` have the stiffness k at constant voltage. Of the link forces of `given` the result has those in
+    `kept`.
     """
     inner = [_leak(each, drives[each.actuator]) for each in legs]
     gone = {f"{each.link}.fx" for each in legs} - {f"{name}.fx" for name in kept}
@@ -88,7 +88,7 @@ def leak_charge(given: Plant, legs: tuple[Leg, ...], drives: Mapping[str, Charge
 
 
 def _leak(leg: Leg, drive: ChargeDrive) -> System:
-    """From tension [N] to what the stroke gains as charge leaks away [m]: kappa^2 w_0 / (s + w_0) / k."""
+    """Leakage: from tension [N] to added stroke [m], kappa^2 w_0 / (s + w_0) / k."""
     rate = 2.0 * np.pi * drive.corner
     gain = np.full((1, 1), drive.coupling**2 * rate / leg.stiffness)
     entry, exit_ = Channel(f"tension.{leg.actuator}", "N"), Channel(f"leaked.{leg.actuator}", "m")
@@ -96,7 +96,7 @@ def _leak(leg: Leg, drive: ChargeDrive) -> System:
 
 
 def describe_charge(given: Plant, model: LinearModel, charged: LinearModel, drives: Mapping[str, ChargeDrive]) -> ChargedStacks:
-    """What holding charge does to the modes of a plant, `model` being at constant volts, `charged` at constant charge."""
+    """Compare the modes of a plant at constant voltage (`model`) and at constant charge (`charged`)."""
     pairs = pair_modes(charged, model)
     place = [int(np.argmin(np.abs(pairs.frequencies - each))) for each in given.frequencies]
     every = drives.values()

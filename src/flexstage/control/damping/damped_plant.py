@@ -1,4 +1,4 @@
-"""A plant with force feedback in its legs: what the loop of the pose is closed around (high authority on low authority)."""
+"""A plant with force feedback in its legs, controlled by the pose loop (high authority over low authority)."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _SLOW, _LINES = 1e-3, 200
 
 @dataclass(frozen=True)
 class DampedMode:
-    """A mode of the plant: its `frequency` [Hz] and damping `ratio` without the inner loops, and what they make of both.
+    """Mode of the plant: `frequency` [Hz] and damping `ratio` without the inner loops, and both with them.
 
-    `zero` [Hz] is its frequency without the stacks' axial stiffness; `most` the damping that a single leg, or decoupled legs, can give it,
-    (w - z)/(2 z), and `alone` what they give it with this gain if no other mode were near.
+    `zero` [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping of a single leg, or decoupled legs, (w -
+    z)/(2 z). `alone` is the damping with this gain if the mode were isolated.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -55,12 +55,12 @@ class DampedMode:
 
 @dataclass(frozen=True, eq=False)
 class ActiveDamping:
-    """Force feedback in the `legs`, by its `gain` [1/s] and the `corner` [Hz] of its high pass of that `order`.
+    """Integral force feedback in the `legs`: `gain` [1/s], and `corner` [Hz] of its high-pass filter of the given `order`.
 
-    `modes` are those of the plant. By `coordinates`, `left_at_rest` is the share of the platform's static stiffness that is left,
-    `softest` the least share below the first mode, at `softest_at` [Hz]. A leg keeps more than half its axial stiffness below `kept_below`
-    [Hz] (order 1: below none). `rate` [Hz] is that of the computer that runs it, absent where it is analogue. `reached` is the least
-    damping ratio of the modes that the loop feels most, as many as it has coordinates.
+    `modes` are the plant's modes. By `coordinates`, `left_at_rest` is the remaining share of the platform's static stiffness, `softest` the
+    lowest share below the first mode, at `softest_at` [Hz]. A leg keeps more than half its axial stiffness below `kept_below` [Hz] (order
+    1: 0). `rate` [Hz] is the sampling rate, absent for analogue feedback. `reached` is the lowest damping ratio of the modes with the
+    largest residues, one per loop coordinate.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -86,15 +86,15 @@ class ActiveDamping:
 
     @property
     def min_ratio(self) -> Annotated[float, VIEW]:
-        """The least damping ratio of all modes of the plant."""
+        """Lowest damping ratio of all modes of the plant."""
         return min(each.damped_ratio for each in self.modes)
 
 
 def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Plant:
-    """The plant with the inner loops closed; `given` has the links' forces `<link>.fx`, which it then no longer has.
+    """Close the inner loops; `given` has the link forces `<link>.fx`, which the result omits.
 
-    Their strokes are added before the amplifiers, and are outputs `added.<actuator>` [m]. Inputs `sensed.<actuator>` [N] are what the
-    sensors hear besides the tension.
+    Their strokes are added before the amplifiers, and are outputs `added.<actuator>` [m]. Inputs `sensed.<actuator>` [N] are sensor signals
+    in addition to the tension.
     """
     inner = [
         law.system(each.stiffness, Channel(f"tension.{each.actuator}", "N"), Channel(f"{ADDED}.{each.actuator}", "m")) for each in legs
@@ -116,7 +116,7 @@ def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Pl
 def around_legs(
     given: Plant, legs: tuple[Leg, ...], inner: Sequence[System], outputs: Iterable[str], heard: tuple[Channel, ...] = ()
 ) -> System:
-    """The plant with an inner system around each leg, from `tension.<actuator>` [N] to an addition to its stroke; `heard` adds to it."""
+    """Plant with an inner system around each leg, from `tension.<actuator>` [N] plus `heard` to an additional stroke."""
     entries, links = {each.actuator: f"entry.{each.actuator}" for each in legs}, dict[str, dict[str, float]]()
     for number, (each, sign) in enumerate(zip(legs, tension_signs(given, legs), strict=True)):
         links[entries[each.actuator]] = {each.actuator: 1.0, inner[number].output_names[0]: 1.0}
@@ -125,7 +125,7 @@ def around_legs(
 
 
 def as_felt(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
-    """The legs with the axial stiffness that a plant's modes feel: stack and hinges in series, tension per stroke far above these modes."""
+    """Legs with their effective axial stiffness: stack and hinges in series, tension per stroke far above the plant's modes."""
     forces = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs])
     slow = np.array([not name.startswith("amplifier.") for name in given.states])
     direct = np.diag(residualise(forces, slow).D)
@@ -133,13 +133,13 @@ def as_felt(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
 
 
 def tension_signs(given: Plant, legs: tuple[Leg, ...]) -> list[float]:
-    """Which sign of a link's force is tension: a stroke that pushes takes it down."""
+    """Sign of each link force that is tension: a positive stroke reduces it."""
     static = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs]).transfer(np.zeros(1))[0].real
     return [-float(np.sign(value)) for value in np.diag(static)]
 
 
 def follow_poles(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], gains: Array) -> Array:
-    """Poles (len(gains), k) [1/s] that the plant's modes come to as the gain grows through `gains`, each followed from its mode."""
+    """Poles (len(gains), k) [1/s] of the plant's modes over increasing `gains`, each tracked from its mode (root locus)."""
     modes, found = _modal_poles(given), []
     for gain in gains:
         poles = close_damping(given, replace(law, gain=float(gain)), legs).system.poles
@@ -156,9 +156,9 @@ def _modal_poles(given: Plant) -> Array:
 
 
 def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: float) -> float:
-    """The least gain [1/s] that gives the modes which the loop feels most a damping ratio of `wanted`; else that which gives them the most.
+    """Compute the lowest gain [1/s] that gives the modes of largest residue a damping ratio of `wanted`, else the gain of maximum damping.
 
-    Those are as many as the loop has coordinates. Raises `DesignError` where the inner loops are stable with no gain.
+    There is one such mode per loop coordinate. Raises `DesignError` if the inner loops are unstable at every gain.
     """
     felt = felt_most(given)
     scale = 2.0 * np.pi * float(np.median(given.frequencies[felt]))
@@ -169,8 +169,8 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
     if not steady[0]:
         raise refuse(
             "damping",
-            f"with a gain of {gains[0]:.3g} 1/s the inner loops are unstable already",
-            "Take a shorter delay and faster amplifiers",
+            f"the inner loops are unstable at a gain of {gains[0]:.3g} 1/s",
+            "Use a shorter delay and faster amplifiers",
         )
     reached = np.flatnonzero(ratios >= wanted)
     chosen = float(gains[reached[0]] if len(reached) else gains[np.argmax(ratios)])
@@ -180,7 +180,7 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
 
 
 def felt_most(given: Plant) -> Array:
-    """Places of the modes that a plant's loop feels most, as many as it has coordinates."""
+    """Indices of the modes with the largest residues in a plant's loop, one per coordinate."""
     return np.argsort(-resonances(given))[: len(given.coordinates.names)]
 
 
@@ -189,7 +189,7 @@ def _ratios(poles: Array) -> Array:
 
 
 def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tuple[Leg, ...], pairs: Pairs) -> ActiveDamping:
-    """What the inner loops do to the modes and to the platform's stiffness; `pairs` are all modes of the model."""
+    """Summarise the effect of the inner loops on modes and platform stiffness; `pairs` are all modes of the model."""
     gains = law.gain * np.geomspace(1e-2, 1.0, 40)
     poles = follow_poles(given, law, legs, gains)[-1]
     modes = []
@@ -228,14 +228,14 @@ def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tupl
 
 
 def _compliances(given: Plant, lines: Array) -> Array:
-    """What the platform gives way (lines, f) along each coordinate to a force along it."""
+    """Compliance (lines, f) of the platform along each coordinate."""
     rows = [COMPONENTS.index(name) for name in given.coordinates.names]
     wrenches, motions = [f"platform.{FORCES[row]}" for row in rows], [f"relative.{COMPONENTS[row]}" for row in rows]
     return np.einsum("fkk->fk", select(given.system, wrenches, motions).transfer(lines))
 
 
 def with_damped_modes(damped: Plant, found: ActiveDamping) -> Plant:
-    """The plant with frequencies and damping ratios of its modes as the inner loops leave them, ascending."""
+    """Plant with the modes' frequencies and damping ratios under the inner loops, ascending."""
     frequencies = np.array([each.damped_frequency for each in found.modes])
     ratios = np.clip([each.damped_ratio for each in found.modes], 1e-6, 1.0)
     order = np.argsort(frequencies, kind="stable")

@@ -1,4 +1,4 @@
-"""Integral force feedback: a leg that gives way at the rate of its own tension takes energy out of every mode that strains it."""
+"""Integral force feedback (IFF): the leg extends at a rate proportional to its tension, which damps every mode that strains it."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from flexstage.models.linear.model import Channel
 
 @dataclass(frozen=True)
 class ForceFeedback:
-    """Stroke = G(s) T / k of a leg's tension T [N] and axial stiffness k [N/m]; G = g / (s + a), or with `order` 2 g s / (s + a)^2.
+    """Integral force feedback: stroke = G(s) T / k for tension T [N]; G = g / (s + a), with `order` 2: 2 g s / (s + a)^2.
 
-    `gain` g [1/s], `corner` a / (2 pi) [Hz] of the high pass (Preumont, Dufour & Malekian, J. Guid. Control Dyn. 15 (1992) 390; Preumont,
-    Vibration Control of Active Structures, 2018, ch. 7 and 8). Without it the leg would yield to every load at rest, and take back every
-    command: order 1 leaves a / (a + g) of its stiffness, order 2 all of it below a^2 / g. `lag` [Hz] is that of the sensor's electronics,
-    `delay` [s] by its Pade form of second order. Raises `DesignError` for numbers that cannot be.
+    k [N/m] is the axial stiffness, `gain` g [1/s], `corner` a / (2 pi) [Hz] of the high-pass filter (Preumont, Dufour & Malekian, J. Guid.
+    Control Dyn. 15 (1992) 390; Preumont, Vibration Control of Active Structures, 2018, ch. 7 and 8). Without the filter the leg would have
+    no static stiffness, and would cancel every command. Order 1 keeps a / (a + g) of the stiffness, order 2 all of it below a^2 / g. `lag`
+    [Hz] is the corner of the sensor's electronics, `delay` [s] a second-order Pade approximation. Raises `DesignError` for invalid numbers.
     """
 
     gain: float
@@ -29,7 +29,6 @@ class ForceFeedback:
     delay: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse numbers that cannot be."""
         require(
             Finding("force feedback", f"its {name} is {value:g}", "Give a positive number")
             for name, value in (("gain", self.gain), ("corner", self.corner), ("lag", self.lag))
@@ -38,13 +37,13 @@ class ForceFeedback:
 
     @property
     def numerator(self) -> Array:
-        """Of G, lag and delay, highest power first."""
+        """Numerator of G with lag and delay, highest power first."""
         high = np.array([self.gain]) if self.order == 1 else np.array([self.gain, 0.0])
         return np.polymul(high, [1.0, -6.0 / self.delay, 12.0 / self.delay**2]) if self.delay else high
 
     @property
     def denominator(self) -> Array:
-        """Of G, lag and delay, highest power first."""
+        """Denominator of G with lag and delay, highest power first."""
         turning = 2.0 * np.pi * self.corner
         found = np.array([1.0, turning]) if self.order == 1 else np.array([1.0, 2.0 * turning, turning**2])
         if np.isfinite(self.lag):
@@ -52,11 +51,11 @@ class ForceFeedback:
         return np.polymul(found, [1.0, 6.0 / self.delay, 12.0 / self.delay**2]) if self.delay else found
 
     def at(self, rates: Array) -> Array:
-        """G at complex rates s [1/s]."""
+        """Transfer function G at complex rates s [1/s]."""
         return np.polyval(self.numerator, rates) / np.polyval(self.denominator, rates)
 
     def system(self, stiffness: float, tension: Channel, stroke: Channel) -> System:
-        """From tension [N] to stroke [m], in controllable form.
+        """Linear system from tension [N] to stroke [m], in controllable form.
 
         >>> law = ForceFeedback(gain=600.0, corner=1.0)
         >>> found = law.system(17e6, Channel("T", "N"), Channel("u", "m"))
@@ -72,7 +71,7 @@ class ForceFeedback:
 
     @property
     def kept_below(self) -> float:
-        """Below this frequency [Hz] a leg keeps more than half of its axial stiffness, |G| < 1: a^2 / (2 pi g); 0 of order 1 with g > a."""
+        """Frequency [Hz] below which a leg keeps half its axial stiffness, |G| < 1: a^2 / (2 pi g); 0 for order 1 with g > a."""
         turning = 2.0 * np.pi * self.corner
         if self.order == 1:
             return 0.0 if self.gain > turning else np.inf
@@ -80,11 +79,10 @@ class ForceFeedback:
 
 
 def most_damping(frequency: float, zero: float) -> float:
-    """The most damping of a mode by integral force feedback, (w - z) / (2 z).
+    """Compute the maximum damping of a mode by integral force feedback, (w - z) / (2 z).
 
-    w is its frequency, z that with the actuators' axial stiffness removed, of one leg or decoupled legs with one gain (Preumont 2018,
-    ch. 7: s^3 + g s^2 + w^2 s + g z^2 = 0, at g = w (w/z)^(1/2) with the real root -(w z)^(1/2)). Above 1 the mode can be made to creep
-    back without swinging.
+    w is its frequency, z its frequency without the actuators' axial stiffness, for one leg or decoupled legs with one gain (Preumont 2018,
+    ch. 7: s^3 + g s^2 + w^2 s + g z^2 = 0, at g = w (w/z)^(1/2) with the real root -(w z)^(1/2)). Above 1 the mode can be overdamped.
 
     >>> most_damping(110.0, 100.0)
     0.05
@@ -93,7 +91,7 @@ def most_damping(frequency: float, zero: float) -> float:
 
 
 def damping_of_pair(law: ForceFeedback, frequency: float, zero: float) -> complex:
-    """The pole [1/s] that an undamped mode comes to: the root of 1 + G (s^2 + z^2) / (s^2 + w^2) = 0 that goes on from j w as g grows.
+    """Pole [1/s] of an undamped mode with feedback: the root of 1 + G (s^2 + z^2) / (s^2 + w^2) = 0 continued from j w as g grows.
 
     >>> pole = damping_of_pair(ForceFeedback(2.4 * np.pi * 1.2**0.5, 1e-6, order=1), 1.2, 1.0)
     >>> round(-pole.real / abs(pole), 5)

@@ -1,4 +1,4 @@
-"""The legs of a stage as inner loops see them: which link's tension is sensed, and what the stage is without their axial stiffness."""
+"""Legs of a stage for inner loops: links with a tension sensor, and the model without the legs' axial stiffness."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ _NEXT_TO_NOTHING = 1e-9
 
 @dataclass(frozen=True)
 class Leg:
-    """An actuator's leg: the `link` that is its stack of axial `stiffness` [N/m], the link whose tension is `sensed`.
+    """Leg of an actuator: the `link` that is its stack of axial `stiffness` [N/m], and the link of the tension sensor (`sensed`).
 
-    `noise` [N/Hz^(1/2)] and `lag` [Hz] are those of the strain gauge that senses it, None where it is a sensor of force.
+    `noise` [N/Hz^(1/2)] and `lag` [Hz] belong to its strain gauge, None for a force sensor.
     """
 
     actuator: str
@@ -36,11 +36,10 @@ class Leg:
 
 
 def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (), asked: str = "damping") -> tuple[Leg, ...]:
-    """The legs of all actuators that impose a stroke along their link; `gauges`: strain gauges in them, else each stack has a sensor.
+    """Return the legs of all actuators that impose a stroke along their link, with strain `gauges` or a force sensor per stack.
 
-    A strain gauge on a stack reads its free stroke too, which is taken off as it is commanded; elsewhere in the leg it reads tension alone.
-    Raises `DesignError`, headed by what was `asked` for, for stages without stacks, models that tell no forces of links, gauges that are on
-    no link of a leg.
+    A strain gauge on a stack also reads the free stroke, which is subtracted as commanded. Elsewhere in the leg it reads only tension.
+    Raises `DesignError`, located at `asked`, for stages without stacks, models without link forces, and gauges outside the legs.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -59,7 +58,7 @@ def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (),
         require(
             []
             if owner is not None
-            else [Finding(f"damping.gauges {gauge}", f"{link} is in no leg of an actuator", "Take a gauge in a leg")]
+            else [Finding(f"damping.gauges {gauge}", f"{link} is not in a leg of an actuator", "Use a gauge in a leg")]
         )
         if owner is not None:
             part = assembly.gauges[gauge].gauge
@@ -72,7 +71,7 @@ def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (),
 
 
 def without_stiffness(model: LinearModel, found: tuple[Leg, ...], left: float = 0.0) -> LinearModel:
-    """The model whose legs have but a share of their stacks' axial stiffness, at least a billionth (what is then free has 0 Hz, nearly).
+    """Model with a fraction of the stacks' axial stiffness in the legs, at least 1e-9 (free motions then have nearly 0 Hz).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -91,14 +90,14 @@ def without_stiffness(model: LinearModel, found: tuple[Leg, ...], left: float = 
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Frequencies [Hz] of modes (k,) and of what they are by another model (k,)."""
+    """Pairs of modal frequencies [Hz] (k,), of one model and of another (k,)."""
 
     frequencies: Array
     others: Array
 
 
 def pair_zeros(model: LinearModel, found: tuple[Leg, ...]) -> Pairs:
-    """Modes with and without the legs' axial stiffness, each by the shape that is most like its own (kinetic energy).
+    """Pair modes with and without the legs' axial stiffness by the similarity of their shapes (kinetic energy).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -111,7 +110,7 @@ def pair_zeros(model: LinearModel, found: tuple[Leg, ...]) -> Pairs:
 
 
 def pair_modes(model: LinearModel, other: LinearModel) -> Pairs:
-    """Modes of a model and of another of the same masses, each by the shape that is most like its own (kinetic energy)."""
+    """Pair modes of two models with equal masses by the similarity of their shapes (kinetic energy)."""
     stiff, soft = eigen(model), eigen(other)
     alike = (stiff.shapes.T @ model.inertia_matrix @ soft.shapes) ** 2
     rows, columns = scipy.optimize.linear_sum_assignment(-alike)
@@ -129,7 +128,7 @@ def _unit(link: str) -> str:
 
 
 def _places(mechanism: Mechanism) -> Mapping[str, str]:
-    """Links of single strain gauges by the gauges' names."""
+    """Links of individual strain gauges by gauge name."""
     probes = {key: place for key, place in mechanism.gauges.items() if isinstance(place, LinkProbe)}
     pairs = (zip(copy_names(key), link_names(place.link), strict=True) for key, place in probes.items())
     return {name: link for group in pairs for name, link in group}
@@ -137,20 +136,20 @@ def _places(mechanism: Mechanism) -> Mapping[str, str]:
 
 def _findings(assembly: Assembly, model: LinearModel, outputs: set[str], asked: str) -> Iterator[Finding]:
     if not assembly.strokes:
-        what = "no stack is in a leg: nothing gives way at the rate of a force"
-        yield Finding(asked, what, f"Leave {asked} out, and take a PID for force actuators")
+        what = "no actuator has a stack in its leg"
+        yield Finding(asked, what, f"Omit {asked}, and use a PID controller for force actuators")
         return
     untold = [name for name, link in assembly.strokes.items() if link not in model.stiffness or f"{link}.fx" not in outputs]
     if untold:
-        what = f"the model tells no forces in the legs of {', '.join(untold)}"
-        yield Finding(asked, what, 'Take model = "lumped", as drawn')
+        what = f"the model provides no forces in the legs of {', '.join(untold)}"
+        yield Finding(asked, what, 'Use model = "lumped", nominal')
     for name, link in assembly.strokes.items():
         along = np.asarray(assembly.actuator(name).free_deformation)
         if link in model.stiffness and np.any(np.abs(along[..., 1:]) > 0.0):
-            yield Finding(asked, f"{name} moves across its link, not along it", "It is worked out for strokes along their link")
+            yield Finding(asked, f"{name} moves across its link, not along it", "the command supports only strokes along the link")
 
 
 def _gauge_findings(gauges: tuple[str, ...], placed: Mapping[str, str]) -> Iterator[Finding]:
     for name in gauges:
         if name not in placed:
-            yield Finding(f"damping.gauges {name}", "the stage has no strain gauge of this name", suggest_nearest(name, placed))
+            yield Finding(f"damping.gauges {name}", "unknown strain gauge", suggest_nearest(name, placed))

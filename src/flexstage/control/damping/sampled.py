@@ -1,4 +1,4 @@
-"""Force feedback as a computer runs it, in samples of its own between those of the pose."""
+"""Sampled force feedback, at a multiple of the pose loop's rate."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from flexstage.control.damping.legs import Leg
 
 @dataclass(frozen=True, eq=False)
 class SampledLegs:
-    """The law of `actuators`' legs (m,) every `step` [s], `turns` of which make a sample of the pose's loop.
+    """Sampled force feedback of `actuators`' legs (m,) every `step` [s], with `turns` samples per sample of the pose loop.
 
-    G = g s / (s + a)^2 (with `order` 1, g / (s + a)) by s = 2/step (z - 1)/(z + 1): one low pass a / (s + a) after `gains` g / (a k) (m,)
-    [m/N], and less another one of what comes out of it, so that single precision loses nothing to slow poles. `share` is
-    a step / (2 + a step).
+    G = g s / (s + a)^2 (with `order` 1, g / (s + a)) by s = 2/step (z - 1)/(z + 1): one low-pass filter a / (s + a) after `gains` g / (a k)
+    (m,) [m/N], less a second filter of its output. This form is accurate in single precision at slow poles. `share` is a step / (2 + a
+    step).
     """
 
     actuators: tuple[str, ...]
@@ -28,7 +28,7 @@ class SampledLegs:
     turns: int
 
     def strokes(self, tensions: Array) -> Array:
-        """What is added to the strokes (n, m) [m] by tensions (n, m) [N], from rest.
+        """Strokes (n, m) [m] added by tensions (n, m) [N], from zero state.
 
         >>> held = SampledLegs(("B",), np.array([2e-8]), 1e-2, 1, 1e-5, 10)
         >>> held.strokes(np.full((2000, 1), 50.0))[-1].round(12).tolist()
@@ -49,7 +49,7 @@ class SampledLegs:
 
 
 def sample_legs(law: ForceFeedback, legs: tuple[Leg, ...], rate: float, turns: int) -> SampledLegs:
-    """A law at a `rate` [Hz], `turns` samples to one of the pose; lag and delay are those of the hardware, not of the code."""
+    """Sample the force feedback at a `rate` [Hz], `turns` samples per pose sample; without the hardware's lag and delay."""
     turning = 2.0 * np.pi * law.corner
     share = turning / (2.0 * rate + turning)
     gains = np.array([law.gain / (turning * each.stiffness) for each in legs])

@@ -1,4 +1,4 @@
-"""The compiler of C on this machine, for what a user exports."""
+"""The C compiler of this machine, for exported code."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from flexstage.base.finding import refuse
 from flexstage.base.storage.store import temporary_folder
 
 COMPILERS = ("cc", "gcc", "clang")
-"""Names by which a compiler is looked for."""
+"""Command names of known compilers."""
 _MADE, _SECONDS = "made.so", 300.0
 
 
 def find_compiler() -> tuple[str, ...] | None:
-    """The words that call the compiler which the environment's CC names (`ccache gcc`), else `cc`, `gcc` or `clang`; None where none is.
+    """Find the command of the C compiler: the environment's CC (`ccache gcc`), else `cc`, `gcc` or `clang`; None without any.
 
     >>> found = find_compiler()
     >>> found is None or len(found) > 0
@@ -31,9 +31,9 @@ def find_compiler() -> tuple[str, ...] | None:
 
 
 def compile_source(what: str, sources: Mapping[str, str], flags: tuple[str, ...]) -> bytes:
-    """A shared library of `sources` (text by file name), compiled within an empty folder, so that no path gets into it.
+    """Compile a shared library of `sources` (text by file name) in an empty folder, so that it contains no paths.
 
-    Raises `DesignError` where there is no compiler or it refuses them.
+    Raises `DesignError` without a compiler, or if it rejects the sources.
 
     >>> sources = {"one.c": "int one(void); int one(void) { return 1; }"}
     >>> len(compile_source("an example", sources, ("-fPIC", "-shared"))) > 1000 if find_compiler() else True
@@ -42,7 +42,7 @@ def compile_source(what: str, sources: Mapping[str, str], flags: tuple[str, ...]
     found = find_compiler()
     if found is None:
         looked = f"CC = {os.environ['CC']}" if os.environ.get("CC") else ", ".join(COMPILERS)
-        raise refuse("compiler", f"{what} needs a compiler of C, and none was found ({looked})", "Install one, or set CC to one")
+        raise refuse("compiler", f"{what} needs a C compiler (found none of {looked})", "Install one, or set CC to one")
     with temporary_folder() as folder:
         for name, text in sources.items():
             Path(folder, name).write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""A loop for other programs, as files: controller in C, functional mock-up unit, plant for MATLAB; there whole or not at all."""
+"""Export files of a loop: controller in C, functional mock-up unit, plant for MATLAB; a file is complete or absent."""
 
 from __future__ import annotations
 
@@ -36,31 +36,31 @@ ENDINGS = {
     ".mat": "the plant for MATLAB",
     ".c": "the controller in C",
     ".fmu": "the controller as functional mock-up unit",
-    ".csv": "the path as it is commanded",
+    ".csv": "the commanded path",
 }
-"""What a loop is exported as, by the ending of the file's name."""
+"""Export by the ending of the file name."""
 WHOLE = ".loop.fmu"
-"""Ending of the whole loop as functional mock-up unit: controller, amplifiers, stacks, stage and gauges."""
+"""File ending of the whole loop as functional mock-up unit: controller, amplifiers, stacks, stage and gauges."""
 
 
 def export_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
-    """What keeps a name from being that of an export: its ending, or what its functions would be called.
+    """Findings for the name of an export: an unknown ending, or a reserved function name.
 
     >>> print(*export_findings("math.c"))
-    math.c: its header math.h would stand before a system's, or its functions could not be called "math". Call it stage_math.c.
+    math.c: its header math.h would replace a system header, or "math" is a reserved function name. Call it stage_math.c.
     """
     place = Path(path)
     name = identifier(place.stem)
     if place.suffix not in ENDINGS:
         known = ", ".join(f"{ending} ({what})" for ending, what in {**ENDINGS, WHOLE: "the whole loop as one"}.items())
-        yield Finding(os.fspath(path), f'the ending "{place.suffix}" is no export', f"End the name in {known}")
+        yield Finding(os.fspath(path), f'unknown ending "{place.suffix}" of an export', f"End the name in {known}")
     elif place.suffix == ".c" and name != place.stem:
-        what = f'its header {place.stem}.h would stand before a system\'s, or its functions could not be called "{place.stem}"'
+        what = f'its header {place.stem}.h would replace a system header, or "{place.stem}" is a reserved function name'
         yield Finding(os.fspath(path), what, f"Call it {name}.c")
 
 
 def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
-    """What keeps a name from being that of a controller for hardware.
+    """Findings for the name of a controller for hardware.
 
     >>> print(*hardware_findings("plant.mat"))
     plant.mat: its name does not end in .c. Call it plant.c.
@@ -72,10 +72,9 @@ def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
 
 
 def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "", legs: SampledLegs | None = None) -> dict[Path, str]:
-    """Texts by file of the controller of a machine as C99: `controller.c` and its header beside it, named as its functions.
+    """Generate texts by file of a machine's controller as C99: `controller.c` and its header, with the file's name as prefix.
 
-    With `legs` force feedback in them is part of it. Raises `DesignError` for a name that does not end in `.c` or that functions cannot
-    have.
+    With `legs` it includes their force feedback. Raises `DesignError` for a name without `.c` or a reserved name.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -90,7 +89,7 @@ def controller_files(path: str | os.PathLike[str], given: Machine, about: str = 
 
 
 def whole_controller(given: Machine, name: str, about: str = "", legs: SampledLegs | None = None) -> Program:
-    """The controller of a machine as a program, with force feedback in `legs` where there is one that a computer runs."""
+    """Controller program of a machine, including sampled force feedback in `legs`."""
     outer = controller_code(given, name, about)
     return outer if legs is None else with_legs(outer, given, legs)
 
@@ -105,10 +104,10 @@ def hardware_files(
     about: str = "",
     legs: SampledLegs | None = None,
 ) -> dict[Path, str]:
-    """Texts by file of a controller for hardware (see `hardware_code`): `controller.c`, its header, and `controller_test.c`.
+    """Generate texts by file of a controller for hardware (see `hardware_code`): `controller.c`, its header, and `controller_test.c`.
 
-    The test is the loop from rest, without noise, for the first 300 samples of a `reference` (n, f) [m, rad]. Raises `DesignError` for a
-    name that does not end in `.c` or that functions cannot have.
+    The test is the loop from zero state, without noise, for the first 300 samples of a `reference` (n, f) [m, rad]. Raises `DesignError`
+    for a name without `.c` or a reserved name.
     """
     source = Path(path)
     require(hardware_findings(path))
@@ -119,9 +118,9 @@ def hardware_files(
 
 @check_arguments
 def write_controller(path: str | os.PathLike[str], given: Machine, about: str = "") -> tuple[Path, Path]:
-    """Write the controller of a machine as C99, `controller.c` and its header beside it, both or none (see `controller_files`).
+    """Write the controller of a machine as C99: `controller.c` and its header, both or none (see `controller_files`).
 
-    Raises `DesignError` where a file cannot be written too.
+    Also raises `DesignError` if a file cannot be written.
 
     >>> import tempfile
     >>> from flexstage.control.example import integral_loop
@@ -142,7 +141,7 @@ def write_controller(path: str | os.PathLike[str], given: Machine, about: str = 
 def write_fmu(path: str | os.PathLike[str], program: Program, *, sources_only: bool = False) -> Path:
     """Write a program as functional mock-up unit (FMI 2.0 for Co-Simulation); see `fmu`.
 
-    Raises `DesignError` where the file cannot be written, for a name that does not end in `.fmu`, and where there is no compiler.
+    Raises `DesignError` if the file cannot be written, for a name without `.fmu`, and without a compiler.
 
     >>> import tempfile
     >>> from flexstage.control.example import integral_loop
@@ -158,7 +157,7 @@ def write_fmu(path: str | os.PathLike[str], program: Program, *, sources_only: b
 
 @check_arguments
 def write_plant(path: str | os.PathLike[str], given: Plant) -> Path:
-    """Write a plant as MATLAB file (see `plant_file`); raises `DesignError` where it cannot be written or does not end in `.mat`.
+    """Write a plant as MATLAB file (see `plant_file`); raises `DesignError` if it cannot be written or lacks the ending `.mat`.
 
     >>> import tempfile
     >>> from flexstage.control.example import integral_loop
@@ -170,10 +169,10 @@ def write_plant(path: str | os.PathLike[str], given: Plant) -> Path:
 
 
 def plant_file(given: Plant) -> bytes:
-    """A plant as MATLAB file (v5): state space with names and units, continuous and between hold and sampler.
+    """Generate a MATLAB file (v5) of a plant: state space with names and units, continuous and between hold and sampler.
 
-    Structures `continuous` and `sampled` (where the loop has a rate) hold A, B, C, D, `step` [s] (0: continuous), inputs, outputs, their
-    units and `states`; beside them frequencies [Hz] and damping ratios of the modes, what was simplified, where it is from.
+    Structures `continuous` and `sampled` (for a sampled loop) contain A, B, C, D, `step` [s] (0: continuous), inputs, outputs, their units
+    and `states`. The file also contains the modes' frequencies [Hz] and damping ratios, simplifications, and provenance.
 
     >>> import scipy.io
     >>> from flexstage.control.example import integral_loop
@@ -193,12 +192,12 @@ def plant_file(given: Plant) -> bytes:
         variables["sampled"] = _system(zero_order_hold(given), ())
     scipy.io.savemat(content, variables, oned_as="column")
     made = bytearray(content.getvalue())
-    made[:116] = b"MATLAB 5.0 MAT-file, Platform: any".ljust(116)  # scipy writes the time: the same plant is to be the same file
+    made[:116] = b"MATLAB 5.0 MAT-file, Platform: any".ljust(116)  # scipy writes the time; equal plants must give equal files
     return bytes(made)
 
 
 def path_file(commanded: Array, step: float, coordinates: tuple[Channel, ...]) -> str:
-    """A path (n, f) every `step` [s] as CSV that set-ups and controllers read as a trajectory: times, then coordinates with units.
+    """Generate a CSV file of a path (n, f) every `step` [s], a trajectory for set-ups and controllers: times, then coordinates with units.
 
     >>> path_file(np.array([[0.0], [1e-6]]), 1e-4, (Channel("x", "m"),)).splitlines()
     ['time [s],x [m]', '0,0', '0.0001,1e-06']

@@ -1,1 +1,1 @@
-"""Hysteresis and creep of piezo stacks: models, their inverse, their identification, and plants of another kind."""
+"""Hysteresis and creep of piezo stacks: models, their inverse, their identification, and test plants of other models."""

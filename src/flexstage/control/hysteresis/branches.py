@@ -1,4 +1,4 @@
-"""Branches of a record: where the volts turn, and what keeps a record of volts and stroke from being a hysteresis."""
+"""Branches of a record between voltage reversals, and checks of a record of voltage and stroke."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 
 MAJOR = 0.8
-"""Branches that cover this part of the range or more belong to major loops."""
+"""Branches over this share of the range or more belong to major loops."""
 _LEAST = 0.1
 _BINS = 20
 _FEWEST = 40
@@ -24,7 +24,7 @@ _LARGEST_STROKE = 0.01
 
 @dataclass(frozen=True)
 class Branch:
-    """A way up or down: samples `start` to `stop` (both ends included), from volts `first` to volts `last`."""
+    """Ascending or descending branch: samples `start` to `stop` (both ends included), from voltage `first` to `last`."""
 
     start: int
     stop: int
@@ -33,17 +33,17 @@ class Branch:
 
     @property
     def rises(self) -> bool:
-        """Whether the volts rise along it."""
+        """Whether the voltage rises."""
         return self.last > self.first
 
     @property
     def swing(self) -> float:
-        """Its length in V."""
+        """Voltage span in V."""
         return abs(self.last - self.first)
 
 
 def branches_of(volts: Array, least: float = _LEAST) -> list[Branch]:
-    """The branches of a record (k,) between turning points; smaller turns than `least` of the range count as noise.
+    """Split a record (k,) at its turning points into branches; turns smaller than `least` of the range count as noise.
 
     >>> [(each.first, each.last) for each in branches_of(np.array([0.0, 5.0, 10.0, 9.9, 10.0, 4.0, 0.0, 8.0]))]
     [(0.0, 10.0), (10.0, 0.0), (0.0, 8.0)]
@@ -66,7 +66,7 @@ def branches_of(volts: Array, least: float = _LEAST) -> list[Branch]:
 
 
 def _extremes(volts: Array) -> list[int]:
-    """Samples at which the volts turn, however little, and both ends."""
+    """Samples of all voltage reversals, however small, and both ends."""
     steps = np.diff(volts)
     moves = np.flatnonzero(steps)
     ways = np.sign(steps[moves])
@@ -74,10 +74,10 @@ def _extremes(volts: Array) -> list[int]:
 
 
 def record_findings(volts: Array, strokes: Array) -> list[Finding]:
-    """What keeps a record (k,) in V and m from being that of a stack's hysteresis; what others rest on is told first, and alone.
+    """Findings for a record (k,) in V and m that is not a stack's hysteresis; the first fundamental one alone.
 
     >>> record_findings(np.arange(100.0), 1e-7 * np.arange(100.0))[0].what
-    'the volts go from 0 V to 99 V and never turn: what a hysteresis remembers does not show'
+    'the voltage runs from 0 V to 99 V without reversal: the record cannot show hysteresis'
     """
     for check in (_channel_findings, _column_findings, _branch_findings, _loop_findings):
         found = list(check(volts, strokes))
@@ -88,17 +88,17 @@ def record_findings(volts: Array, strokes: Array) -> list[Finding]:
 
 def _channel_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     if volts.ndim != 1 or volts.shape != strokes.shape:
-        yield Finding("record", f"volts are {volts.shape}, strokes {strokes.shape}", "Give one of each a sample")
+        yield Finding("record", f"different lengths (got volts {volts.shape}, strokes {strokes.shape})", "Use one of each per sample")
         return
     if len(volts) < _FEWEST:
-        yield Finding("record", f"it has {len(volts)} samples, at least {_FEWEST} are needed", "Record more of them")
+        yield Finding("record", f"too few samples (got {len(volts)}, expected at least {_FEWEST})", "Record more of them")
     for name, values in (("volts", volts), ("stroke", strokes)):
         if not np.all(np.isfinite(values)):
             place = int(np.argmin(np.isfinite(values)))
-            yield Finding(name, f"sample {place} is {values[place]}", "Cut the record there, or mend the channel")
+            yield Finding(name, f"sample {place} is {values[place]}", "Truncate the record there, or correct the channel")
         elif np.ptp(values) <= 1e-9 * np.max(np.abs(values)):
             yield Finding(
-                name, f"all its samples are {values[0]:g}: the channel is dead", "Check its cable and its range, or name another one"
+                name, f"all samples equal {values[0]:g}: the channel is dead", "Check its cable and its range, or select another channel"
             )
 
 
@@ -111,8 +111,8 @@ def _column_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
 def _branch_findings(volts: Array, _: Array) -> Iterator[Finding]:
     branches = branches_of(volts)
     if len(branches) < 2:
-        what = f"the volts go from {volts[0]:g} V to {volts[-1]:g} V and never turn: what a hysteresis remembers does not show"
-        yield Finding("volts", what, "Record two cycles over the whole range, then smaller ones within")
+        what = f"the voltage runs from {volts[0]:g} V to {volts[-1]:g} V without reversal: the record cannot show hysteresis"
+        yield Finding("volts", what, "Record two cycles over the whole range, then smaller inner loops")
         return
     counts = np.array([branch.stop - branch.start + 1 for branch in branches])
     if np.any(counts < _FEWEST_A_BRANCH):
@@ -123,7 +123,7 @@ def _branch_findings(volts: Array, _: Array) -> Iterator[Finding]:
     major = [branch for branch in branches[1:] if branch.swing >= MAJOR * np.ptp(volts)]
     for rises, word in ((True, "up"), (False, "down")):
         if not any(branch.rises == rises for branch in major):
-            what = f"after the first branch none goes {word} over {MAJOR:.0%} of the range ({np.min(volts):g} V to {np.max(volts):g} V)"
+            what = f"no branch after the first goes {word} over {MAJOR:.0%} of the range ({np.min(volts):g} V to {np.max(volts):g} V)"
             yield Finding("volts", what, "Record at least one and a half cycles over the whole range: the first branch depends on the past")
 
 
@@ -133,18 +133,16 @@ def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     means = [_bin(volts, strokes, branch) for branch in major]
     risen = np.mean([np.sign(branch.last - branch.first) * (strokes[branch.stop] - strokes[branch.start]) for branch in major])
     if risen < 0.0:
-        what = f"the stroke falls by {-1e6 * risen:.4g} um while the volts rise over a branch"
-        yield Finding("stroke", what, "Change its sign: a stack grows with the volts")
+        what = f"the stroke falls by {-1e6 * risen:.4g} um during a rising branch"
+        yield Finding("stroke", what, "Change its sign: a stack extends with voltage")
         return
     up, down = (
         np.nanmean([mean for branch, mean in zip(major, means, strict=True) if branch.rises == way], axis=0) for way in (True, False)
     )
     ahead = float(np.mean((up - down)[1:-1])) / size
     if ahead > _AHEAD:
-        what = (
-            f"at equal volts the stroke is on the way up {ahead:.1%} of its range larger than on the way down: it runs ahead of the volts"
-        )
-        yield Finding("record", what, "A stack lags behind: check whether the channels are exchanged, or one is delayed")
+        what = f"at equal voltage the ascending stroke exceeds the descending stroke by {ahead:.1%} of its range: it leads the voltage"
+        yield Finding("record", what, "Check whether the channels are exchanged, or one is delayed: a stack lags")
     drops = [float(np.max(np.maximum.accumulate(mean) - mean)) for mean in means]
     worst = int(np.argmax(drops))
     if drops[worst] > _FALL * size:
@@ -152,7 +150,7 @@ def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
 
 
 def _bin(volts: Array, strokes: Array, branch: Branch) -> Array:
-    """Means of the strokes of a branch in equal bins of the record's range; where a bin is empty, from its neighbours."""
+    """Mean strokes of a branch in equal bins of the record's range; empty bins are interpolated."""
     rows = slice(branch.start, branch.stop + 1)
     edges = np.linspace(np.min(volts), np.max(volts), _BINS + 1)
     place = np.clip(np.digitize(volts[rows], edges) - 1, 0, _BINS - 1)
@@ -170,4 +168,4 @@ def _fall(branch: Branch, mean: Array, volts: Array, size: float) -> Finding:
     places = np.min(volts) + np.ptp(volts) * (np.array([peak, trough]) + 0.5) / _BINS
     what = f"on the branch from {branch.first:g} V to {branch.last:g} V it is {1e6 * drop:.3g} um less at {places[1]:g} V"
     much = f"than at {places[0]:g} V ({drop / size:.1%} of its range)"
-    return Finding("stroke", f"{what} {much}: a loop that is not monotone has no inverse", "Look for slip, a resonance or a bad contact")
+    return Finding("stroke", f"{what} {much}: a loop that is not monotonic has no inverse", "Look for slip, a resonance or a bad contact")

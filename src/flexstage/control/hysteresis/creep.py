@@ -1,4 +1,4 @@
-"""Creep: what a stack still does after a step, by the logarithm of time, and as a sum of exponentials that a simulation can run."""
+"""Creep of a stack after a voltage step: logarithm of time, and a sum of exponentials for simulation."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ from flexstage.models.linear.model import Channel
 
 @dataclass(frozen=True)
 class LogCreep(CheckedFields):
-    """w(t) = w_0 (1 + gamma log10(t/t_0)) after a step at t = 0: `rate` gamma a decade, w_0 the stroke `reference` t_0 [s] after it.
+    """Logarithmic creep w(t) = w_0 (1 + gamma log10(t/t_0)) after a step at t = 0: `rate` gamma per decade, `reference` t_0 [s].
 
-    (Jung and Gweon, Rev. Sci. Instrum. 71, 2000, 3436-3440.) Valid from about t_0 on; it has no limit for short or long times.
+    w_0 is the stroke at t_0. (Jung and Gweon, Rev. Sci. Instrum. 71, 2000, 3436-3440.) Valid from about t_0; it has no limit for short or
+    long times.
     """
 
     rate: Annotated[float, Heading("creep per decade", digits=3, unit="%")]
@@ -31,13 +32,12 @@ class LogCreep(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        """Refuse a reference time that is none."""
         if not (0.0 < self.reference < np.inf and np.isfinite(self.rate)):
-            what = f"rate {self.rate:g} a decade from {self.reference:g} s on is no creep"
-            raise refuse("creep", what, "Give a finite rate and a time above 0")
+            what = f"no creep law (got rate {self.rate:g} per decade from {self.reference:g} s)"
+            raise refuse("creep", what, "Use a finite rate and a time above 0")
 
     def at(self, times: Array) -> Array:
-        """w/w_0 at `times` > 0 [s].
+        """Relative stroke w/w_0 at `times` > 0 [s].
 
         >>> LogCreep(0.02, 0.1).at(np.array([0.1, 1.0, 10.0])).round(12).tolist()
         [1.0, 1.02, 1.04]
@@ -47,11 +47,10 @@ class LogCreep(CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class Creep:
-    """y = g_0 u + sum_i g_i s_i,  tau_i ds_i/dt + s_i = u: `instant` g_0 (axes,), `gains` g_i and `times` tau_i [s] (axes, m).
+    """Creep operator y = g_0 u + sum_i g_i s_i, tau_i ds_i/dt + s_i = u: `instant` g_0 (axes,), `gains` g_i, `times` tau_i [s] (axes, m).
 
-    It stands between hysteresis and stage (Hammerstein). With u held over a sample T the states move exactly by
-    s_i <- s_i + (1 - e^{-T/tau_i}) (u - s_i), after y was taken. One axis may be given as (m,). Raises `DesignError` for times that are not
-    positive.
+    Between hysteresis and stage (Hammerstein model). With u constant over a sample T the exact state update is s_i <- s_i + (1 -
+    e^{-T/tau_i}) (u - s_i), after y is computed. One axis may have shape (m,). Raises `DesignError` for times that are not positive.
     """
 
     instant: Array
@@ -59,7 +58,6 @@ class Creep:
     times: Array
 
     def __post_init__(self) -> None:
-        """Make the arrays (axes,) and (axes, m) and read-only, and check them."""
         object.__setattr__(self, "instant", freeze(np.atleast_1d(np.asarray(self.instant, dtype=float))))
         freeze_rows(self, "gains", "times")
         require(_findings(self))
@@ -70,7 +68,7 @@ class Creep:
         return len(self.instant)
 
     def step_response(self, times: Array) -> Array:
-        """y (k, axes) at `times` (k,) >= 0 after a unit step from rest.
+        """Step response y (k, axes) at `times` (k,) >= 0 from zero state.
 
         >>> Creep([1.0], [0.1], [2.0]).step_response(np.array([0.0, 2.0])).ravel().round(6).tolist()  # 1, and 1 + 0.1 (1 - 1/e)
         [1.0, 1.063212]
@@ -79,7 +77,7 @@ class Creep:
         return self.instant + np.sum(self.gains * risen, axis=-1)
 
     def system(self, inputs: tuple[Channel, ...], outputs: tuple[Channel, ...]) -> System:
-        """The same as a linear system, states axis by axis: what a loop is made of.
+        """Return the creep operator as a linear system for loops, states axis by axis.
 
         >>> found = Creep([1.0], [0.1], [2.0]).system((Channel("u", "m"),), (Channel("y", "m"),))
         >>> found.A.tolist(), found.C.tolist(), found.D.tolist()
@@ -95,7 +93,7 @@ class Creep:
 
 @dataclass(frozen=True, eq=False)
 class CreepFit:
-    """Exponentials for a logarithm: the `creep`, the `span` of times [s] it holds over, and its largest `error` there as a part of w_0."""
+    """Exponential fit of logarithmic creep: the `creep`, its `span` of times [s], and its largest relative `error` there."""
 
     creep: Creep
     span: tuple[float, float]
@@ -104,10 +102,10 @@ class CreepFit:
 
 @check_arguments
 def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 2) -> CreepFit:
-    """The sum of exponentials nearest to a logarithmic law over a span of times [s], `per_decade` of them in each.
+    """Fit a sum of exponentials to a logarithmic law over a span of times [s], with `per_decade` terms per decade.
 
-    Times tau_i are spaced evenly in log t over the span, and half a decade beyond both ends; gains by least squares, of one sign, at times
-    spaced in the same way. Raises `DesignError` for a span that is none.
+    Times tau_i are spaced evenly in log t over the span, and half a decade beyond both ends. Gains of one sign follow from least squares at
+    times with the same spacing. Raises `DesignError` for an empty span.
 
     >>> fit = exponentials(LogCreep(0.02, 0.1), (0.01, 100.0))
     >>> bool(fit.error < 1e-4), fit.creep.step_response(np.array([10.0])).round(3).tolist()
@@ -115,7 +113,9 @@ def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 
     """
     low, high = span
     if not (0.0 < low < high < np.inf and per_decade >= 1):
-        raise refuse("creep", f"{low:g} s to {high:g} s with {per_decade} terms a decade is no span", "Give 0 < low < high, a term or more")
+        raise refuse(
+            "creep", f"no span (got {low:g} s to {high:g} s, {per_decade} terms per decade)", "Use 0 < low < high, and one term or more"
+        )
     decades = np.log10(high / low)
     spread = np.logspace(np.log10(low) - 0.5, np.log10(high) + 0.5, 1 + int(np.ceil(per_decade * (decades + 1.0))))
     times = np.geomspace(low, high, 1 + int(40 * decades + 40))
@@ -127,7 +127,7 @@ def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 
 
 
 def _fit(law: LogCreep, times: Array, spread: Array) -> tuple[float, Array]:
-    """g_0 and g_i for given tau_i: the sign of the g_i is that of the rate."""
+    """Gains g_0 and g_i for given tau_i; the g_i have the sign of the rate."""
     columns = np.column_stack([np.ones_like(times), -np.expm1(-times[:, None] / spread)])
     sign = -1.0 if law.rate < 0.0 else 1.0
     lower = np.concatenate([[-np.inf], np.zeros(len(spread))])
@@ -140,6 +140,6 @@ def _fit(law: LogCreep, times: Array, spread: Array) -> tuple[float, Array]:
 def _findings(creep: Creep) -> Iterator[Finding]:
     if creep.gains.shape != creep.times.shape or len(creep.instant) != len(creep.times):
         shapes = f"instant {creep.instant.shape}, gains {creep.gains.shape}, times {creep.times.shape}"
-        yield Finding("creep", f"its parts do not fit together: {shapes}", "Give (axes,), (axes, m) and (axes, m)")
+        yield Finding("creep", f"shapes do not match (got {shapes})", "Use (axes,), (axes, m) and (axes, m)")
     elif not np.all(creep.times > 0.0) or not all(np.all(np.isfinite(each)) for each in (creep.instant, creep.gains, creep.times)):
-        yield Finding("creep", "a time is not above 0, or a number is not finite", "Mend the numbers")
+        yield Finding("creep", "a time is not above 0, or a number is not finite", "Correct the numbers")

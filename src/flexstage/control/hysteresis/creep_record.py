@@ -1,4 +1,4 @@
-"""Creep identified from the record of a step."""
+"""Creep identification from the record of a voltage step."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _SCATTER = 0.25
 
 @dataclass(frozen=True)
 class IdentifiedCreep:
-    """The `law` of a stack's creep, its `stroke` [m] at the reference time, the `span` of times [s] after the step that it was fitted to.
+    """Identified creep: the `law`, the `stroke` [m] at the reference time, and the fitted `span` of times [s] after the step.
 
-    `rms` is the error over the span, each decade counted alike, as a part of the stroke.
+    `rms` is the error over the span relative to the stroke, with equal weight per decade.
     """
 
     law: LogCreep
@@ -33,11 +33,11 @@ class IdentifiedCreep:
 
 
 def identify_creep(times: Array, volts: Array, strokes: Array, *, reference: float = 0.1) -> IdentifiedCreep:
-    """Fit w(t) = w_0 (1 + gamma log10(t/t_0)) to the stroke after a step of the volts; t_0 is `reference` [s].
+    """Fit w(t) = w_0 (1 + gamma log10(t/t_0)) to the stroke after a voltage step; t_0 is `reference` [s].
 
-    `times` [s], `volts` [V] and `strokes` [m] are (k,), the stack at rest before. Least squares over means of equal parts of log t, so
-    that every decade counts alike. Raises `DesignError` where the volts make no single step, less than a decade follows from t_0 on, or
-    the stroke does not follow the logarithm.
+    `times` [s], `volts` [V] and `strokes` [m] are (k,), the stack in equilibrium before. Least squares over means of equal parts of log t
+    give every decade equal weight. Raises `DesignError` if the voltage is not a single step, the record after t_0 is shorter than a decade,
+    or the stroke does not follow the logarithm.
 
     >>> times = np.arange(0.0, 100.0, 0.05)
     >>> after = np.maximum(times - 1.0, 0.01)
@@ -60,7 +60,7 @@ def identify_creep(times: Array, volts: Array, strokes: Array, *, reference: flo
 
 
 def _step(volts: Array) -> tuple[int, int]:
-    """The last sample before the volts leave their first value, and the first at which they have their last one for good."""
+    """Last sample at the initial voltage, and the first sample of the constant final voltage."""
     least = _STILL * np.ptp(volts)
     first = int(np.argmax(np.abs(volts - volts[0]) > least)) - 1
     last = min(len(volts) - 1, len(volts) - int(np.argmax(np.abs(volts[::-1] - volts[-1]) > least)))
@@ -69,32 +69,32 @@ def _step(volts: Array) -> tuple[int, int]:
 
 def _step_findings(times: Array, volts: Array, strokes: Array) -> Iterator[Finding]:
     if not (times.shape == volts.shape == strokes.shape and times.ndim == 1 and len(times) > _FEWEST):
-        shapes = f"times {times.shape}, volts {volts.shape}, strokes {strokes.shape}"
-        yield Finding("record", f"it has {shapes}", f"Give one of each a sample, more than {_FEWEST}")
+        shapes = f"different lengths (got times {times.shape}, volts {volts.shape}, strokes {strokes.shape})"
+        yield Finding("record", f"it has {shapes}", f"Use one of each per sample, more than {_FEWEST}")
         return
     if not all(np.all(np.isfinite(each)) for each in (times, volts, strokes)):
-        yield Finding("record", "a sample is not finite", "Cut the record there")
+        yield Finding("record", "a sample is not finite", "Truncate the record there")
         return
     if np.ptp(volts) == 0.0:
-        yield Finding("volts", f"they stay at {volts[0]:g} V: there is no step", "Record the stroke after a step of the volts")
+        yield Finding("volts", f"no voltage step (got {volts[0]:g} V throughout)", "Record the stroke after a voltage step")
         return
     places = _step(volts)
     first, last = (float(times[place]) for place in places)
     if places[1] - places[0] > 1 and last - first > _STILL * (times[-1] - times[0]):
-        what = f"they change from {first:g} s to {last:g} s, over more than {_STILL:.0%} of the record"
-        yield Finding("volts", what, "Record one quick step, and hold the volts after it")
+        what = f"the voltage changes from {first:g} s to {last:g} s, over more than {_STILL:.0%} of the record"
+        yield Finding("volts", what, "Record one quick step, and keep the voltage constant after it")
     if np.any(np.diff(times) <= 0.0):
-        yield Finding("times", "they do not ascend", "Give the times of the samples")
+        yield Finding("times", "they do not ascend", "Use the times of the samples")
 
 
 def _span_findings(after: Array, reference: float) -> Iterator[Finding]:
     if not reference > 0.0 or after[-1] < 10.0 * reference or np.sum(after >= reference) < _FEWEST:
-        what = f"after the step there are {after[-1]:g} s, {np.sum(after >= reference)} samples from {reference:g} s on"
-        yield Finding("record", what, f"Record for {10.0 * reference:g} s or more after the step, or state an earlier reference time")
+        what = f"too short after the step (got {after[-1]:g} s, {np.sum(after >= reference)} samples from {reference:g} s)"
+        yield Finding("record", what, f"Record for {10.0 * reference:g} s or more after the step, or specify an earlier reference time")
 
 
 def _means(decades: Array, risen: Array) -> tuple[Array, Array]:
-    """Means of decades and strokes in equal parts of the decades from the reference time on."""
+    """Means of decades and strokes in equal parts of the decades from the reference time."""
     used = decades >= 0.0
     place = np.floor(decades[used] * _PER_DECADE).astype(int)
     counts = np.bincount(place)
@@ -105,7 +105,7 @@ def _means(decades: Array, risen: Array) -> tuple[Array, Array]:
 
 def _law_findings(stroke: float, slope: float, rms: float, decades: float) -> Iterator[Finding]:
     if stroke == 0.0 or not np.isfinite(slope / stroke):
-        yield Finding("stroke", "it does not answer the step", "Check that volts and stroke belong together")
+        yield Finding("stroke", "no response to the step", "Check that voltage and stroke belong together")
     elif rms > _SCATTER * abs(slope) * decades and rms > 1e-4 * abs(stroke):
-        what = f"it scatters by {rms:.3g} m rms about the logarithm, along which it creeps by {slope * decades:.3g} m"
-        yield Finding("stroke", what, "Record longer, or where drift and noise are smaller")
+        what = f"it scatters by {rms:.3g} m rms about the logarithm, with creep of {slope * decades:.3g} m"
+        yield Finding("stroke", what, "Record longer, or with less drift and noise")

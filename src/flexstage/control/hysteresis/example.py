@@ -1,4 +1,4 @@
-"""A test of a stack for examples: recorded from a Bouc-Wen plant, so that no model of plays is exact."""
+"""Example test of a stack, simulated with a Bouc-Wen plant, so that no play model is exact."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _RATE = 100.0
 
 
 def sweep_of(turns: tuple[float, ...], samples: int) -> Array:
-    """Volts (k,) that go straight from turn to turn, `samples` of them a leg.
+    """Piecewise linear voltage (k,) between turning points, `samples` per segment.
 
     >>> sweep_of((0.0, 2.0, 0.0), 2).tolist()
     [0.0, 1.0, 2.0, 1.0, 0.0]
@@ -29,7 +29,7 @@ def sweep_of(turns: tuple[float, ...], samples: int) -> Array:
 
 
 def example_record() -> Record:
-    """Loops of a stack of 150 um over 1000 V, 15 % of the stroke wide, with 10 nm of gauge noise.
+    """Record loops of a stack of 150 um over 1000 V, hysteresis width 15 % of the stroke, 10 nm of gauge noise.
 
     >>> example_record().length
     901
@@ -41,7 +41,7 @@ def example_record() -> Record:
 
 
 def example_step() -> Record:
-    """A step of 500 V, held for 100 s: it creeps by 2 % a decade.
+    """Record a step of 500 V for 100 s, with creep of 2 % per decade.
 
     >>> example_step().duration
     101.0
@@ -54,7 +54,7 @@ def example_step() -> Record:
 
 @cache
 def example_test() -> StackTest:
-    """The test of both records; identified once.
+    """Return the test of both records, identified once.
 
     >>> test = example_test()
     >>> round(test.hysteresis.width, 2), round(test.creep.law.rate, 3)

@@ -1,4 +1,4 @@
-"""Least squares for Prandtl-Ishlinskii models: weights of plays, and slopes of the envelope before them."""
+"""Least-squares fit of Prandtl-Ishlinskii models: play weights, and slopes of the envelope before them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LEAST_WEIGHT = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Form:
-    """What is not fitted: thresholds (n,) and knots (m,) of the envelope before the plays, both in V."""
+    """Structure of the model: thresholds (n,) and knots (m,) of the envelope before the plays, both in V."""
 
     thresholds: Array
     knots: Array
@@ -27,7 +27,7 @@ class Form:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Slopes (m-1,) of the envelope (mean 1 over the range, so that thresholds keep their meaning), weights (n,) [m/V] and offset [m]."""
+    """Fitted model: slopes (m-1,) of the envelope (mean 1 over the range, for the scale of thresholds), weights (n,) [m/V], offset [m]."""
 
     form: Form
     slopes: Array
@@ -35,17 +35,17 @@ class Fit:
     offset: float
 
     def effective(self, volts: Array) -> Array:
-        """What enters the plays (k,) [V] at volts (k,): the envelope, from the lowest knot."""
+        """Play input (k,) [V] at voltage (k,): the envelope, from the lowest knot."""
         return self.form.knots[0] + _ramps(volts, self.form.knots) @ self.slopes
 
     def strokes(self, plays: Array) -> Array:
-        """Strokes (k,) [m] of the plays' outputs (k, n)."""
+        """Strokes (k,) [m] for play outputs (k, n)."""
         return plays @ self.weights + self.offset
 
     def model(self) -> PrandtlIshlinskii:
-        """The model with its envelope shifted to pass through 0: there the stack is at rest.
+        """Return the model with its envelope shifted to pass through 0, the unloaded state.
 
-        Plays commute with a shift of their input, so that the strokes stay what they are once the memory of the start is lost.
+        Plays commute with a shift of their input: the strokes do not change once the initial state is forgotten.
         """
         knots = self.form.knots
         values = knots[0] + np.concatenate([[0.0], np.cumsum(self.slopes * np.diff(knots))])
@@ -56,7 +56,7 @@ class Fit:
 
 
 def _extrapolate(knots: Array, values: Array) -> tuple[Array, Array]:
-    """Knots and values with both end slopes carried on to beyond 0 V."""
+    """Knots and values with both end slopes extrapolated beyond 0 V."""
     first, last = (np.diff(values)[place] / np.diff(knots)[place] for place in (0, -1))
     far = abs(knots[0]) + abs(knots[-1])
     ends = values[0] - first * far, values[-1] + last * far
@@ -64,7 +64,7 @@ def _extrapolate(knots: Array, values: Array) -> tuple[Array, Array]:
 
 
 def form_of(volts: tuple[float, float], plays: int, pieces: int, *, reach: float = 0.5) -> Form:
-    """`plays` thresholds from 0, evenly up to short of `reach` of the range, and an envelope of `pieces` even pieces.
+    """Choose `plays` thresholds, even from 0 to below `reach` of the range, and an envelope of `pieces` even pieces.
 
     >>> form_of((0.0, 1000.0), 4, 1).thresholds.tolist()
     [0.0, 125.0, 250.0, 375.0]
@@ -74,7 +74,7 @@ def form_of(volts: tuple[float, float], plays: int, pieces: int, *, reach: float
 
 
 def play_outputs(inputs: Array, thresholds: Array) -> Array:
-    """Outputs (k, n) of plays that start from the first of the inputs (k,).
+    """Compute play outputs (k, n) from the first of the inputs (k,).
 
     >>> play_outputs(np.array([0.0, 3.0, 2.0]), np.array([0.0, 1.0])).tolist()
     [[0.0, 0.0], [3.0, 2.0], [2.0, 2.0]]
@@ -84,7 +84,7 @@ def play_outputs(inputs: Array, thresholds: Array) -> Array:
     ends = [*(1 + np.flatnonzero(ways[1:] != ways[:-1])), len(inputs) - 1]
     now, start = np.full(len(thresholds), inputs[0]), 0
     found[0] = now
-    for end in ends:  # from turn to turn: on the way up only the lower bounds move plays, on the way down only the upper ones
+    for end in ends:  # between reversals: rising inputs move plays by the lower bound only, falling inputs by the upper bound only
         rows = slice(start + 1, end + 1)
         found[rows] = np.maximum(found[rows], now) if ways[start] > 0.0 else np.minimum(above[rows], now)
         now, start = found[end], end
@@ -92,7 +92,7 @@ def play_outputs(inputs: Array, thresholds: Array) -> Array:
 
 
 def known_from(inputs: Array, thresholds: Array) -> int:
-    """The first sample at which no play depends on its start any more: the inputs have swung by twice the largest threshold.
+    """Find the first sample at which no play depends on its initial state: the input has swung by twice the largest threshold.
 
     >>> known_from(np.array([0.0, 1.0, 5.0, 3.0, 0.0]), np.array([0.0, 2.0]))
     2
@@ -102,13 +102,12 @@ def known_from(inputs: Array, thresholds: Array) -> int:
 
 
 def fit_form(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: int = _ROUNDS) -> Fit:
-    """The weights and the envelope with the least squares over some rows of a record; weights are 0 or more, slopes positive.
+    """Fit weights and envelope to some rows of a record by least squares; weights are 0 or more, slopes positive.
 
-    Rows from before the plays are known are left out (`known_from`).
+    Omits rows before the plays are known (`known_from`).
 
-    With a straight envelope this is one linear problem. Else weights for a given envelope and slopes for given weights, each linear, are
-    found in turns: while a play sticks it holds the value of the envelope where it last moved, which is linear in the
-    slopes; `rounds` at most.
+    With a straight envelope this is one linear problem. Otherwise weights for a given envelope and slopes for given weights alternate, both
+    linear, at most `rounds` times. A sticking play keeps the envelope's value at its last motion, which is linear in the slopes.
 
     >>> volts = np.concatenate([np.linspace(0, 100, 21), np.linspace(95, 0, 20), np.linspace(5, 100, 20)])
     >>> strokes = PrandtlIshlinskii([0.0, 25.0], [1e-7, 5e-8]).run(volts)
@@ -143,7 +142,7 @@ def _with_weights(fit: Fit, plays: Array, strokes: Array) -> Fit:
 
 
 def _with_slopes(fit: Fit, volts: Array, plays: Array, strokes: Array, rows: Array) -> Fit:
-    """Slopes for given weights, from the volts at which each play last moved, and the side it then moved to."""
+    """Slopes for given weights, from the voltage and the side of each play's last motion."""
     moved = np.sign(np.diff(plays, axis=0, prepend=plays[:1]))
     last = np.maximum.accumulate(np.where(moved != 0.0, np.arange(len(plays))[:, None], 0), axis=0)[rows]
     side = np.take_along_axis(moved, last, axis=0)
@@ -159,22 +158,22 @@ def _with_slopes(fit: Fit, volts: Array, plays: Array, strokes: Array, rows: Arr
 
 
 def _ramps(volts: Array, knots: Array) -> Array:
-    """Ways (k, m-1) travelled on each piece from the lowest knot to the volts; the end pieces go on."""
+    """Distances (k, m-1) on each piece from the lowest knot to the voltage; the end pieces are extrapolated."""
     floors = np.concatenate([[-np.inf], np.zeros(len(knots) - 2)])
     tops = np.concatenate([np.diff(knots)[:-1], [np.inf]])
     return np.clip(volts[:, None] - knots[:-1], floors, tops)
 
 
 def _bounded_least_squares(matrix: Array, target: Array, lower: Array) -> Array:
-    """Least squares with lower bounds, on the triangle that the columns leave."""
+    """Bounded least squares on the triangular factor of the columns."""
     triangle = np.asarray(np.linalg.qr(np.column_stack([matrix, target]), mode="r"))
     return scipy.optimize.lsq_linear(triangle[:, :-1], triangle[:, -1], (lower, np.inf), method="bvls", tol=1e-14).x
 
 
 def drift_of(plays: Array, strokes: Array) -> float:
-    """Drift [m] over a record: the part of the strokes (k,) that grows evenly with time, beside what plays (k, n) of any weights make.
+    """Estimate drift [m] over a record: the part of the strokes (k,) linear in time, in addition to plays (k, n) of any weights.
 
-    Zero where leaving it out makes the rms error less than a fifth larger: then it is no more than chance.
+    Zero if omitting it increases the rms error by less than a fifth: not significant.
 
     >>> plays = np.array([[0.0], [1.0], [0.0], [1.0]])
     >>> round(drift_of(plays, np.array([0.0, 1.01, 0.02, 1.03])), 6)

@@ -1,4 +1,4 @@
-"""Identification: from a record of volts and stroke to a Prandtl-Ishlinskii model that has an inverse."""
+"""Hysteresis identification: from a record of voltage and stroke to an invertible Prandtl-Ishlinskii model."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ _COVERED = 0.9
 
 
 def identify_hysteresis(volts: Array, strokes: Array, *, limits: Range | None = None) -> IdentifiedHysteresis:
-    """Identify the hysteresis of a stack from `volts` (k,) [V] and `strokes` (k,) [m] in the order they were recorded.
+    """Identify the hysteresis of a stack from `volts` (k,) [V] and `strokes` (k,) [m], in recorded order.
 
-    Thresholds are even up to 0.4 or 0.5 of the range, the envelope before the plays has pieces of even width; weights of 0 or more and
-    slopes above 0 come from least squares (`fit.fitted`), so that an inverse exists. How many plays and pieces, and how far the
-    thresholds reach, is decided by the error on parts of the record that were kept from the fit: the smallest model within 5 % of the
-    best (far thresholds, which remember long, only where they make it a fifth smaller). Samples from before the plays are known (volts
-    swung by twice the largest threshold) serve as the past only. Rate independent: record slowly against the stage's first mode, and
-    fast against creep. `limits` are the actuator's volts, to say how much of them the record covers.
+    Thresholds are even up to 0.4 or 0.5 of the range; the envelope before the plays has pieces of even width. Weights of 0 or more and
+    slopes above 0 come from least squares (`fit.fitted`), so that an inverse exists. Cross-validation selects the number of plays and
+    pieces, and the largest threshold: the smallest model within 5 % of the best. A large threshold, with long memory, must reduce the error
+    by a fifth. Samples before the plays are known (voltage swing of twice the largest threshold) are used only as history. The model is
+    rate independent: record slowly against the stage's first mode, and fast against creep. `limits` are the actuator's voltages, for the
+    recorded share of the range.
 
-    Raises `DesignError` for a record that is none of a hysteresis: see `record_findings`, and for drift and errors beyond 2 % and 10 %.
+    Raises `DesignError` for a record without valid hysteresis (see `record_findings`), drift beyond 2 %, and errors beyond 10 %.
 
     >>> from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
     >>> legs = [np.linspace(a, b, 60) for a, b in ((0, 1e3), (1e3, 0), (0, 1e3), (1e3, 200), (200, 800), (800, 0), (0, 600), (600, 0))]
@@ -57,14 +57,14 @@ def identify_hysteresis(volts: Array, strokes: Array, *, limits: Range | None = 
 
 
 def _sample_rows(volts: Array) -> Array:
-    """The samples used: so many evenly spaced ones, and all turning points."""
+    """Samples for the fit: evenly spaced ones, and all turning points."""
     even = np.linspace(0, len(volts) - 1, min(len(volts), _SAMPLES)).astype(int)
     turns = [place for branch in branches_of(volts, 0.01) for place in (branch.start, branch.stop)]
     return np.unique(np.concatenate([even, np.array(turns, dtype=int)]))
 
 
 class _Search:
-    """Sizes of models tried on one record, each once."""
+    """Model sizes tried on one record, each once."""
 
     def __init__(self, volts: Array, strokes: Array) -> None:
         self.volts, self.strokes = volts, strokes
@@ -74,7 +74,7 @@ class _Search:
         self.trials: list[Trial] = []
 
     def best(self) -> Trial:
-        """Plays first, with a straight envelope; then its pieces; then plays again; then the reach."""
+        """Select plays with a straight envelope first, then pieces, plays again, and the largest threshold."""
         chosen = self._pick((plays, 1, _REACHES[0]) for plays in _PLAYS)
         bent = self._pick((chosen.plays, pieces, _REACHES[0]) for pieces in (1, *_PIECES))
         if bent.pieces > 1:
@@ -83,12 +83,12 @@ class _Search:
         return far if far.error < _FARTHER * near.error - 1e-9 else near
 
     def fit(self, trial: Trial) -> Fit:
-        """The fit of a size on the whole record."""
+        """Fit one size on the whole record."""
         form = form_of(self.range, trial.plays, trial.pieces, reach=trial.reach)
         return fit_form(self.volts, self.strokes, form, np.full(len(self.volts), fill_value=True))
 
     def _pick(self, sizes: Iterable[tuple[int, int, float]]) -> Trial:
-        """The first of the sizes, smallest first, that is about as good as the best."""
+        """First size, from the smallest, about as good as the best."""
         tried = [self._trial(*size) for size in sizes]
         least = min(trial.error for trial in tried)
         return next(trial for trial in tried if trial.error <= _WORTH * least + 1e-9)
@@ -110,7 +110,7 @@ class _Search:
         return self.trials[-1]
 
     def _folds(self, known: Array) -> Array:
-        """The fold of each sample, -1 where it is not known: pairs of branches in turns, or blocks where branches are few."""
+        """Fold of each sample, -1 before the plays are known: pairs of branches in turns, or blocks for few branches."""
         fold = np.full(len(self.volts), -1)
         starts = np.array([branch.start for branch in self.branches])
         if len(starts) < 4 * _FOLDS:
@@ -153,15 +153,15 @@ def _assess(search: _Search, best: Trial, limits: Range | None) -> IdentifiedHys
 def _warnings(search: _Search, rms: float, inner: int, limits: Range | None) -> Iterator[Finding]:
     low, high = search.range
     if not inner:
-        what = "it has no inner loops: how it goes on after reversals within the range is concluded from the major loop alone"
-        yield Finding("record", what, "Record loops within the range as well")
+        what = "no inner loops: behaviour after reversals within the range is extrapolated from the major loop"
+        yield Finding("record", what, "Also record loops within the range")
     if rms > _LARGE:
-        what = f"the error, {rms:.1%} rms of the stroke, is large: it may be too fast, or the stack no rate-independent hysteresis"
+        what = f"the error, {rms:.1%} rms of the stroke, is large: the record may be too fast, or the stack rate dependent"
         yield Finding("record", what, "Record slower, and compare")
     if limits and high - low < _COVERED * (limits[1] - limits[0]):
         part = (high - low) / (limits[1] - limits[0])
-        what = f"it covers {low:g} V to {high:g} V, {part:.0%} of the actuator's range: beyond, the model goes on straight"
-        yield Finding("record", what, "Record the whole range, or stay within what it covers")
+        what = f"it covers {low:g} V to {high:g} V, {part:.0%} of the actuator's range: the model is extrapolated linearly beyond"
+        yield Finding("record", what, "Record the whole range, or operate within the recorded range")
 
 
 def _result_findings(found: IdentifiedHysteresis) -> Iterator[Finding]:
@@ -169,6 +169,6 @@ def _result_findings(found: IdentifiedHysteresis) -> Iterator[Finding]:
         what = f"the stroke drifts by {found.drift:.1%} of its range ({1e6 * found.drift * found.stroke:.3g} um) over the record"
         yield Finding("stroke", what, "Let the stage settle before recording, record faster than it creeps, or subtract the drift")
     elif found.rms > _POOR:
-        what = f"the best model misses it by {found.rms:.1%} rms of the stroke: this is no rate-independent hysteresis"
-        yield Finding("record", what, "Record slower, and check that volts and stroke belong together")
+        what = f"the best model has an error of {found.rms:.1%} rms of the stroke: the hysteresis is rate dependent"
+        yield Finding("record", what, "Record slower, and check that voltage and stroke belong together")
     yield from inverse_findings(found.model)

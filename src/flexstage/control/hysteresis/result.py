@@ -1,4 +1,4 @@
-"""An identified hysteresis: the model, how well it fits, and what of the actuator's range its record shows."""
+"""Identified hysteresis: the model, its accuracy, and the recorded share of the actuator's range."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ SMALL_ERROR = Graded(0.02)
 
 @dataclass(frozen=True)
 class Trial:
-    """A size of model that was tried: `plays`, `pieces` of the envelope, `reach` of the thresholds (part of the range), and its error.
+    """Model size tried: `plays`, `pieces` of the envelope, `reach` (largest threshold relative to the range), and its error.
 
-    `error` is the rms error on the parts of the record that were kept from the fit, each once, as a part of the stroke.
+    `error` is the cross-validation error: rms on parts of the record excluded from the fit, each once, relative to the stroke.
     """
 
     plays: int
@@ -33,7 +33,7 @@ class Trial:
 
 @dataclass(frozen=True, eq=False)
 class Plays:
-    """Thresholds and weights (n,) of a stack's plays; the envelopes `before` (V to V) and `after` (m to m) them, knots and values."""
+    """Play model of a stack: thresholds and weights (n,), and envelopes `before` (V to V) and `after` (m to m), knots and values."""
 
     thresholds: Annotated[Array, VOLTAGE, Heading("threshold")]
     weights: Annotated[Array, PIEZO_GAIN, Heading("weight", digits=4)]
@@ -42,19 +42,18 @@ class Plays:
 
     @property
     def slopes(self) -> Annotated[Array, INNER, PIEZO_GAIN, Heading("sum of weights", digits=4)]:
-        """Slopes (n,) [m/V] of the stroke from rest beyond each threshold."""
+        """Slopes (n,) [m/V] of the virgin curve beyond each threshold."""
         return np.cumsum(self.weights)
 
 
 @dataclass(frozen=True, eq=False)
 class IdentifiedHysteresis(InNotebook):
-    """A model identified from a record, and how well it fits.
+    """Hysteresis model identified from a record, with its accuracy.
 
-    Errors and the width are parts of `stroke` [m], the range of the strokes after the first branch.
-    `rms` and `largest` are errors over the samples after `known_from`, where nothing depends on the unknown past any more; `validation`
-    is the rms error on parts of the record that were not fitted. `width` is the largest distance of the branches of the model's major
-    loop. `range` are the volts covered, `inner` the number of branches that are shorter than 80 % of it. `volts`, `strokes` and
-    `modelled` (k,) are the samples used.
+    Errors and the width are relative to `stroke` [m], the range of the strokes after the first branch. `rms` and `largest` are errors over
+    the samples after `known_from`, which do not depend on the unknown history. `validation` is the rms error on parts of the record that
+    were not fitted. `width` is the largest distance of the branches of the model's major loop. `range` is the recorded voltage range,
+    `inner` the number of branches shorter than 80 % of it. `volts`, `strokes` and `modelled` (k,) are the samples used.
     """
 
     model: Annotated[PrandtlIshlinskii, INNER]
@@ -76,7 +75,7 @@ class IdentifiedHysteresis(InNotebook):
 
     @property
     def plays(self) -> Annotated[Plays, VIEW]:
-        """The model in numbers."""
+        """The identified plays."""
         before, after = self.model.before, self.model.after
         ends = [(each.knots[0], each.values[0]) for each in (before, after)]
         return Plays(self.model.thresholds[0], self.model.weights[0], *ends)

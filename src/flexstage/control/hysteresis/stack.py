@@ -1,4 +1,4 @@
-"""The hysteresis file: what a stack's hysteresis and creep are, as TOML with units."""
+"""The hysteresis file: hysteresis and creep of a stack as TOML with units."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ _Strokes = tuple[Annotated[float, DISPLACEMENT], ...]
 _COMMENTS = {
     "": "Hysteresis of a stack: stroke = offset + sum of weight x play(threshold) of the envelope of the volts.",
     "volts": "The range of the record.",
-    "rms": "Error on the record, as a part of the stroke.",
+    "rms": "Error on the record, relative to the stroke.",
 }
 
 
 @dataclass(frozen=True)
 class Bend:
-    """An envelope of the volts in a file: `effective` volts at some `volts`."""
+    """Voltage envelope in a file: `effective` volts at some `volts`."""
 
     volts: _Volts
     effective: _Volts
@@ -45,7 +45,7 @@ class Bend:
 
 @dataclass(frozen=True)
 class OuterBend:
-    """An envelope of the strokes in a file: `strokes` for what the `plays` add up to."""
+    """Stroke envelope in a file: `strokes` at the sums of `plays`."""
 
     plays: _Strokes
     strokes: _Strokes
@@ -53,7 +53,7 @@ class OuterBend:
 
 @dataclass(frozen=True)
 class StackCreep:
-    """Creep in a file: `rate` a decade of time, counted from the stroke at the `reference` time after a step."""
+    """Creep in a file: `rate` per decade of time, relative to the stroke at the `reference` time after a step."""
 
     rate: Annotated[float, RATIO]
     reference: Annotated[float, TIME, POSITIVE] = 0.1
@@ -61,9 +61,9 @@ class StackCreep:
 
 @dataclass(frozen=True)
 class StackHysteresis:
-    """A stack's hysteresis as it stands in a file, one axis: thresholds, weights, envelopes, range of the record, its error and source.
+    """Hysteresis of a stack in a file, one axis: thresholds, weights, envelopes, range of the record, its error and source.
 
-    `model` and `log_creep` are what it means; `stack_hysteresis` is the way back, to the bit.
+    `model` and `log_creep` convert it; `stack_hysteresis` is the exact inverse conversion.
     """
 
     thresholds: _Volts
@@ -78,7 +78,7 @@ class StackHysteresis:
 
     @property
     def model(self) -> PrandtlIshlinskii:
-        """The model of one axis. Raises `DesignError` where it is none."""
+        """Return the one-axis model. Raises `DesignError` for an invalid one."""
         before = IDENTITY if self.envelope is None else Envelope(np.array(self.envelope.volts), np.array(self.envelope.effective))
         after = straight([1.0], self.offset)
         if self.outer is not None:
@@ -88,12 +88,12 @@ class StackHysteresis:
 
     @property
     def log_creep(self) -> LogCreep | None:
-        """The law of creep; None where none is stated."""
+        """Return the creep law, or None."""
         return None if self.creep is None else LogCreep(self.creep.rate, self.creep.reference)
 
 
 def _outer_findings(offset: float) -> list[Finding]:
-    what = f"it is {offset:g} m beside an outer envelope, which has its own"
+    what = f"conflicts with the outer envelope, which has its own offset (got {offset:g} m)"
     return [Finding("offset", what, "Leave one of them out")] if offset else []
 
 
@@ -106,13 +106,13 @@ def stack_hysteresis(
     rms: float | None = None,
     source: str = "",
 ) -> StackHysteresis:
-    """A model of one axis as it stands in a file. Raises `DesignError` for more axes: a file holds one stack.
+    """Convert a one-axis model to file records. Raises `DesignError` for more axes: a file describes one stack.
 
     >>> stack_hysteresis(PrandtlIshlinskii([0.0, 50.0], [1e-7, 2e-8])).weights
     (1e-07, 2e-08)
     """
     if model.axes != 1:
-        raise refuse("hysteresis", f"the model has {model.axes} axes, and a file holds one stack", "Write one file a stack")
+        raise refuse("hysteresis", f"too many axes (got {model.axes}, expected 1)", "Write one file per stack")
     knots, values = model.after.knots[0], model.after.values[0]
     offset = float(values[0]) if knots.tolist() == [0.0, 1.0] else 0.0
     simple = _same(model.after, straight([1.0], offset))
@@ -138,7 +138,7 @@ def _pair(envelope: Envelope) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def dumps_hysteresis(stack: StackHysteresis) -> str:
-    """The text of a hysteresis file.
+    """Format the text of a hysteresis file.
 
     >>> print(dumps_hysteresis(stack_hysteresis(PrandtlIshlinskii([0.0, 50.0], [1e-7, 2e-8]), creep=LogCreep(0.02))), end="")
     # Hysteresis of a stack: stroke = offset + sum of weight x play(threshold) of the envelope of the volts.
@@ -152,9 +152,9 @@ def dumps_hysteresis(stack: StackHysteresis) -> str:
 
 
 def loads_hysteresis(text: str, *, where: str = "text") -> StackHysteresis:
-    r"""What a text of a hysteresis file means; `where` names it in findings.
+    r"""Parse the text of a hysteresis file; `where` names it in findings.
 
-    Raises `DesignError` with all that is wrong with it, also where the model is none.
+    Raises `DesignError` with all its errors, an invalid model included.
 
     >>> loads_hysteresis('format = "flexstage hysteresis 1"\nthresholds = ["0 V"]\nweights = ["150 nm/V"]').weights
     (1.5e-07,)
@@ -169,7 +169,7 @@ def loads_hysteresis(text: str, *, where: str = "text") -> StackHysteresis:
 
 
 def hysteresis_schema() -> dict[str, Any]:
-    """The JSON Schema of a hysteresis file, for editors.
+    """Return the JSON Schema of a hysteresis file, for editors.
 
     >>> hysteresis_schema()["required"]
     ['format', 'thresholds', 'weights']
@@ -179,7 +179,7 @@ def hysteresis_schema() -> dict[str, Any]:
 
 @check_arguments
 def dump_hysteresis(stack: StackHysteresis, path: str | os.PathLike[str]) -> Path:
-    """Write a hysteresis file and return its path. Raises `DesignError` where it cannot be written.
+    """Write a hysteresis file and return its path. Raises `DesignError` if it cannot be written.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -191,13 +191,13 @@ def dump_hysteresis(stack: StackHysteresis, path: str | os.PathLike[str]) -> Pat
 
 @check_arguments
 def load_hysteresis(path: str | os.PathLike[str]) -> StackHysteresis:
-    """What a hysteresis file holds. Raises `DesignError` with all that is wrong with it, each finding with file, line and key.
+    """Read a hysteresis file. Raises `DesignError` with all its errors, each finding with file, line and key.
 
     >>> load_hysteresis("nowhere.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere.toml: there is no such file. Check the path, or write one with "flexstage hysteresis -o".
+    flexstage.base.finding.DesignError: nowhere.toml: file not found. Check the path, or write one with "flexstage hysteresis -o".
     """
     if not Path(path).exists():
-        raise refuse(os.fspath(path), "there is no such file", 'Check the path, or write one with "flexstage hysteresis -o"')
+        raise refuse(os.fspath(path), "file not found", 'Check the path, or write one with "flexstage hysteresis -o"')
     return loads_hysteresis(read_text(path), where=os.fspath(path))

@@ -1,4 +1,4 @@
-"""Tests of a stack: its hysteresis from a record, its creep from that of a step, and the volts that the inverse would give."""
+"""Tests of a stack: hysteresis from a record, creep from a step record, and the voltage of the inverse model."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from flexstage.experiment.records.unit import in_si, same_dimension, unit_proble
 
 @dataclass(frozen=True)
 class Channels(CheckedFields):
-    """Names of the channels of a stack's test; without a name the only channel in volts, and the only one in a length."""
+    """Channel names of a stack's test; default: the only channel in volts, and the only one in a length."""
 
     volts: str | None = None
     stroke: str | None = None
@@ -34,9 +34,9 @@ class Channels(CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class StackTest(InNotebook):
-    """What a test of a stack says: its `hysteresis`, its `creep` where a step was recorded, and the channels used.
+    """Result of a stack's test: its `hysteresis`, its `creep` if a step was recorded, and the channels used.
 
-    `inverse_volts` (k,) are the volts [V] by which the inverse makes the recorded strokes: those applied, if the model were exact.
+    `inverse_volts` (k,) [V] is the inverse model's voltage for the recorded strokes; an exact model would reproduce the applied voltage.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -57,38 +57,38 @@ class StackTest(InNotebook):
 
     @property
     def stack(self) -> StackHysteresis:
-        """What the test says, as it stands in a file."""
+        """Return the file records of the test."""
         law = None if self.creep is None else self.creep.law
         found = self.hysteresis
         return stack_hysteresis(found.model, creep=law, volts=found.range, rms=found.rms, source=self.source)
 
     @property
     def valid_samples(self) -> Array:
-        """Samples (m,) at which nothing depends on the unknown past any more: those that errors are told of."""
+        """Samples (m,) that do not depend on the unknown history: those of the errors."""
         return np.arange(self.hysteresis.known_from, len(self.inverse_volts))
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """The size of the model, and the times that creep is fitted to."""
+        """Notes: the size of the model, and the fitted times of creep."""
         found = self.hysteresis
         plays, knots = found.model.thresholds.shape[1], found.model.before.knots.shape[1]
-        size = f"{plays} plays, an envelope of {knots} knots, chosen among {len(found.trials)} sizes of model."
+        size = f"{plays} plays, an envelope of {knots} knots, selected from {len(found.trials)} model sizes."
         creep = () if self.creep is None else ("Creep: {:.3g} to {:.3g} s after the step.".format(*self.creep.span),)
         return (size, *creep)
 
     @property
     def inverse_rms(self) -> Annotated[float, VIEW, Heading("rms error, inverse", digits=3, unit="%", mark=SMALL_ERROR)]:
-        """Rms difference of the volts from the inverse to those applied, as a part of the range."""
+        """Rms difference between the inverse's and the applied voltage, relative to the range."""
         wrong, (low, high) = (self.inverse_volts - self.hysteresis.volts)[self.valid_samples], self.hysteresis.range
         return float(np.sqrt(np.mean(wrong**2))) / (high - low)
 
 
 @check_arguments
 def stack_test(record: Record, channels: Channels = Channels(), *, step: Record | None = None, limits: Range | None = None) -> StackTest:
-    """Identify hysteresis from a record of volts and stroke and, where there is one, creep from the record of a `step`.
+    """Identify hysteresis from a record of voltage and stroke and, optionally, creep from the record of a `step`.
 
-    Channels are converted to V and m. `limits` are the actuator's volts. Raises `DesignError` for channels that cannot be told, units that
-    are absent or of something else, and for what `identify_hysteresis` and `identify_creep` refuse.
+    Channels are converted to V and m. `limits` are the actuator's volts. Raises `DesignError` for ambiguous channels, missing or wrong
+    units, and the errors of `identify_hysteresis` and `identify_creep`.
 
     >>> from flexstage.experiment.records.record import in_memory
     >>> volts = 500.0 * (1.0 - np.cos(np.linspace(0.0, 6.0 * np.pi, 400)))
@@ -112,7 +112,7 @@ def stack_test(record: Record, channels: Channels = Channels(), *, step: Record 
 
 @contextmanager
 def _naming(record: Record) -> Generator[None]:
-    """Findings name the record."""
+    """Findings located in the record."""
     try:
         yield
     except DesignError as error:
@@ -129,7 +129,7 @@ def _samples(record: Record, chosen: tuple[Channel, Channel]) -> tuple[Array, Ar
 
 
 def _choose_channels(record: Record, channels: Channels) -> tuple[Channel, Channel]:
-    """The channels of volts and stroke."""
+    """Channels of voltage and stroke."""
     findings: list[Finding] = []
     found = [
         _choose_channel(record, wanted, findings)
@@ -138,7 +138,7 @@ def _choose_channels(record: Record, channels: Channels) -> tuple[Channel, Chann
     require(findings)
     volts, stroke = (each for each in found if each is not None)
     if volts.name == stroke.name:
-        raise refuse(record.source or "record", f"{volts.name} is named as volts and as stroke", "Name two channels")
+        raise refuse(record.source or "record", f"{volts.name} is selected for volts and for stroke", "Select two channels")
     return volts, stroke
 
 
@@ -171,10 +171,10 @@ def _choose_channel(record: Record, wanted: _ChannelRequest, findings: list[Find
 def _unit_findings(where: str, named: Channel, wanted: _ChannelRequest) -> Iterator[Finding]:
     problem = unit_problem(named.unit)
     if problem is not None:
-        yield Finding(where, f"{named.name}: {problem}", f'State it, e.g. --units "{named.name}={_example(wanted)}"')
+        yield Finding(where, f"{named.name}: {problem}", f'Specify it, e.g. --units "{named.name}={_example(wanted)}"')
     elif not same_dimension(named.unit, wanted.unit):
-        what = f"{named.name} is in {named.unit}, which is not {'volts' if wanted.unit == 'V' else 'a length'}"
-        yield Finding(where, what, "Check whether the channels are exchanged, or state the unit (--units)")
+        what = f"{named.name} is in {named.unit} (expected {'volts' if wanted.unit == 'V' else 'a length'})"
+        yield Finding(where, what, "Check whether the channels are exchanged, or specify the unit (--units)")
 
 
 def _example(wanted: _ChannelRequest) -> str:

@@ -1,1 +1,1 @@
-"""What is commanded along a known path: inverse of the loop, input shaping, learning from pass to pass."""
+"""Feedforward for a known path: inverse of the loop, input shaping, iterative learning control."""

@@ -1,4 +1,4 @@
-"""Learning from pass to pass: what repeats is taken away, in the band where the loop is known well enough."""
+"""Iterative learning control (ILC): removes repeating errors pass by pass, in the band where the loop is known well enough."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from flexstage.control.systems.closed import Loop
 from flexstage.control.systems.system import System
 
 _CONTRACTS = 0.8
-"""What is learned anew in a pass stays below this share of what was there, wherever the modes lie."""
+"""Largest contraction factor of the error per pass, over all modal frequencies."""
 _MOST_INVERTED = 100.0
-"""The most that is asked of a loop for what is wanted of it: beyond, noise alone would take the strokes to their ends."""
+"""Largest gain of the loop's inverse: beyond it noise would saturate the strokes."""
 _OFFSETS, _LINES, _AROUND = 5, 600, 15
 _REPEATS = 4
-"""Runs of what was learned, by which what repeats and what does not are told apart."""
+"""Runs with the learned input, which separate repeating from non-repeating errors."""
 
 
 IN_BAND = "Rms errors measured by the gauges, within the band but for the last column: errors beyond the band are not learned."
@@ -31,7 +31,7 @@ BEYOND = Heading("beyond the band", digits=3)
 
 @dataclass(frozen=True, eq=False)
 class Robust:
-    """The `band` in which learning takes away what repeats; `contraction` is the largest ||Q (I - gain P P^^-1)|| over its frequencies."""
+    """Robust learning band: `band`, and `contraction`, the largest ||Q (I - gain P P^^-1)|| over its frequencies."""
 
     band: Band
     contraction: float
@@ -39,12 +39,12 @@ class Robust:
 
 @dataclass(frozen=True, eq=False)
 class Learned:
-    """What passes over the same path came to, by the loop's `coordinates` in their `units`.
+    """Result of passes over the same path, by the loop's `coordinates` in their `units`.
 
-    `rms` (passes, f) is the error in the band up to `band` [Hz], as the gauges tell it, before the first and after each pass learned;
-    `noise` (f,) what of it does not repeat, by four runs of what was learned, whose rms the last row is. `beyond` (f,) is the rms of the
-    error outside the band, which is not learned: it stays. `contraction` is the largest share of the error that a pass leaves, all modes
-    by up to `spread` off, `gain` that of learning.
+    `rms` (passes, f) is the measured error in the band up to `band` [Hz], before the first and after each learned pass. `noise` (f,) is its
+    non-repeating part, from four runs with the learned input, whose rms is the last row. `beyond` (f,) is the rms error outside the band,
+    which is not learned. `contraction` is the largest contraction factor per pass, with all modes up to `spread` off; `gain` is the
+    learning gain.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -73,26 +73,26 @@ class Learned:
 
     @property
     def before(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("without learning", digits=3)]:
-        """The first error in the band (f,)."""
+        """First error in the band (f,)."""
         return self.rms[0]
 
     @property
     def learned(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("last pass", digits=3)]:
-        """The last error in the band (f,)."""
+        """Last error in the band (f,)."""
         return self.rms[-1]
 
     @property
     def above_noise(self) -> Annotated[Array, VIEW, Along("coordinates")]:
-        """The last error in the band over what does not repeat of it (f,)."""
+        """Ratio of the last error in the band to its non-repeating part (f,)."""
         return self.rms[-1] / self.noise
 
 
 def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Robust:
-    """The band in which learning with a gain contracts, ||Q (I - gain P P^^-1)|| < 0.8 in lengths, all modes by up to `spread` off.
+    """Find the band of contraction, ||Q (I - gain P P^^-1)|| < 0.8 in lengths, with all modes up to `spread` off.
 
-    P are the loop's responses with its modes moved, P^ those of the model (Norrloef & Gunnarsson, Int. J. Control 75 (2002) 1114: a norm
-    below 1 at all frequencies makes the error fall from pass to pass). It ends where P^^-1 passes 100 too. Raises `DesignError` where
-    responses differ too much even at rest.
+    P are the loop's responses with shifted modes, P^ the model's responses (Norrloef & Gunnarsson, Int. J. Control 75 (2002) 1114: a norm
+    below 1 at all frequencies makes the error decrease from pass to pass). The band also ends where P^^-1 exceeds 100. Raises `DesignError`
+    if static responses differ too much.
     """
     plant, step = closed.plant, closed.step or 1.0
     lines = line_grid(closed, spread)
@@ -113,7 +113,7 @@ def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Ro
 
 
 def line_grid(closed: Loop, spread: float) -> Array:
-    """Frequencies up to 0.45 of the rate, densely around each mode wherever it may lie."""
+    """Frequencies up to 0.45 of the rate, dense around each mode's frequency range."""
     highest, modes, ratios = 0.45 / (closed.step or 1.0), closed.plant.frequencies, np.minimum(closed.plant.ratios, 0.3)
     around = [
         mode * (1.0 + offset) * (1.0 + ratio * np.tan(np.linspace(-1.3, 1.3, _AROUND)))
@@ -125,7 +125,7 @@ def line_grid(closed: Loop, spread: float) -> Array:
 
 
 def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) -> Array:
-    """What the gauges would tell (n, k) of a true path (n, k): their lags are known, up to four times a band's end."""
+    """Gauge readings (n, k) of a true path (n, k): known lags, up to four times a band's end."""
     step = closed.step or 1.0
     frequencies = frequencies_of(wanted, step)
     band = Band(min(4.0 * end, 0.45 / step))
@@ -135,7 +135,7 @@ def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) ->
 
 @dataclass(frozen=True, eq=False)
 class Lesson:
-    """How to learn: so many `passes`, a `gain`, modes up to `spread` off; the error is judged within `window` of the samples."""
+    """Learning parameters: `passes`, `gain`, mode `spread`; the error is evaluated within `window` of the samples."""
 
     passes: int
     gain: float
@@ -144,9 +144,9 @@ class Lesson:
 
 
 def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: Lesson) -> Learned:
-    """Passes over a true path (n, f), at rest at both ends: commanded = wanted + d, d <- Q (d + gain P^^-1 e) after each.
+    """Learn a true path (n, f) pass by pass, at rest at both ends: command = path + d, d <- Q (d + gain P^^-1 e) after each.
 
-    `run` gives the readings (n, f) of a commanded path in a pass of that number. Raises `DesignError` as `robust_band` does.
+    `run` returns the readings (n, f) of a commanded path in a numbered pass. Raises `DesignError` as `robust_band` does.
     """
     robust = robust_band(closed, control, lesson.gain, lesson.spread)
     frequencies = frequencies_of(wanted, closed.step or 1.0)
@@ -179,7 +179,7 @@ def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wan
 
 
 def fade_ends(count: int, window: slice) -> Array:
-    """1 within a window of so many samples, fading to 0 at both ends: noise that begins at once is no path from nothing to rest.
+    """Window function: 1 within a number of samples, fading to 0 at both ends, because noise that starts abruptly is not a path.
 
     >>> fade_ends(5, slice(2, 4)).tolist()
     [0.0, 0.5, 1.0, 1.0, 0.0]
@@ -190,7 +190,7 @@ def fade_ends(count: int, window: slice) -> Array:
 
 
 def filter_path(gains: Array, path: Array) -> Array:
-    """A path (n, f) through real gains without phase."""
+    """Filter a path (n, f) by real gains, without phase."""
     return through(gains[:, None, None] * np.eye(path.shape[1]), path)
 
 
@@ -199,7 +199,7 @@ def _rms(values: Array) -> Array:
 
 
 def inverse_path(closed: Loop, control: System, wanted: Array, spread: float) -> Array:
-    """What to command (n, f) so that the model's loop truly follows a path (n, f), at rest at both ends, in the robust band."""
+    """Compute the command (n, f) for which the model's loop follows a path (n, f), at rest at both ends, in the robust band."""
     band = robust_band(closed, control, 1.0, spread).band
     frequencies = frequencies_of(wanted, closed.step or 1.0)
     return through(band.blend(frequencies, lambda lines: np.linalg.inv(motions(closed, lines))), wanted)

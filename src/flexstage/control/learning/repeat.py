@@ -1,4 +1,4 @@
-"""Repetitive control: what comes again every period is taken away while a path runs, in the band where the loop is known well enough."""
+"""Repetitive control: removes periodic errors while a path runs, in the band where the loop is known well enough."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from flexstage.control.systems.closed import Loop
 from flexstage.control.systems.system import System
 
 _MEMORY = 6.0
-"""How far the filters reach both ways, in periods of the end of the band."""
+"""Length of the filters to each side, in periods of the band's end frequency."""
 _MOST_OF_PERIOD = 0.45
 _CONTRACTS, _LOWER, _WHOLE = 0.9, 0.85, 0.75
 _OFFSETS, _PHASES, _FINEST = 5, 16, 8
@@ -27,12 +27,12 @@ _OFFSETS, _PHASES, _FINEST = 5, 16, 8
 
 @dataclass(frozen=True, eq=False)
 class Repeater:
-    """What is added to a path, d = z^-P (W d + L e) of the error e: `keep` (2m+1,) and `teach` (2m+1, f, f), without cause by m samples.
+    """Repetitive controller d = z^-P (W d + L e) of the error e: `keep` (2m+1,) and `teach` (2m+1, f, f), noncausal by m samples.
 
-    `period` P is counted in samples, its fraction lies in the filters; `band` is where W is 1. `contraction` is the largest ||W - L P|| of
-    these very filters over all frequencies, in lengths, all modes by up to a spread off: below 1 the loop with them is stable and what
-    repeats dies out (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353).
-    `amplifies` is the largest ||(I + W z) (I + (W - L P) z)^-1|| over |z| = 1: what it makes worse between the harmonics.
+    `period` P is in samples; the filters contain its fraction. `band` is the band with W = 1. `contraction` is the largest ||W - L P|| of
+    these filters over all frequencies, in lengths, with all modes up to a spread off. Below 1 the loop with them is stable and repeating
+    errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353).
+    `amplifies` is the largest ||(I + W z) (I + (W - L P) z)^-1|| over |z| = 1: amplification between the harmonics.
     """
 
     period: float
@@ -44,21 +44,21 @@ class Repeater:
 
     @property
     def reach(self) -> int:
-        """Samples m that the filters reach both ways."""
+        """Length m of the filters to each side, in samples."""
         return len(self.keep) // 2
 
     def at(self, frequencies: Array, step: float) -> tuple[Array, Array]:
-        """Responses of W (n,) and L (n, f, f) as they act together with the period's whole samples, its fraction taken off."""
+        """Responses of W (n,) and L (n, f, f) with the period's whole samples, without its fraction."""
         late = np.arange(-self.reach, self.reach + 1) + (np.floor(self.period + 0.5) - self.period)
         turned = np.exp(-2j * np.pi * np.outer(frequencies, late) * step)
         return turned @ self.keep, np.einsum("nk,kij->nij", turned, self.teach)
 
 
 def repeater(closed: Loop, control: System, period: float, gain: float, spread: float) -> Repeater:
-    """Filters for a `period` [s], a `gain` of the loop's inverse, all modes up to `spread` off, in the widest band where they contract.
+    """Design filters for a `period` [s] and a `gain` of the loop's inverse, modes up to `spread` off, in the widest contracting band.
 
-    Filters of a finite reach reach beyond their band too: it ends lower than the band in which learning from pass to pass contracts. Raises
-    `DesignError` as `robust_band` does, and where the period is too short for filters of a band that holds a harmonic of it.
+    Finite filters also act beyond their band: it ends lower than the contraction band of iterative learning. Raises `DesignError` as
+    `robust_band` does, and for a period too short for filters whose band contains a harmonic.
     """
     step, end = closed.step or 1.0, robust_band(closed, control, gain, spread).band.end
     lines = np.append(line_grid(closed, spread), 0.5 / step * (1.0 - 1e-9))
@@ -72,16 +72,16 @@ def repeater(closed: Loop, control: System, period: float, gain: float, spread: 
             worse = _amplification(own, own - moved[_OFFSETS // 2] @ taught, closed.plant.coordinates.scale)
             return replace(found, contraction=contraction, amplifies=worse)
         end *= _LOWER
-    said = f"no filters for a period of {period:.4g} s, whose first harmonic is {1.0 / period:.4g} Hz"
+    said = f"no filters for a period of {period:.4g} s, first harmonic {1.0 / period:.4g} Hz"
     raise refuse(
         "follow",
-        f"{said}, leave less of it than {_CONTRACTS:g} times",
-        "Take a longer period (a slower scan), a smaller gain or spread, or learn from pass to pass",
+        f"{said}, reduce it below {_CONTRACTS:g} times",
+        "Use a longer period (a slower scan), a smaller gain or spread, or iterative learning",
     )
 
 
 def _repeater(closed: Loop, control: System, period: float, band: Band, gain: float) -> Repeater:
-    """Filters of a band, not proved yet."""
+    """Filters of a band, before verification."""
     step = closed.step or 1.0
     samples = period / step
     reach = int(min(np.ceil(_MEMORY / (band.end * step)), _MOST_OF_PERIOD * samples))
@@ -90,13 +90,13 @@ def _repeater(closed: Loop, control: System, period: float, band: Band, gain: fl
 
 
 def _amplification(kept: Array, left: Array, scale: Array) -> float:
-    """The largest ||(I + W z) (I + (W - P L) z)^-1|| over |z| = 1, of W (n, f, f) and W - P L."""
+    """Largest ||(I + W z) (I + (W - P L) z)^-1|| over |z| = 1, for W (n, f, f) and W - P L."""
     own, turns = np.eye(left.shape[-1]), np.exp(2j * np.pi * np.arange(_PHASES) / _PHASES)
     return max(float(np.max(scaled_norms((own - z * kept) @ np.linalg.inv(own - z * left), scale))) for z in turns)
 
 
 def _filters(closed: Loop, control: System, band: Band, gain: float, *, reach: int, early: float) -> tuple[Array, Array]:
-    """Taps of Q and of Q gain P^^-1 from `reach` samples before to as many after, ahead by a part of a sample, their ends faded out."""
+    """Taps of Q and of Q gain P^^-1 from -`reach` to `reach` samples, advanced by a fraction of a sample, with windowed ends."""
     step = closed.step or 1.0
     count = 2 ** int(np.ceil(np.log2(_FINEST * (2 * reach + 1))))
     lines = np.fft.rfftfreq(count, step)
@@ -115,11 +115,11 @@ def _filters(closed: Loop, control: System, band: Band, gain: float, *, reach: i
 
 @dataclass(frozen=True, eq=False)
 class Repeated:
-    """What repetitive control came to along a path, by the loop's `coordinates` in their `units`.
+    """Result of repetitive control along a path, by the loop's `coordinates` in their `units`.
 
-    `rms` (periods, f) is the error of each `period` in the band up to `band` [Hz], as the gauges tell it, the first one without anything
-    learned; `beyond` (f,) that outside the band over the last period, which stays. `contraction` is the largest share of the error that a
-    period leaves, all modes by up to `spread` off; `amplifies` by how much it makes worse at most what does not repeat, between harmonics.
+    `rms` (periods, f) is the measured error of each `period` in the band up to `band` [Hz], the first without correction. `beyond` (f,) is
+    the error outside the band over the last period, which remains. `contraction` is the largest contraction factor per period, with all
+    modes up to `spread` off. `amplifies` is the largest amplification of non-repeating errors, between harmonics.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -150,23 +150,23 @@ class Repeated:
 
     @property
     def first(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("first period", digits=3)]:
-        """The error of the first period (f,)."""
+        """Error of the first period (f,)."""
         return self.rms[0]
 
     @property
     def halfway(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("middle period", digits=3)]:
-        """The error halfway (f,)."""
+        """Error halfway (f,)."""
         return self.rms[len(self.rms) // 2]
 
     @property
     def last(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("last period", digits=3)]:
-        """The error of the last period (f,)."""
+        """Error of the last period (f,)."""
         return self.rms[-1]
 
 
 @dataclass(frozen=True, eq=False)
 class Repetition:
-    """A `period` [s] that a path repeats within a `window` of its samples."""
+    """Repetition of a path: its `period` [s], within a `window` of its samples."""
 
     period: float
     window: slice
@@ -182,9 +182,9 @@ def repeat(
     gain: float = 0.6,
     spread: float = 0.02,
 ) -> Repeated:
-    """Run along a true path (n, f), adding what the periods before have taught; `advance` runs on by what is commanded and tells the pose.
+    """Run along a true path (n, f) with the correction from previous periods; `advance` runs on with a command and returns the pose.
 
-    Only errors within the window are learned from, and nothing is added after it but for a fading. Raises `DesignError` as `repeater` does.
+    Only errors within the window are used; after it the correction fades out. Raises `DesignError` as `repeater` does.
     """
     found = repeater(closed, control, asked.period, gain, spread)
     target = wanted_readings(closed, control, wanted, found.band.end)
@@ -199,7 +199,7 @@ def repeat(
 
 
 def _windows(count: int, window: slice, fade: int) -> tuple[Array, Array]:
-    """Where errors are learned from, and where something is added, fading within some samples after it."""
+    """Windows of the used errors and of the correction, which fades out after the former."""
     places = np.arange(count)
     learns = ((places >= window.start) & (places < window.stop)).astype(float)
     after = np.clip((places - window.stop) / max(fade, 1), 0.0, 1.0)
@@ -207,7 +207,7 @@ def _windows(count: int, window: slice, fade: int) -> tuple[Array, Array]:
 
 
 def _next(found: Repeater, added: Array, error: Array, start: int, stop: int) -> Array:
-    """W d + L e one period before, for the samples from `start` to `stop`."""
+    """Correction W d + L e one period before, for the samples from `start` to `stop`."""
     first, last = start - int(found.period + 0.5) - found.reach, stop - int(found.period + 0.5) + found.reach
     if last <= 0:
         return np.zeros((stop - start, added.shape[1]))

@@ -1,4 +1,4 @@
-"""What a closed loop makes of its reference, with its modes where they may lie; its inverse over a known path."""
+"""Responses of a closed loop to its reference for shifted modes, and their inverse over a known path."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from flexstage.control.systems.system import System, select
 
 _AT_REST = 1e-4
 _TAPER = 0.75
-"""From this share of its end on, a band fades out."""
+"""Start of the fade-out, relative to the band's end."""
 
 
 def readings(plant: Plant, control: System, frequencies: Array, offset: float = 0.0) -> Array:
-    """Responses (f, k, k) from reference to the pose that the gauges tell, all modes by a relative `offset` higher.
+    """Compute responses (f, k, k) from reference to measured pose, with all modes higher by a relative `offset`.
 
-    y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r of the sampled plant P and the controller's K from error, pose and reference. Modes that lie
-    higher are time that runs faster, lags and delays with it.
+    y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r of the sampled plant P and the controller's K from error, pose and reference. A shift of
+    modes scales time, lags and delays included.
     """
     P = pose_plant(plant, offset).sweep(frequencies)
     back, forward = np.split(pose_controller(control, plant.coordinates).sweep(frequencies), 2, axis=2)
@@ -30,7 +30,7 @@ def readings(plant: Plant, control: System, frequencies: Array, offset: float = 
 
 
 def motions(closed: Loop, frequencies: Array) -> Array:
-    """Responses (f, k, k) from reference to the true motion against the ground."""
+    """Compute responses (f, k, k) from reference to the true motion relative to the ground."""
     names = closed.plant.coordinates.names
     whole = select(closed.system, [f"reference.{name}" for name in names], [f"relative.{name}" for name in names])
     return whole.sweep(frequencies)
@@ -38,17 +38,17 @@ def motions(closed: Loop, frequencies: Array) -> Array:
 
 @dataclass(frozen=True)
 class Band:
-    """Frequencies up to `end` [Hz], whole up to three quarters of it, then fading as a cosine; without phase."""
+    """Zero-phase band-pass up to `end` [Hz]: 1 up to three quarters of it, then a cosine fade-out."""
 
     end: float
 
     def gains(self, frequencies: Array) -> Array:
-        """Q (f,), from 1 to 0."""
+        """Gains Q (f,), from 1 to 0."""
         share = np.clip((np.asarray(frequencies) / self.end - _TAPER) / (1.0 - _TAPER), 0.0, 1.0)
         return 0.5 * (1.0 + np.cos(np.pi * share))
 
     def blend(self, frequencies: Array, respond: Callable[[Array], Array], beyond: float = 1.0) -> Array:
-        """Q R + (1 - Q) I `beyond` (f, k, k): responses R within the band; beyond it unchanged (1) or nothing (0)."""
+        """Blend Q R + (1 - Q) I `beyond` (f, k, k): responses R within the band; beyond it unchanged (1) or zero (0)."""
         share = self.gains(frequencies)
         inside = share > 0.0
         responses, share = respond(frequencies[inside]), share[inside, None, None]
@@ -59,23 +59,23 @@ class Band:
 
 
 def scaled_norms(values: Array, scale: Array) -> Array:
-    """Largest singular values (f,) of matrices (f, k, k), coordinates taken as lengths."""
+    """Largest singular values (f,) of matrices (f, k, k), coordinates as lengths."""
     return np.linalg.norm(values * scale[:, None] / scale, ord=2, axis=(1, 2))
 
 
 def frequencies_of(path: Array, step: float) -> Array:
-    """Frequencies [Hz] of a path's transform; instead of 0, where integrators have no number, next to nothing."""
+    """Frequencies [Hz] of a path's transform; a tiny value replaces 0, where integrators are singular."""
     found = np.fft.rfftfreq(len(path), step)
     found[0] = _AT_REST * found[1]
     return found
 
 
 def through(responses: Array, path: Array) -> Array:
-    """A path (n, k), from nothing to rest, through responses (n/2+1, k, k) at the frequencies of its transform.
+    """Filter a path (n, k), from zero to rest, by responses (n/2+1, k, k) at the frequencies of its transform.
 
-    What is transformed are its differences, which end in nothing. Of an inverse whose poles lie outside the unit circle too, the
-    answer on the circle is the stable part forward and the antistable part backward in time (Devasia, Chen & Paden, IEEE Trans. Autom.
-    Control 41 (1996) 930): it begins before the path does.
+    The transform is of the path's differences, which end at zero. For an inverse with poles outside the unit circle, the response on the
+    circle is the stable part forward and the antistable part backward in time (Devasia, Chen & Paden, IEEE Trans. Autom. Control 41 (1996)
+    930): the result starts before the path.
     """
     spectrum = np.fft.rfft(np.diff(path, axis=0, prepend=0.0), axis=0)
     return np.cumsum(np.fft.irfft(np.einsum("fij,fj->fi", responses, spectrum), n=len(path), axis=0), axis=0)

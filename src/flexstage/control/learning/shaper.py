@@ -1,4 +1,4 @@
-"""Input shapers: impulses that leave a mode at rest after a step."""
+"""Input shapers: impulse sequences without residual vibration of a mode after a step."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Shaper:
-    """A step becomes steps of `amplitudes` (k,), which sum to 1, at `times` (k,) [s]."""
+    """Input shaper: a step becomes steps of `amplitudes` (k,), with sum 1, at `times` (k,) [s]."""
 
     times: Array
     amplitudes: Array
 
     def shape(self, poses: Array, step: float) -> Array:
-        """A path (n, f), at rest before it begins, sampled every `step` [s]; impulses between samples are shared by both.
+        """Shape a path (n, f), at rest before its start, sampled every `step` [s]; impulses between samples are split between both.
 
         >>> half = Shaper(np.array([0.0, 0.2]), np.array([0.5, 0.5]))
         >>> half.shape(np.ones((4, 1)), 0.1).ravel().tolist()
@@ -35,9 +35,9 @@ class Shaper:
 
 
 def zv(frequency: float, damping: float) -> Shaper:
-    """Zero vibration: 1/(1+K) and K/(1+K) half a damped period apart, K = exp(-zeta pi / (1 - zeta^2)^(1/2)).
+    """Zero-vibration (ZV) shaper: 1/(1+K) and K/(1+K) half a damped period apart, K = exp(-zeta pi / (1 - zeta^2)^(1/2)).
 
-    Singer & Seering, J. Dyn. Syst. Meas. Control 112 (1990) 76; `frequency` [Hz] undamped. Raises `DesignError` for numbers that are none.
+    Singer & Seering, J. Dyn. Syst. Meas. Control 112 (1990) 76; `frequency` [Hz] undamped. Raises `DesignError` for invalid numbers.
 
     >>> zv(50.0, 0.0).times.tolist(), zv(50.0, 0.0).amplitudes.tolist()
     ([0.0, 0.01], [0.5, 0.5])
@@ -47,7 +47,7 @@ def zv(frequency: float, damping: float) -> Shaper:
 
 
 def zvd(frequency: float, damping: float) -> Shaper:
-    """Zero vibration and derivative: 1, 2K, K^2 over (1+K)^2; what is left grows with the square of the frequency's error.
+    """Zero-vibration-derivative (ZVD) shaper: 1, 2K, K^2 over (1+K)^2; residual vibration is quadratic in the frequency error.
 
     >>> zvd(50.0, 0.0).amplitudes.tolist()
     [0.25, 0.5, 0.25]
@@ -59,9 +59,7 @@ def zvd(frequency: float, damping: float) -> Shaper:
 def _factor(frequency: float, damping: float) -> tuple[float, float]:
     found = [] if frequency > 0.0 else [Finding("shaper", f"its frequency is {frequency:g} Hz", "Give a positive one")]
     if not 0.0 <= damping < 1.0:
-        found.append(
-            Finding("shaper", f"its damping is {damping:g}", "Give a ratio from 0 to below 1: what does not swing needs no shaper")
-        )
+        found.append(Finding("shaper", f"its damping is {damping:g}", "Use a ratio from 0 to below 1: an overdamped mode needs no shaper"))
     require(found)
     root = float(np.sqrt(1.0 - damping**2))
     return float(np.exp(-damping * np.pi / root)), 0.5 / (frequency * root)

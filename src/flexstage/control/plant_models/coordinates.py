@@ -17,18 +17,20 @@ from flexstage.models.linear.model import Channel, LinearModel
 from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
+_REFERENCE = 1.0
+"""Frequency [Hz] by which accelerations of motions without stiffness are compared with displacements."""
 _MISSING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Coordinates:
-    """The f coordinates a loop holds: a stage's ideal motions xi (x ... rz, or those of them it has).
+    """The f coordinates of a loop: ideal motions xi of a stage (x ... rz, or a subset).
 
-    `pose` (f, g) gives xi from gauge readings, (R_s V)^+: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, least squares for more. Sums of
-    gauges are part of it: `gauges` are the single ones. `strokes` (n, f) gives strokes from xi, R_a of Eq. 13; `back` (f, n) is its
-    (least-squares) inverse. Of force actuators `back` is the motion at rest per unit of input and `strokes` its pseudo-inverse, the least
-    inputs [A, N] that hold xi. `units` are m or rad, `length` [m] makes rotations comparable with translations. `gauge_units` and
-    `input_units` are those of readings and inputs (absent: m).
+    `pose` (f, g) maps gauge readings to xi, (R_s V)^+: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, least squares for more. It includes
+    sums of gauges: `gauges` are the single ones. `strokes` (n, f) maps xi to strokes, R_a of Eq. 13; `back` (f, n) is its (least-squares)
+    inverse. For force actuators `back` is the static motion per unit of input, and `strokes` its pseudo-inverse, the minimum-norm inputs
+    [A, N]. `units` are m or rad; `length` [m] makes rotations comparable with translations. `gauge_units` and `input_units` are units of
+    readings and inputs (default: m).
     """
 
     names: tuple[str, ...]
@@ -44,7 +46,7 @@ class Coordinates:
 
     @property
     def scale(self) -> Array:
-        """Factors (f,) that make all coordinates lengths: 1, and `length` for rotations."""
+        """Factors (f,) that convert all coordinates to lengths: 1, and `length` for rotations."""
         return np.array([1.0 if unit == "m" else self.length for unit in self.units])
 
     @property
@@ -53,7 +55,7 @@ class Coordinates:
         return any(unit != "m" for unit in self.input_units)
 
     def motions(self, prefix: str = "") -> tuple[Channel, ...]:
-        """Channels of the coordinates, named with a prefix.
+        """Channels of the coordinates, with a name prefix.
 
         >>> from flexstage.cases.parallelogram import parallelogram
         >>> from flexstage.models.ideal import ideal
@@ -63,12 +65,12 @@ class Coordinates:
         return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.names, self.units, strict=True))
 
     def readings(self, prefix: str = "") -> tuple[Channel, ...]:
-        """A channel a gauge, its name behind a prefix, in its unit."""
+        """One channel per gauge, with a name prefix, in its unit."""
         units = self.gauge_units or ("m",) * len(self.gauges)
         return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.gauges, units, strict=True))
 
     def commands(self, prefix: str = "") -> tuple[Channel, ...]:
-        """A channel an actuator, its name behind a prefix, in the unit of its input."""
+        """One channel per actuator, with a name prefix, in the unit of its input."""
         units = self.input_units or ("m",) * len(self.actuators)
         return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.actuators, units, strict=True))
 
@@ -78,11 +80,11 @@ class Coordinates:
 
 
 def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coordinates:
-    """The coordinates of a stage's loop (one design). Force actuators move as far as the elastic `model` gives way.
+    """Compute the coordinates of a stage's loop (one design). For force actuators the elastic `model` provides the static motion.
 
-    Their inputs are (V^T W)^+ times the force that the pose takes at rest, so each loop's plant has a static gain of 1, as with strokes.
-    Raises `DesignError` where the gauges do not tell the pose or the actuators cannot make it, with the directions that are missing, and
-    for strokes and forces together.
+    Their inputs are (V^T W)^+ times the static force of the pose, so that each loop's plant has a static gain of 1, as with strokes. Raises
+    `DesignError` if the gauges cannot observe the pose or the actuators cannot produce it, with the missing directions, and for strokes and
+    forces together.
 
     >>> from flexstage.cases.double_triangle import SM_REF_A, double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -98,8 +100,8 @@ def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coo
     told = _even(kinematics)[:, None] * np.real(first_design(kinematics.seen, 2)) / scale
     require(
         [
-            *_missing("actuators", pushed / scale, kinematics, "make", "Add actuators, or lock the freedoms they cannot move"),
-            *_missing("gauges", told, kinematics, "tell", "Add gauges, or turn them so that every motion changes a reading"),
+            *_missing("actuators", pushed / scale, kinematics, "make", "Add actuators, or lock the degrees of freedom without an actuator"),
+            *_missing("gauges", told, kinematics, "tell", "Add gauges, or rotate them so that every motion changes a reading"),
         ]
     )
     back = np.linalg.pinv(drive / scale) / scale[:, None]
@@ -124,15 +126,19 @@ def _mixture(kinematics: Kinematics) -> list[Finding]:
     if not kinematics.actuators or not kinematics.thrusts:
         return []
     what = f"strokes ({', '.join(kinematics.actuators)}) and forces ({', '.join(kinematics.thrusts)}) drive the stage"
-    return [Finding("loop", what, "Leave out one sort: how a loop shares its commands between the two is not known here")]
+    return [Finding("loop", what, "Remove one kind: command allocation between both is not supported")]
 
 
 def _give(kinematics: Kinematics, model: LinearModel | None) -> Array:
-    """Motion of the coordinates (f, n) per unit input at rest, by an elastic model."""
+    """Static motion of the coordinates (f, n) per unit input, by an elastic model; without stiffness the amplitude at `_REFERENCE`."""
     if model is None:
-        raise refuse("loop", "forces move a stage as far as it gives way, and no elastic model is given", "Give its lumped model")
+        raise refuse("loop", "force actuators need an elastic model for the stage's static motion", "Use its lumped model")
     twist = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
-    gain = np.asarray(static_gain(model, twist, kinematics.thrusts).values)
+    if model.floating is None:
+        gain = np.asarray(static_gain(model, twist, kinematics.thrusts).values)
+    else:
+        rows, force = model.output[model.output_index(twist)], model.input_matrix[:, model.input_index(kinematics.thrusts)]
+        gain = rows @ (model.solve(force) + model.floating @ (model.floating.T @ force) / (2.0 * np.pi * _REFERENCE) ** 2)
     return np.real(first_design(kinematics.projection @ gain, 2))
 
 
@@ -143,16 +149,16 @@ def _even(kinematics: Kinematics) -> Array:
 
 
 def _pose(kinematics: Kinematics, told: Array) -> Array:
-    """Coordinates (f, s), all lengths, from readings of single gauges; `told` are all comparable readings from coordinates."""
+    """Map (f, s) from single gauges' readings to coordinates, all lengths; `told` are all comparable readings per coordinate."""
     pose = np.linalg.pinv(told) * _even(kinematics)
     return pose @ np.real(first_design(kinematics.selection, 2)) if kinematics.sums else pose
 
 
 def _missing(kind: str, map_: Array, kinematics: Kinematics, verb: str, advice: str) -> list[Finding]:
-    """Motions (columns, all lengths) that a map does not see, by the right null space."""
+    """Unobservable motions of a map (columns, all lengths), by the right null space."""
     count = len(kinematics.coordinates)
     if not count:
-        return [Finding("loop", "the platform has no ideal motion to be controlled", "Free the freedoms that its links should have")]
+        return [Finding("loop", "no ideal platform motion to control", "Release the degrees of freedom of its links")]
     _, values, rows = np.linalg.svd(np.vstack([map_, np.zeros((count, count))]))
     lost = rows[values[:count] <= _MISSING * max(values[0], _MISSING)]
     if not len(lost):
@@ -164,7 +170,7 @@ def _missing(kind: str, map_: Array, kinematics: Kinematics, verb: str, advice: 
 
 
 def _direction(row: Array, kinematics: Kinematics) -> str:
-    """A motion in words, its largest part made 1: rotations in rad per m where both occur."""
+    """Format a motion with its largest component 1: rotations in rad per m if both occur."""
     size = np.array([1.0 if name[0] != "r" else 1.0 / kinematics.first_length for name in kinematics.coordinates])
     row = row * size
     largest = row[np.argmax(np.abs(row / size))]

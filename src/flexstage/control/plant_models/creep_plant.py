@@ -1,4 +1,4 @@
-"""A plant whose stacks creep: creep between the hold and the amplifiers' lag, as linear states."""
+"""Plant with creeping stacks: creep between the hold and the amplifiers' lag, as linear states."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from flexstage.models.linear.model import Channel
 
 
 def add_creep(given: Plant, creep: Creep) -> Plant:
-    """The plant behind the creep of its stacks: free strokes `<actuator>` go through y = g_0 u + sum_i g_i s_i first (Hammerstein).
+    """Add the creep of the stacks to a plant: free strokes `<actuator>` first pass y = g_0 u + sum_i g_i s_i (Hammerstein model).
 
-    Hysteresis, which does not depend on time, stands before it, so that everything behind the hold stays linear and exactly sampled; creep
-    and amplifier lag are linear and may change places. Of stacks that are held at their charge what creeps, y - u, comes as far as charge
-    leaves it: (left + (1 - left) w_0/(s + w_0)) (y - u). Raises `DesignError` for as many axes as there are not actuators.
+    Rate-independent hysteresis precedes it, so that everything after the hold is linear and exactly sampled; creep and amplifier lag are
+    linear and commute. For charge-driven stacks the creep y - u is reduced by (left + (1 - left) w_0/(s + w_0)) (y - u). Raises
+    `DesignError` if axes and actuators differ in number.
 
     >>> from flexstage.control.example import integral_loop
     >>> plant = integral_loop().plant
@@ -28,7 +28,9 @@ def add_creep(given: Plant, creep: Creep) -> Plant:
     (('creep.B.1', 'creep.B.2'), 1.15)
     """
     if creep.axes != len(given.actuators):
-        raise refuse("creep", f"it has {creep.axes} axes, the stage {len(given.actuators)} actuators", "Give one to each actuator")
+        raise refuse(
+            "creep", f"wrong number of axes (got {creep.axes}, expected {len(given.actuators)}, the actuators)", "Use one per actuator"
+        )
     entering = given.coordinates.commands()
     crept = {name: f"crept.{name}" for name in given.actuators}
     first = creep.system(entering, tuple(Channel(name, "m") for name in crept.values()))
@@ -40,12 +42,12 @@ def add_creep(given: Plant, creep: Creep) -> Plant:
         links |= {f"own.{name}": {crept[name]: 1.0, name: -1.0}, crept[name]: {name: 1.0, f"left.{name}": 1.0}}
     states += [f"relief.{name}" for name in reversed(held)]
     whole = connect(systems, links, given.system.inputs, given.system.output_names)
-    note = f"{given.note}; creep by {creep.times.shape[1]} exponentials an actuator"
+    note = f"{given.note}; creep by {creep.times.shape[1]} exponentials per actuator"
     return replace(given, system=whole, states=(*states, *given.states), note=note)
 
 
 def _relieve(name: str, drive: ChargeDrive) -> System:
-    """From what a stack creeps by itself [m] to what it does so held at its charge [m]."""
+    """Reduction of a stack's creep [m] by a charge drive."""
     rate, left = 2.0 * np.pi * drive.corner, drive.residual_hysteresis
     one, entry, exit_ = np.eye(1), (Channel(f"own.{name}", "m"),), (Channel(f"left.{name}", "m"),)
     return System(-rate * one, one, (1.0 - left) * rate * one, left * one, entry, exit_)

@@ -1,4 +1,4 @@
-"""Hardware of a loop: the computer's clock, amplifiers with their converters and stacks, gauges with their filters."""
+"""Hardware of a loop: sampling clock, amplifiers with converters and stacks, gauges with filters."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from flexstage.parts.gauge import Instrument
 
 @dataclass(frozen=True)
 class ChargeHold(CheckedFields):
-    """What an amplifier of charge does to a stack of that electromechanical `coupling` k: far above a corner it holds charge, not volts.
+    """Charge drive of a stack with electromechanical `coupling` k: constant charge far above a corner frequency, instead of voltage.
 
-    The corner is `corner` [Hz] as stated, or that of the resistance `leakage` [ohm] beside the stack's capacitance, 1/(2 pi R C).
-    `residual_hysteresis` is the share of hysteresis and creep that the stroke keeps by charge.
+    The corner is `corner` [Hz] if specified, or 1/(2 pi R C) of the resistance `leakage` [ohm] parallel to the stack's capacitance.
+    `residual_hysteresis` is the remaining share of hysteresis and creep under constant charge.
     """
 
     coupling: float
@@ -37,12 +37,12 @@ class ChargeHold(CheckedFields):
 
 @dataclass(frozen=True)
 class AmplifierSettings(amplifier.Amplifier):
-    """What a design file does not say of an amplifier; what is absent limits nothing.
+    """Amplifier data in addition to the design file; absent values impose no limit.
 
-    Besides what every amplifier has, `slew` [V/s] its fastest change of voltage, `noise_density` [V/Hz^(1/2)] one-sided and white before
-    its lag, `bits` of the converter before it. Of voice coils it drives the current: `bandwidth`, `current` and `bits` count, its noise is
-    `current_noise` [A/Hz^(1/2)]. With `charge` it holds the charge of its stack; commands, range, slew, noise and steps are then those of
-    the volts that would give the same charge to a stack free of load.
+    In addition to the common values: `slew` [V/s], maximum voltage rate; `noise_density` [V/Hz^(1/2)], one-sided and white before its lag;
+    `bits` of the converter before it. For voice coils it controls the current: `bandwidth`, `current` and `bits` apply, and its noise is
+    `current_noise` [A/Hz^(1/2)]. With `charge` it controls the charge of its stack; commands, range, slew, noise and steps are then in the
+    voltage that gives the same charge to an unloaded stack.
     """
 
     slew: float | None = None
@@ -54,10 +54,10 @@ class AmplifierSettings(amplifier.Amplifier):
 
 @dataclass(frozen=True)
 class GaugeSettings(CheckedFields):
-    """What replaces or adds to what a design file says of a gauge; what is absent is the gauge's own, or limits nothing.
+    """Gauge data that replace or extend the design file; absent values keep the gauge's own, or impose no limit.
 
-    `bandwidth` [Hz] of its first-order lag, `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] one-sided and white before that lag, `resolution`
-    [m, rad] its step; `filter_order` and `filter_corner` [Hz] of a Butterworth filter before the sampler (order 0: none).
+    `bandwidth` [Hz] of its first-order lag; `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)], one-sided and white before that lag; `resolution`
+    [m, rad], its step; `filter_order` and `filter_corner` [Hz] of a Butterworth filter before the sampler (order 0: none).
     """
 
     bandwidth: Annotated[float, UNLIMITED] | None = None
@@ -69,7 +69,7 @@ class GaugeSettings(CheckedFields):
 
 @dataclass(frozen=True)
 class ChargeDrive:
-    """A stack of that `coupling` k held at its charge above a `corner` [Hz]; `residual_hysteresis` is the share that remains."""
+    """Charge drive of a stack with `coupling` k above a `corner` [Hz]; `residual_hysteresis` is the remaining share."""
 
     coupling: float
     corner: Annotated[float, FREQUENCY]
@@ -77,7 +77,7 @@ class ChargeDrive:
 
     @property
     def stiffening(self) -> Annotated[float, VIEW]:
-        """Axial stiffness at constant charge over that at constant volts, 1/(1 - k^2).
+        """Axial stiffness at constant charge relative to constant voltage, 1/(1 - k^2).
 
         Preumont, Vibration Control of Active Structures, 2018, ch. 4: a stack with open electrodes.
 
@@ -89,12 +89,12 @@ class ChargeDrive:
 
 @dataclass(frozen=True)
 class Amplifier:
-    """One actuator's amplifier, converter and stack, all counted as free stroke from the bias; of a force actuator in its input, A or N.
+    """Amplifier, converter and stack of one actuator, in free stroke from the bias; for a force actuator in its input, A or N.
 
-    `low` to `high` [m] the stroke it can command, `slew` [m/s] how fast (the lesser of current x gain / capacitance and the amplifier's own
-    slew x gain, the gain being free stroke per volt), `bandwidth` [Hz] of the lag behind the hold, `noise_density` [m/Hz^(1/2)] of free
-    stroke before that lag (None: not stated), `step` [m] of the converter (0: none). Infinite: no limit. `charge` is what it does where it
-    holds charge, its corner known.
+    `low` to `high` [m] is the stroke range. `slew` [m/s] is the maximum rate: the lesser of current x gain / capacitance and the
+    amplifier's slew x gain, with gain the free stroke per volt. `bandwidth` [Hz] belongs to the lag after the hold. `noise_density`
+    [m/Hz^(1/2)] is free-stroke noise before that lag (None: not specified). `step` [m] is the converter's (0: none). Infinite: no limit.
+    `charge` is the charge drive, if any, with its corner.
     """
 
     low: float = -np.inf
@@ -110,9 +110,9 @@ class Amplifier:
 class Sensor:
     """One gauge between stage and computer.
 
-    `bandwidth` [Hz] of its lag (infinite: none), `filter_order` and `filter_corner` [Hz] of the Butterworth filter behind it,
-    `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] one-sided and white before both (None: not stated), `resolution` [m, rad] of the number read
-    (0: none), `half_range` [m, rad] what it can measure both ways.
+    `bandwidth` [Hz] of its lag (infinite: none); `filter_order` and `filter_corner` [Hz] of the Butterworth filter after it;
+    `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)], one-sided and white before both (None: not specified); `resolution` [m, rad] of the reading
+    (0: none); `half_range` [m, rad], half the measuring range.
     """
 
     bandwidth: float = np.inf
@@ -125,11 +125,11 @@ class Sensor:
 
 @dataclass(frozen=True, eq=False)
 class Hardware:
-    """Everything between controller and stage, and back.
+    """Sampling chain between controller and stage, in both directions.
 
-    `rate` [Hz] of the samples (None: a continuous loop, for analysis only), `delay` [s] from the taking of a sample to the arrival of the
-    output computed from it, any fraction of a sample; `amplifiers` and `sensors` by the names of actuators and gauges (those left out are
-    ideal). Raises `DesignError` for numbers that cannot be.
+    `rate` [Hz] of the samples (None: a continuous loop, for analysis only). `delay` [s] from sampling to the resulting output, any fraction
+    of a sample. `amplifiers` and `sensors` by the names of actuators and gauges (omitted ones are ideal). Raises `DesignError` for invalid
+    numbers.
 
     >>> Hardware(rate=10e3).step
     0.0001
@@ -141,7 +141,6 @@ class Hardware:
     sensors: Annotated[Mapping[str, Sensor], INNER] = field(default_factory=lambda: Table({}))
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be."""
         require(_findings(self))
 
     @property
@@ -159,10 +158,10 @@ def sampling_chain(
     amplifiers: AmplifierSettings | Mapping[str, AmplifierSettings] | None = None,
     gauges: GaugeSettings | Mapping[str, GaugeSettings] | None = None,
 ) -> Hardware:
-    """Describe the sampling chain of a stage: what its stacks and gauges state, and what the settings add, one for all or each by name.
+    """Describe the sampling chain of a stage: data of its stacks and gauges, and settings, one for all or each by name.
 
-    Raises `DesignError` for names that the stage does not have, and for settings that need what a stack does not state (its capacitance
-    for `resistance` and `current`, its voltage range for `noise_density`).
+    Raises `DesignError` for unknown names, and for settings that need missing stack data (its capacitance for `resistance` and `current`,
+    its voltage range for `noise_density`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> given = sampling_chain(double_triangle(), rate=10e3, delay=50e-6, amplifiers=AmplifierSettings(resistance=100.0, bits=16))
@@ -175,7 +174,7 @@ def sampling_chain(
     powers = _by_name(amplifiers, (*piezos, *thrusts), AmplifierSettings(), "actuator")
     limits = stroke_limits(mechanism)
     require(
-        Finding(name, f"its {key} is {value:g}", "Give a positive number, or leave it out")
+        Finding(name, f"its {key} is {value:g}", "Use a positive number, or omit it")
         for name, setting in powers.items()
         for key in ("bandwidth", "resistance", "current", "slew")
         if (value := getattr(setting, key)) is not None and not value > 0.0
@@ -203,7 +202,7 @@ _Setting = TypeVar("_Setting", AmplifierSettings, GaugeSettings)
 def _by_name(given: _Setting | Mapping[str, _Setting] | None, names: tuple[str, ...], none: _Setting, kind: str) -> dict[str, _Setting]:
     if not isinstance(given, Mapping):
         return dict.fromkeys(names, none if given is None else given)
-    require(Finding(name, f"the stage has no {kind} of this name", suggest_nearest(name, names)) for name in given if name not in names)
+    require(Finding(name, f"unknown {kind}", suggest_nearest(name, names)) for name in given if name not in names)
     return {name: given.get(name, none) for name in names}
 
 
@@ -227,7 +226,7 @@ def _charge_drive(held: ChargeHold, capacitance: float) -> ChargeDrive:
 
 
 def _thrust_amplifier(setting: AmplifierSettings, part: ThrustActuator) -> Amplifier:
-    """That of a force actuator, in its input [A, N]: clipped by what cannot be passed for a moment."""
+    """Amplifier of a force actuator, in its input [A, N], limited to the peak input."""
     high = _largest_input(setting, part)
     slew, cutoff = part.slew(high) if np.isfinite(high) else None, part.cutoff
     return Amplifier(
@@ -247,27 +246,29 @@ def _largest_input(setting: AmplifierSettings, part: ThrustActuator) -> float:
 
 def _thrust_findings(name: str, setting: AmplifierSettings, part: ThrustActuator) -> Iterator[Finding]:
     if setting.charge is not None:
-        yield Finding(name, "its amplifier holds the charge of a stack, and this one drives a force actuator", "Leave kind out")
+        yield Finding(name, "a charge drive needs a stack, but this amplifier drives a force actuator", "Omit kind")
     for key in ("resistance", "slew", "noise_density"):
         if getattr(setting, key) is not None:
-            what = f"{key} is of the volts of a stack's amplifier, and this one drives a force actuator"
-            advice = "State bandwidth, current, current_noise and bits; its slew follows from the coil's voltage and inductance"
+            what = f"{key} is of the volts of a stack's amplifier, but this one drives a force actuator"
+            advice = "Use bandwidth, current, current_noise and bits; its slew follows from the coil's voltage and inductance"
             yield Finding(name, what, advice)
     for key in ("current", "current_noise"):
         if getattr(setting, key) is not None and part.input is not CURRENT:
-            yield Finding(name, f"{key} is given, and its input is {part.input.noun}", "Leave it out, or describe it as a voice coil")
+            yield Finding(
+                name, f"{key} does not apply to an input in {part.input.noun}", "Omit it, or describe the actuator as a voice coil"
+            )
     if setting.bits is not None and np.isinf(_largest_input(setting, part)):
-        yield Finding(name, "bits divide the range of its input, which has no end", 'Add for example peak_current = "5 A" to its part')
+        yield Finding(name, "bits need a limited input range", 'Add for example peak_current = "5 A" to its part')
 
 
 def _slew(setting: AmplifierSettings, gain: float, capacitance: float) -> float:
-    """Fastest change of free stroke [m/s]: by the current that charges the stack, and by the amplifier itself."""
+    """Maximum rate of free stroke [m/s]: by the current into the stack's capacitance, and by the amplifier's slew."""
     by_current = np.inf if setting.current is None else setting.current * gain / capacitance
     return min(by_current, np.inf if setting.slew is None else setting.slew * gain)
 
 
 def _gain(piezo: ChargedActuator) -> float:
-    """Free stroke per volt [m/V]; NaN where no range is stated."""
+    """Free stroke per volt [m/V]; NaN without a range."""
     if piezo.voltage_low is None or piezo.voltage_high is None:
         return np.nan
     return float(piezo.stroke / (piezo.voltage_high - piezo.voltage_low))
@@ -285,33 +286,33 @@ def _sensor(setting: GaugeSettings, gauge: Instrument) -> Sensor:
 
 
 def _first_stated(*values: Any) -> Any:
-    """The first value that is stated, as a float; None without one."""
+    """First specified value, as a float; None without one."""
     return next((float(value) for value in values if value is not None), None)
 
 
 def _amplifier_findings(name: str, setting: AmplifierSettings, piezo: ChargedActuator) -> Iterator[Finding]:
     if setting.resistance is not None and setting.bandwidth is not None:
         what = f"bandwidth {setting.bandwidth:g} Hz and resistance {setting.resistance:g} ohm are both given"
-        yield Finding(name, what, "Give the one that limits")
+        yield Finding(name, what, "Use the lower limit of both")
     stated = {"resistance": setting.resistance, "current": setting.current, "leakage": setting.charge and setting.charge.leakage}
     for key, value in stated.items():
         if value is not None and piezo.capacitance is None:
-            yield Finding(name, f"{key} needs its stack's capacitance, which is not stated", 'Add for example capacitance = "0.5 uF"')
+            yield Finding(name, f"{key} needs its stack's capacitance, which is missing", 'Add for example capacitance = "0.5 uF"')
     if setting.current_noise is not None:
-        yield Finding(name, "current_noise is that of a voice coil's amplifier", "State the noise of a stack's amplifier in volts")
+        yield Finding(name, "current_noise belongs to a voice coil's amplifier", "Specify the noise of a stack's amplifier in volts")
     for key in ("current", "slew", "noise_density"):
         if getattr(setting, key) is not None and np.isnan(_gain(piezo)):
-            what = f"{key} needs its stack's voltage range, which is not stated"
+            what = f"{key} needs its stack's voltage range, which is missing"
             yield Finding(name, what, 'Add for example voltage_low = "0 V" and voltage_high = "1000 V"')
 
 
 def _findings(given: Hardware) -> Iterable[Finding]:
     if given.rate is not None and not 0.0 < given.rate < np.inf:
-        yield Finding("rate", f"it is {given.rate:g} Hz", "Give a positive number, or none for a continuous loop")
+        yield Finding("rate", f"it is {given.rate:g} Hz", "Use a positive number, or none for a continuous loop")
     if not 0.0 <= given.delay < np.inf:
-        yield Finding("delay", f"it is {given.delay:g} s", "Give a time of 0 or more")
+        yield Finding("delay", f"it is {given.delay:g} s", "Use a time of 0 or more")
     if given.rate is None and given.delay:
-        yield Finding("delay", f"{given.delay:g} s in a continuous loop, which has no samples to delay", "Give a rate, or no delay")
+        yield Finding("delay", f"delay of {given.delay:g} s in a continuous loop, which has no samples", "Specify a rate, or no delay")
     for kind in (given.amplifiers, given.sensors):
         for name, item in kind.items():
             yield from _item_findings(name, item, given.rate)
@@ -332,4 +333,4 @@ def _item_findings(name: str, item: Amplifier | Sensor, rate: float | None) -> I
         yield Finding(name, f"its filter has order {item.filter_order}", "Give 0 (none) to 12")
     if item.filter_order and not 0.0 < item.filter_corner < np.inf:
         what = f"its filter of order {item.filter_order} has no corner"
-        yield Finding(name, what, "State filter_corner, below half the sampling rate" if rate else "State filter_corner")
+        yield Finding(name, what, "Specify filter_corner, below half the sampling rate" if rate else "State filter_corner")

@@ -1,4 +1,4 @@
-"""The plant of a loop as a test found it: strokes to gauges by the modes and delay found, the rest by the model."""
+"""Plant identified in a test: strokes to gauges by the identified modes and delay, all else by the model."""
 
 from __future__ import annotations
 
@@ -33,23 +33,21 @@ _BELOW = 1.2
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Which of the model's modes (numbers `model`, of those that the plant has kept) are which of those found (numbers `found`)."""
+    """Pairs of model modes (indices `model`, among the plant's retained modes) and identified modes (indices `found`)."""
 
     model: Array
     found: Array
 
 
 def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant:
-    """The plant with what a test found in the place of the model's strokes-to-gauges: modes, static term, delay.
+    """Replace the model's response from strokes to gauges by the identified modes, static term and delay.
 
-    From strokes to gauges it is H = (sum of the modes + D) times the gauges' lags as the design states them, `delay` late; D is the real
-    constant that is left up to the highest mode. Amplifiers and filters are part of what is seen, and the hardware has none of its own;
-    the delay comes on top of the loop's. A platform's
-    motion in a loop's coordinate is what the gauges tell of it. Ground and wrenches act as in the model, whose modes take frequency and
-    damping of those found that they resemble. Modes above the band of the test are its D.
+    From strokes to gauges H = (sum of the modes + D) times the gauges' specified lags, with the `delay`; D is the real residual constant up
+    to the highest mode. The identified response includes amplifiers and filters, and the hardware has none of its own; the delay adds to
+    the loop's. Platform motion in a loop coordinate follows from the gauges. Ground and wrenches act as in the model, whose modes get
+    frequency and damping of the similar identified modes. Modes above the test's band are part of its D.
 
-    Raises `DesignError` where inputs and outputs are not the stage's actuators and gauges, and where the modes are not those of such a
-    stage.
+    Raises `DesignError` if inputs and outputs are not the stage's actuators and gauges, and if the modes do not match such a stage.
     """
     require(_channel_findings(given.coordinates, found))
     pairs = pair_modes(given, model, found)
@@ -93,9 +91,9 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
 
 
 def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
-    """The model's modes that resemble those found: alike at the gauges (assurance 0.7 or more) and within half of the frequency.
+    """Pair the model's modes with similar identified modes: gauge-based assurance 0.7 or more, within half of the frequency.
 
-    A mode found is compared with what the model's modes within 5 % of its partner span, as pairs turn into one another.
+    An identified mode is compared with the span of the model's modes within 5 % of its partner, because close pairs mix.
     """
     kept = _kept(given)
     rows = [channel.name for channel in model.outputs]
@@ -112,7 +110,7 @@ def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
 
 
 def _kept(given: Plant) -> list[int]:
-    """Numbers of the model's modes that the plant has kept."""
+    """Indices of the model modes retained in the plant."""
     return [int(name.removeprefix("mode")) - 1 for name in mode_names(given)]
 
 
@@ -124,43 +122,43 @@ def _assurance(seen: Array, shapes: Array, frequencies: Array, column: int) -> f
 
 def _stage_findings(given: Plant, found: Identified, pairs: Pairs) -> Iterator[Finding]:
     if not len(found.frequencies):
-        yield Finding("--record", "no mode is found in it", "Record longer, or drive more: see flexstage identify")
+        yield Finding("--record", "no identified mode", "Record longer, or drive more: see flexstage identify")
         return
     below = found.frequencies <= _BELOW * given.frequencies[min(len(given.coordinates.names), len(given.frequencies)) - 1]
     count, alike = int(np.sum(below)), int(np.sum(below[pairs.found]))
     ours = ", ".join(f"{each:.4g}" for each in given.frequencies[:6])
     theirs = ", ".join(f"{each:.4g}" for each in found.frequencies[:6])
     if not count:
-        what = f"its modes ({theirs} Hz) are above the lowest of the stage ({ours} Hz): it seems to be of another stage, or too short"
-        yield Finding("--record", what, "Record longer or in a lower band, or take the design of the stage that was tested")
+        what = f"its modes ({theirs} Hz) are above the lowest of the stage ({ours} Hz): it is probably of another stage, or too short"
+        yield Finding("--record", what, "Record longer or in a lower band, or use the design of the tested stage")
     elif alike < _LEAST * count or not len(pairs.found):
-        what = f"{alike} of its {count} lowest modes ({theirs} Hz) are like the stage's ({ours} Hz): it seems to be of another stage"
-        yield Finding(
-            "--record", what, "Take the design of the stage that was tested; look for exchanged channels by flexstage identify --stage"
-        )
+        what = f"{alike} of its {count} lowest modes ({theirs} Hz) match the stage's ({ours} Hz): it is probably of another stage"
+        yield Finding("--record", what, "Use the design of the tested stage; check for exchanged channels with flexstage identify --stage")
 
 
 def _channel_findings(loop: Coordinates, found: Identified) -> Iterator[Finding]:
-    """Channels that are missing, and units that cannot be those of the stage's."""
+    """Findings for missing channels, and units that contradict the stage's."""
     units = {each.name: each.unit for each in (*loop.commands(), *loop.readings())}
     for kind, wanted, there in (("input", loop.actuators, found.inputs), ("output", loop.gauges, found.outputs)):
         names = [channel.name for channel in there]
         for name in wanted:
             if name not in names:
                 yield Finding(
-                    f"--record: {name}", f"no {kind} of the record is called so", f"{suggest_nearest(name, names)}; a loop needs all"
+                    f"--record: {name}",
+                    f"no {kind} channel of this name in the record",
+                    f"{suggest_nearest(name, names)}; a loop needs all",
                 )
                 continue
             unit = there[names.index(name)].unit
             if unit_problem(unit) is not None or not same_dimension(unit, units[name]):
-                what = f'its unit is "{unit}", where the loop has {units[name]}'
+                what = f'wrong unit (got "{unit}", expected {units[name]})'
                 yield Finding(
                     f"--record: {name}", what, "Record free strokes (or the inputs of forces) and gauge readings, with their units"
                 )
 
 
 def channel_places(loop: Coordinates, found: Identified) -> tuple[list[int], list[int], Array, Array]:
-    """Rows and columns of a loop's gauges and actuators in a test, and the size of the units of both."""
+    """Find rows and columns of a loop's gauges and actuators in a test, and the size of the units of both."""
     rows = [[channel.name for channel in found.outputs].index(name) for name in loop.gauges]
     columns = [[channel.name for channel in found.inputs].index(name) for name in loop.actuators]
     return rows, columns, _sizes(found.outputs, rows, loop.readings()), _sizes(found.inputs, columns, loop.commands())
@@ -172,7 +170,7 @@ def _sizes(channels: tuple[Recorded, ...], chosen: list[int], own: tuple[Channel
 
 
 def _before_lags(found: Identified, rows: list[int], lags: Array) -> Identified:
-    """What was found with the gauges' lags undone, 1 + s/omega_g, and its delay put back: residues and responses."""
+    """Identified residues and responses with the gauges' lags removed, 1 + s/omega_g, and the delay restored."""
     every = np.full(len(found.outputs), np.inf)
     every[rows] = lags
     back = found.participation * np.exp(-found.poles * found.delay)[:, None]
@@ -183,14 +181,14 @@ def _before_lags(found: Identified, rows: list[int], lags: Array) -> Identified:
 
 
 def _lagged(moved: System, given: Plant, lags: Array) -> System:
-    """The motion as the gauges read it, late by their lags."""
+    """Motion as read by the gauges, with their lags."""
     ahead = rename(moved, {name: f"ahead.{name}" for name in moved.output_names})
     seen = lag(ahead.outputs, lags / (2.0 * np.pi), moved.outputs)
     return connect([ahead, seen], {}, given.coordinates.commands(), moved.output_names)
 
 
 def _static_term(found: Identified, participation: Array, delay: float, *, mass_line: bool) -> Array:
-    """The real constant (p, m) that the modes leave of the responses, by least squares up to the highest of them.
+    """Residual real constant (p, m) of the responses after the modes, by least squares up to the highest mode.
 
     With the `mass_line`, all lines count, by relative errors: loops on forces cross over above the modes, where the motion is small.
     """
@@ -208,7 +206,7 @@ def _static_term(found: Identified, participation: Array, delay: float, *, mass_
 
 
 def _modal_system(poles: Array, shapes: Array, drives: Array, direct: Array, given: Plant) -> System:
-    """sum phi l/(s - p) + conjugate + D as a real system, two states a mode: z' = p z + l u, y = 2 Re(phi z)."""
+    """Real system of sum phi l/(s - p) + conjugate + D, two states per mode: z' = p z + l u, y = 2 Re(phi z)."""
     count = len(poles)
     A = np.zeros((2 * count, 2 * count))
     B, C = np.zeros((2 * count, drives.shape[1])), np.zeros((len(shapes), 2 * count))
@@ -222,9 +220,9 @@ def _modal_system(poles: Array, shapes: Array, drives: Array, direct: Array, giv
 
 
 def _retuned(given: Plant, pairs: Pairs, found: Identified) -> System:
-    """The model's system with frequency and damping of its modes as found.
+    """Model system with frequency and damping of its modes replaced by the identified ones.
 
-    Stiffness to the ground goes with the squared frequency, what dampers carry with the rate: the stage still follows a slow ground.
+    Ground stiffness scales with the squared frequency, ground damping with the rate: the stage still follows slow ground motion.
     """
     A, B = given.system.A.copy(), given.system.B.copy()
     ground = [column for column, name in enumerate(given.system.input_names) if name.startswith(f"{GROUND}.")]
@@ -241,7 +239,7 @@ def _retuned(given: Plant, pairs: Pairs, found: Identified) -> System:
 
 
 def _together(given: Plant, driven: System, rest: System) -> System:
-    """Gaps by both; the loop's coordinates by what the gauges tell of the strokes; all other motions by the model."""
+    """Combined outputs: gaps by both; loop coordinates from the gauges for strokes; all other motions by the model."""
     loop, names, gaps = given.coordinates, rest.output_names, [f"gap.{name}" for name in given.gauges]
     measured = dict(zip(gaps, np.eye(len(gaps)), strict=True))
     measured |= {f"{kind}.{name}": row for kind in ("platform", "relative") for name, row in zip(loop.names, loop.pose, strict=True)}
@@ -256,5 +254,5 @@ def _together(given: Plant, driven: System, rest: System) -> System:
 
 
 def _same(rows: Sequence[str], columns: Sequence[str]) -> Array:
-    """1 where names are equal."""
+    """Matrix with 1 at equal names."""
     return np.array([[float(row == column) for column in columns] for row in rows])

@@ -1,4 +1,4 @@
-"""The plant of a loop: a stage by any model between its amplifiers' inputs and its gauges' filtered readings."""
+"""Plant of a loop: a stage of any model between its amplifiers' inputs and its gauges' filtered readings."""
 
 from __future__ import annotations
 
@@ -27,23 +27,22 @@ from flexstage.models.linear.state_space import state_space
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 SENSED = "sensed"
-"""Heads the names of inputs that sensors of inner loops hear as noise."""
+"""Name prefix of inputs for sensor noise of inner loops."""
 ADDED = "added"
-"""Heads the names of outputs that inner loops add to the strokes before the amplifiers."""
+"""Name prefix of outputs that inner loops add to the strokes before the amplifiers."""
 _REPEATED = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Plant:
-    """A stage with amplifiers and gauges, continuous: what a hold drives and a sampler sees.
+    """Continuous plant between hold and sampler: a stage with amplifiers and gauges.
 
-    `system` has as inputs the free strokes [m] or currents [A] `<actuator>` that the hold gives to the amplifiers, `ground.<c>` [m, rad]
-    and wrenches `platform.fx` ... [N, N m]; as outputs `gap.<gauge>` [m, rad] (its reading behind its lag and filter, before noise and
-    rounding),
-    `platform.<c>` and `<point>.<c>` [m, rad] absolute, and `relative.<c>`, `relative.<point>.<c>`, the same against the moving ground.
-    `states` names its states. `frequencies` [Hz] and `ratios` are those of the modes kept, `left_out` counts the others, whose
-    compliance is a static term; `note` says what was simplified. `heard` are the noise densities of further inputs: those of sensors of
-    inner loops.
+    `system` has these inputs: free strokes [m] or currents [A] `<actuator>` from the hold to the amplifiers, `ground.<c>` [m, rad], and
+    wrenches `platform.fx` ... [N, N m]. Outputs: `gap.<gauge>` [m, rad] (its reading after lag and filter, before noise and rounding),
+    absolute motions `platform.<c>` and `<point>.<c>` [m, rad], and motions relative to the ground, `relative.<c>` and
+    `relative.<point>.<c>`. `states` names its states. `frequencies` [Hz] and `ratios` belong to the retained modes; `left_out` counts the
+    others, whose compliance is a static term. `note` lists the simplifications. `heard` are the noise densities of further inputs: sensors
+    of inner loops.
     """
 
     system: Annotated[System, INNER]
@@ -79,13 +78,12 @@ def plant(
     damping: Damping | None = None,
     links: tuple[str, ...] = (),
 ) -> Plant:
-    """The plant by a model of a stage, `kinematics` telling what its loop's coordinates are.
+    """Build the plant of a stage's model; `kinematics` defines its loop's coordinates.
 
-    `modes` is how many to keep; absent, all below half the sampling rate (what samples can tell apart), and all of a continuous loop; never
-    fewer than the loop has coordinates, and never one of a pair without the other (frequencies within 0.1 %). What the others add
-    statically stays. `points` are further bodies or points whose motion is given, `links` those whose axial forces `<link>.fx` [N] are.
-    Raises `DesignError` for a batch of designs, for
-    gauges that do not tell the pose and actuators that cannot make it, for a design without damping.
+    `modes` is the number of modes to retain. Default: all below half the sampling rate, and all for a continuous loop; at least as many as
+    loop coordinates, and both of a pair (frequencies within 0.1 %). The static compliance of the others remains. `points` are further
+    bodies or points for motion outputs, `links` those for axial forces `<link>.fx` [N]. Raises `DesignError` for a batch of designs, for
+    gauges that cannot observe the pose, actuators that cannot produce it, and a design without damping.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -97,7 +95,9 @@ def plant(
     (('B', 'ground.x', 'ground.y'), ('gap.S', 'platform.x', 'platform.y'), ('mode1', 'mode2', "mode1'", "mode2'", 'gauge.S'))
     """
     if model.stiffness_matrix.ndim != 2:
-        raise refuse("loop", f"the model holds a batch of {model.stiffness_matrix.shape[:-2]} designs", "Give one design")
+        raise refuse(
+            "loop", f"wrong number of designs (got a batch of {model.stiffness_matrix.shape[:-2]}, expected one)", "Use one design"
+        )
     loop = coordinates(kinematics, model)
     require(_findings(model, loop, given, points))
     law = damping_law(model, damping)
@@ -129,12 +129,11 @@ def plant(
 
 
 def zero_order_hold(given: Plant) -> System:
-    """The plant between hold and sampler: exact at the samples; strokes come `delay` late, wrenches are held without delay.
+    """Discretise the plant by zero-order hold, exact at the samples; strokes with the `delay`, wrenches without.
 
-    The ground goes straight from sample to sample (`first_order_hold`): held, it would jump, and gauges would see the jumps.
-    A gauge is read before the output that its sample leads to arrives: without delay, and without a lag between, it still sees the last
-    one. A continuous plant is returned as it is. Inputs and outputs are those of `Plant.system`; its states come first, then the strokes
-    under way.
+    Ground motion is linear between samples (`first_order_hold`): a hold would add jumps to the gauge readings. A gauge is read before its
+    sample's output arrives: without delay and lag it still shows the previous output. Returns a continuous plant unchanged. Inputs and
+    outputs are those of `Plant.system`; its states come first, then the delayed strokes.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -164,7 +163,7 @@ def zero_order_hold(given: Plant) -> System:
 
 
 def _count(frequencies: Array, given: Hardware, modes: int | None, least: int) -> int:
-    """How many modes are kept: those asked for, or those below half the sampling rate; whole pairs, and at least as many as coordinates."""
+    """Number of retained modes: as requested, or those below half the sampling rate; whole pairs, at least the number of coordinates."""
     below = np.inf if given.rate is None else 0.5 * given.rate
     count = min(max(int(np.sum(frequencies < below)) if modes is None else modes, least), len(frequencies))
     while count < len(frequencies) and frequencies[count] < frequencies[count - 1] * (1.0 + _REPEATED):
@@ -173,7 +172,7 @@ def _count(frequencies: Array, given: Hardware, modes: int | None, least: int) -
 
 
 def _with_relative(stage: System, model: LinearModel, twists: tuple[str, ...]) -> System:
-    """Further outputs: the twists against the ground, whose own motion carries them along."""
+    """Additional outputs: twists relative to the ground, including its direct motion."""
     rows = [stage.output_names.index(name) for name in twists]
     columns = [stage.input_names.index(f"{GROUND}.{name}") for name in COMPONENTS]
     direct = stage.D[rows].copy()
@@ -198,7 +197,7 @@ def _with_sampling_chain(stage: System, states: tuple[str, ...], loop: Coordinat
 
 
 def _slow(kind: str, names: tuple[str, ...], lags: System) -> list[str]:
-    """Names of those lags that have a state."""
+    """Names of lags with a state."""
     return [f"{kind}.{name}" for name, gain in zip(names, np.diag(lags.D), strict=True) if gain == 0.0]
 
 
@@ -213,7 +212,7 @@ def _lags(loop: Coordinates, given: Hardware) -> System:
 
 
 def _filter(read: Channel, sensor: Sensor) -> System:
-    """A Butterworth low-pass of gain 1."""
+    """Butterworth low-pass filter of gain 1."""
     entry, exit_ = (Channel(f"lagged.{read.name}", read.unit),), (Channel(f"gap.{read.name}", read.unit),)
     if not sensor.filter_order:
         return static(np.eye(1), entry, exit_)
@@ -226,7 +225,7 @@ def _filter(read: Channel, sensor: Sensor) -> System:
 
 
 def sensor_filter(given: Plant) -> System:
-    """Lags and filters of the gauges alone: from noise `noise.<gauge>` [m] at the gauge to `filtered.<gauge>` [m] at the sampler.
+    """Return lags and filters of the gauges: from noise `noise.<gauge>` [m] at the gauge to `filtered.<gauge>` [m] at the sampler.
 
     >>> from flexstage.control.plant_models.electronics import GaugeSettings, sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -252,7 +251,7 @@ def _findings(model: LinearModel, loop: Coordinates, given: Hardware, points: tu
     for name in points:
         if f"{name}.x" not in outputs:
             places = {each.rpartition(".")[0] for each in outputs if each.endswith(".rz")}
-            found.append(Finding(name, "the model has no point of this name", suggest_nearest(name, places)))
+            found.append(Finding(name, "unknown point of the model", suggest_nearest(name, places)))
     for kind, items, known in (("actuator", given.amplifiers, loop.actuators), ("gauge", given.sensors, loop.gauges)):
-        found += [Finding(name, f"there is no {kind} of this name", suggest_nearest(name, known)) for name in items if name not in known]
+        found += [Finding(name, f"unknown {kind}", suggest_nearest(name, known)) for name in items if name not in known]
     return found

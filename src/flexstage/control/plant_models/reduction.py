@@ -1,4 +1,4 @@
-"""A plant with some of its modes; the static compliance of the others is kept."""
+"""Modal truncation of a plant with static correction for the other modes."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _REPEATED = 1e-3
 
 
 def reduce_modes(given: Plant, wanted: Array) -> Plant:
-    """Residualise a plant to the modes `wanted` (k,), and as many of the strongest as its loop has coordinates.
+    """Residualise a plant to the modes `wanted` (k,), and at least as many of the strongest as its loop has coordinates.
 
-    Of repeated modes all are kept or none. States left out follow at once, x = -A^-1 B u, so that every static gain stays as it is
+    Repeated modes are retained together. Omitted states follow statically, x = -A^-1 B u, so that every static gain is preserved
     (residualisation: Green and Limebeer, Linear Robust Control, 1995, section 9.2).
 
     >>> from flexstage.control.example import integral_loop
@@ -43,9 +43,9 @@ def reduce_modes(given: Plant, wanted: Array) -> Plant:
 
 
 def resonances(given: Plant) -> Array:
-    """Size (k,) of every mode's resonance between strokes and pose, on the scale where a stroke at rest moves the pose by 1.
+    """Compute the resonance (k,) of every mode between strokes and pose, with a static stroke-to-pose gain of 1.
 
-    Both as motions of the platform in lengths it is |c| |b| / (2 zeta omega^2).
+    With both as platform motions in lengths it is |c| |b| / (2 zeta omega^2), infinite at 0 Hz.
 
     >>> from flexstage.control.example import integral_loop
     >>> resonances(integral_loop().plant).round(1).tolist()  # one of them is the guide's own, 1/(2 zeta) = 50
@@ -61,12 +61,13 @@ def resonances(given: Plant) -> Array:
         shape = loop.scale * (loop.pose @ stage.C[:, place])
         force = (stage.B[rate] @ loop.strokes) / loop.scale
         damped = 2.0 * max(float(ratio), 1e-6) * (2.0 * np.pi * frequency) ** 2
-        sizes[index] = float(np.linalg.norm(shape) * np.linalg.norm(force)) / damped
+        size = float(np.linalg.norm(shape) * np.linalg.norm(force))
+        sizes[index] = size / damped if damped > 0.0 else np.inf
     return sizes
 
 
 def _kept_modes(given: Plant, wanted: Array) -> Array:
-    """Those wanted, whole groups of repeated modes, and at least as many as the loop has coordinates."""
+    """Requested modes, whole groups of repeated modes, and at least as many as loop coordinates."""
     kept = wanted.copy()
     order = np.argsort(-resonances(given))
     kept[order[: len(given.coordinates.names)]] = True
@@ -77,12 +78,12 @@ def _kept_modes(given: Plant, wanted: Array) -> Array:
 
 
 def mode_names(given: Plant) -> list[str]:
-    """Names of the modes' displacements among the states, in order."""
+    """List the names of the modes' displacements among the states, in order."""
     return [name for name in given.states if name.startswith("mode") and not name.endswith("'")]
 
 
 def residualise(system: System, slow: Array) -> System:
-    """The system whose other states follow at once."""
+    """Residualise a system: its other states follow statically."""
     fast = ~slow
     if not np.any(fast):
         return system

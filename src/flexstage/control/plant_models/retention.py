@@ -1,4 +1,4 @@
-"""Which modes a plant has to retain: by their loop gain with the controller, and by what they change of the margins and of steps."""
+"""Retention of modes in a plant, by loop gain with the controller, and by their effect on margins and steps."""
 
 from __future__ import annotations
 
@@ -22,24 +22,24 @@ from flexstage.control.systems.system import select
 from flexstage.spatial.frame import COMPONENTS
 
 LOOP_GAINS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0)
-"""Loop gains at resonance from which modes are retained: the first; where none reaches it, as low as the margins need."""
+"""Loop gains at resonance from which modes are retained: the first value; if no mode reaches it, as low as the margins require."""
 MARGIN_CHANGE = 0.01
-"""Relative change of the margins that all modes left out may make together."""
+"""Limit of the relative change of margins by all omitted modes together."""
 RINGING = 0.001
-"""Share of a step that a mode which is left out may ring by, along any axis: 1/20 of the 2 % within which a step is settled."""
+"""Limit of ringing by an omitted mode, relative to the step, along any axis: 1/20 of the settling band of 2 %."""
 _LEAST = 0.01
-"""Margins of gain are compared as 1/k, of factors up to 100; beyond, no loop is near an edge."""
+"""Gain margins are compared as 1/k, for factors up to 100; no loop is near its stability limit beyond."""
 _PLAIN = 400
 _UNDERDAMPED = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Retention:
-    """Modes of the stage that the plant retains, `retained` of `total`, the static compliance of the others being kept.
+    """Modes retained in the plant, `retained` of `total`; the static compliance of the others is kept.
 
-    `gain` is the largest loop gain |L (1 + L)^-1| that one left out has at its resonance (`frequency` [Hz] of the mode), all loops
-    closed; `change` the largest relative change of peak of S, margins and rejection by all that are left out. `wanted` (k,) are the modes
-    to be retained, `retune` whether those that are added change the loop, not only what it leaves of a step.
+    `gain` is the largest closed-loop resonance |L (1 + L)^-1| of an omitted mode (`frequency` [Hz]), all loops closed. `change` is the
+    largest relative change of peak of S, margins and rejection by all omitted modes. `wanted` (k,) are the modes to retain, `retune`
+    whether added modes change the loop, not only the residual of a step.
     """
 
     retained: int
@@ -52,17 +52,17 @@ class Retention:
 
     @property
     def complete(self) -> Annotated[bool, VIEW]:
-        """Whether the plant retains all modes that matter."""
+        """Whether the plant retains all significant modes."""
         return int(np.sum(self.wanted)) <= self.retained
 
 
 def retention(whole: Plant, closed: Loop) -> Retention:
-    """Find the modes of a `whole` plant that matter in a loop closed around some of them, with its controller as it is.
+    """Find the significant modes of a `whole` plant in a loop closed around a subset, with its present controller.
 
-    A mode left out matters where its loop gain at resonance is not small, the other loops and axes closed: |a| |b K S| for its pulse
-    transfer function a b psi(z), exact between hold and sampler, above half the sampling rate too; where it rings by more than `RINGING`
-    in a step, in the true motion of the platform along any axis; and where all that are left out would change a margin: those of less loop
-    gain are added until none changes by more than `MARGIN_CHANGE`, once none is left of more.
+    An omitted mode is significant by one of three criteria. First, its loop gain at resonance, other loops and axes closed: |a| |b K S| for
+    its pulse transfer function a b psi(z), exact between hold and sampler, also above half the sampling rate. Second, ringing beyond
+    `RINGING` in a step, in the true platform motion along any axis. Third, a margin changed by all omitted modes together: modes of lower
+    loop gain are added until no change exceeds `MARGIN_CHANGE`, once the other criteria are met.
 
     >>> from flexstage.control.systems.closed import loop
     >>> from flexstage.control.example import integral_loop
@@ -91,10 +91,10 @@ def retention(whole: Plant, closed: Loop) -> Retention:
 
 @dataclass(frozen=True, eq=False)
 class _Contributions:
-    """What modes left out (d,) come to in a loop: `gains` at resonance, `place` (d,) among the lines, and `rings` in a step.
+    """Effects of omitted modes (d,) in a loop: `gains` at resonance, `place` (d,) among the frequency lines, and `rings` in a step.
 
-    `plant` (f, c, n) is the response of what is retained from commands to pose; `poles` are those of modes left out, `held` how hold and
-    sampler see them.
+    `plant` (f, c, n) is the response of the retained part from commands to pose. `poles` belong to the omitted modes, `held` are their
+    sampled responses behind the hold.
     """
 
     lines: LoopLines
@@ -107,7 +107,7 @@ class _Contributions:
     rings: Array
 
     def margins(self, chosen: Array) -> ResponseMargins:
-        """Margins with the `chosen` modes too."""
+        """Margins including the `chosen` modes."""
         return self.lines.margins(self.plant + self.poles.response(self.pose, self.held, chosen))
 
 
@@ -133,7 +133,7 @@ def _contributions(whole: Plant, kept: Array, closed: Loop) -> _Contributions:
 
 
 def _choose(given: _Contributions) -> tuple[Array, float]:
-    """Modes (d,) to be added, and the change of margins by the rest: those of loop gain 0.1, else as many as margins need."""
+    """Modes (d,) to add, and the change of margins by the others: modes of loop gain 0.1, else as many as margins require."""
     truth = _figures(given.margins(np.ones(len(given.gains), bool)))
     chosen, change = np.zeros(len(given.gains), bool), np.inf
     for least in LOOP_GAINS:
@@ -146,30 +146,30 @@ def _choose(given: _Contributions) -> tuple[Array, float]:
 
 @dataclass(frozen=True, eq=False)
 class _Poles:
-    """Poles (d,) [1/s] of modes, of each pair one, with residues exits (d, p) times entries (d, n), of which H is the sum."""
+    """Poles (d,) [1/s] of modes, one of each pair, with residues exits (d, p) times entries (d, n), which sum to H."""
 
     values: Array
     exits: Array
     entries: Array
 
     def pose(self, pose: Array) -> Array:
-        """Residues (d, c) at the pose, of which gauges (the first exits) tell."""
+        """Residues (d, c) at the pose, from the gauges (the first exits)."""
         return self.exits[:, : pose.shape[1]] @ pose.T
 
     def held(self, lines: Array, hardware: Hardware) -> Array:
-        """What each adds (2, f, d) between hold and sampler, over its static term, and its conjugate."""
+        """Sampled responses (2, f, d) behind the hold, less the static term, and their conjugates."""
         every = [_held(values, np.append(lines, 0.0), hardware) for values in (self.values, np.conj(self.values))]
         return np.stack([each[:-1] - each[-1] for each in every])
 
     def response(self, pose: Array, held: Array, chosen: Array) -> Array:
-        """What the `chosen` modes add (f, c, n) at lines to a plant that has their static compliance."""
+        """Change (f, c, n) by the `chosen` modes at frequency lines of a plant with their static compliance."""
         outer = (self.pose(pose)[:, :, None] * self.entries[:, None, :]).reshape(len(self.values), -1)
         found = (held[0] * chosen) @ outer + (held[1] * chosen) @ np.conj(outer)
         return found.reshape(held.shape[1], len(pose), -1)
 
 
 def _left_out(whole: Plant, kept: Array) -> _Poles:
-    """Poles of modes left out, one by one beside all that is kept: amplifiers, gauges, inner loops and modes."""
+    """Poles of omitted modes, each by itself next to all retained parts: amplifiers, gauges, inner loops and modes."""
     outputs = [*(f"gap.{name}" for name in whole.gauges), *(f"relative.{name}" for name in COMPONENTS)]
     system, width = select(whole.system, whole.actuators, outputs), len(whole.actuators)
     balanced, (scale, _) = scipy.linalg.matrix_balance(system.A, permute=False, separate=True)
@@ -194,9 +194,9 @@ def _left_out(whole: Plant, kept: Array) -> _Poles:
 
 
 def _held(poles: Array, lines: Array, hardware: Hardware) -> Array:
-    """Pulse transfer functions psi (f, d) of 1/(s - p) behind hold and delay at `lines` [Hz]; of a continuous plant 1/(s - p).
+    """Pulse transfer functions psi (f, d) of 1/(s - p) behind hold and delay at `lines` [Hz]; 1/(s - p) for a continuous plant.
 
-    With the delay (d + f) T it is z^-d (Gamma_0 + Gamma_1 / z) / (z - e^{pT}), as `discretise` has it.
+    With the delay (d + f) T it is z^-d (Gamma_0 + Gamma_1 / z) / (z - e^{pT}), as in `discretise`.
     """
     step, turning = hardware.step, 2j * np.pi * lines[:, None]
     if step is None:
@@ -209,12 +209,12 @@ def _held(poles: Array, lines: Array, hardware: Hardware) -> Array:
 
 
 def _folded(frequencies: Array, step: float | None) -> Array:
-    """Where samples see frequencies [Hz]."""
+    """Alias frequencies [Hz] after sampling."""
     return frequencies if step is None else frequencies - np.round(frequencies * step) / step
 
 
 def _lines(closed: Loop, poles: Array) -> Array:
-    """Frequencies [Hz] around all poles of the loop and of the modes left out, and evenly in the logarithm between."""
+    """Frequencies [Hz] around all poles of the loop and of omitted modes, and logarithmically spaced between."""
     step = closed.step
     seen = poles if step is None else np.exp(poles * step)
     dense = dense_frequencies(np.concatenate([closed.system.poles, closed.held.poles, seen]), step)
@@ -222,13 +222,13 @@ def _lines(closed: Loop, poles: Array) -> Array:
 
 
 def _figures(found: ResponseMargins) -> Array:
-    """Margins as numbers that are compared relative to their size."""
+    """Margins as numbers for relative comparison."""
     factors = np.maximum([*found.lows, *(1.0 / np.array(found.gains))], _LEAST)
     return np.array([found.peak, *factors, *found.phases, *found.delays, *found.rejections])
 
 
 def _change(found: Array, truth: Array) -> float:
-    """The largest relative difference; infinite where one has an edge and the other has none."""
+    """Largest relative difference; infinite if only one has a limit."""
     finite = np.isfinite(truth)
     if np.any(finite != np.isfinite(found)):
         return np.inf

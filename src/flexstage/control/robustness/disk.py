@@ -1,4 +1,4 @@
-"""Disk margins: how far gains and phases may change together, in one loop or in all of them at once (Seiler, Packard, Gahinet 2020)."""
+"""Disk margins: simultaneous gain and phase variations of one loop, or of all loops (Seiler, Packard, Gahinet 2020)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _TRUE = 1e-4
 
 @dataclass(frozen=True)
 class Edge:
-    """A change that brings a loop to the edge of stability, and the frequency [Hz] of the oscillation there (NaN: there is no edge)."""
+    """Stability limit: a variation that makes a loop marginally stable, and its oscillation frequency [Hz] (NaN: no limit)."""
 
     value: float
     frequency: Annotated[float, FREQUENCY]
@@ -36,11 +36,11 @@ class Edge:
 
 @dataclass(frozen=True)
 class DiskMargin(InNotebook):
-    """How far all the loops' factors f_i = (1 + (1 - s) d_i/2)/(1 - (1 + s) d_i/2), |d_i| < alpha, may change at once, s the `skew`.
+    """Disk margin of all loops: simultaneous factors f_i = (1 + (1 - s) d_i/2)/(1 - (1 + s) d_i/2), |d_i| < alpha, s the `skew`.
 
-    Stability is guaranteed for all d_i below `guaranteed`, at every frequency if `covered` (else at those looked at); at `reached` >=
-    `guaranteed`, some set of them at `frequency` [Hz] brings a pole to the edge. `loops` are the loops that change. `gain_low` to
-    `gain_high` and `phase` [rad] are what every loop may change by, independently of the others: a guarantee.
+    Stability is guaranteed for all d_i below `guaranteed`, at every frequency if `covered` (else at the sampled ones). At `reached` >=
+    `guaranteed`, some set of d_i makes a pole at `frequency` [Hz] marginal. `loops` are the varied loops. `gain_low` to `gain_high` and
+    `phase` [rad] are guaranteed for every loop, independently of the others.
     """
 
     TABLE: ClassVar[Layout] = Layout("Disk margin, all loops at once", "guaranteed gain_low gain_high phase")
@@ -54,25 +54,25 @@ class DiskMargin(InNotebook):
 
     @property
     def gain_low(self) -> Annotated[float, INNER, Heading("gain reduction margin", digits=3)]:
-        """Least factor on every loop's gain."""
+        """Lowest gain factor of every loop."""
         return (2.0 - self.guaranteed * (1.0 - self.skew)) / (2.0 + self.guaranteed * (1.0 + self.skew))
 
     @property
     def gain_high(self) -> Annotated[float, INNER, Heading("gain margin", digits=3)]:
-        """Largest factor on every loop's gain."""
+        """Largest gain factor of every loop."""
         below = 2.0 - self.guaranteed * (1.0 + self.skew)
         return (2.0 + self.guaranteed * (1.0 - self.skew)) / below if below > 0.0 else np.inf
 
     @property
     def phase(self) -> Annotated[float, ANGLE, INNER, Heading("phase margin", digits=3)]:
-        """Turn [rad] of every loop, either way: cos phi = (1 + g_low g_high)/(g_low + g_high)."""
+        """Phase variation [rad] of every loop, both signs: cos phi = (1 + g_low g_high)/(g_low + g_high)."""
         low, high = self.gain_low, self.gain_high
         cosine = low if np.isinf(high) else (1.0 + low * high) / (low + high)
         return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 
 def disk_margin(own: System, skew: float = 0.0) -> Edge:
-    """alpha = 1/||S + (skew - 1)/2|| of a single loop from its sensitivity S = 1/(1 + L), exact by `peak`.
+    """Compute alpha = 1/||S + (skew - 1)/2|| of a single loop from its sensitivity S = 1/(1 + L), exact by `peak`.
 
     >>> from flexstage.control.example import integral_loop
     >>> whole = sensitivity(open_at(integral_loop(), LoopBreak.POSE))
@@ -84,12 +84,12 @@ def disk_margin(own: System, skew: float = 0.0) -> Edge:
 
 
 def disk_margins(closed: Loop, cut: LoopBreak | None, skew: float = 0.0) -> DiskMargin:
-    """The disk margin of all loops at once: at the poses, at the commands, or (`cut` None) at both ends together.
+    """Compute the disk margin of all loops at once: at the poses, at the commands, or (`cut` None) at both.
 
-    alpha = 1/sup mu(S + (skew - 1)/2), mu the structured singular value for a complex factor in every loop. From above mu <= min over
-    diagonal D of sigma(D M D^-1), from below mu >= max over phases U of rho(U M). The bound from above holds at all frequencies: for each D
-    the Hamiltonian matrix tells between which frequencies sigma stays below the level, until these intervals cover all, the level being
-    0.1 % above the highest found. Raises `DesignError` for an unstable loop.
+    alpha = 1/sup mu(S + (skew - 1)/2), mu the structured singular value for a complex factor in every loop. Upper bound mu <= min over
+    diagonal D of sigma(D M D^-1), lower bound mu >= max over phases U of rho(U M). The upper bound holds at all frequencies. For each D the
+    Hamiltonian matrix gives the intervals in which sigma is below a level 0.1 % above the highest value, until these intervals cover all
+    frequencies. Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()
@@ -115,7 +115,7 @@ def _scale(matrices: Array, logs: Array) -> Array:
 
 
 def _search_bounds(moved: System, frequencies: Array) -> tuple[float, float, float]:
-    """The highest bounds from below and above, and where the one from below stands: local maxima over frequency followed to their tops."""
+    """Highest upper and lower bounds, and the frequency of the lower bound: local maxima over frequency, refined."""
     matrices = moved.sweep(frequencies)
     sizes = np.linalg.svd(_scale(matrices, balance(matrices)), compute_uv=False)[:, 0]
     padded = np.concatenate([[-1.0], sizes, [-1.0]])
@@ -134,7 +134,7 @@ def _search_bounds(moved: System, frequencies: Array) -> tuple[float, float, flo
 
 
 def _local_maximum(moved: System, ends: tuple[float, float]) -> tuple[float, float]:
-    """Where the bound from above is highest between two frequencies, and how high."""
+    """Local maximum of the upper bound between two frequencies, and its frequency."""
 
     def below(frequency: float) -> float:
         return -_bound(moved, frequency)[0]
@@ -153,7 +153,7 @@ def _bound(moved: System, frequency: float) -> tuple[float, Array]:
 
 
 def _guaranteed_level(moved: System, frequencies: Array, level: float) -> tuple[float, bool]:
-    """The level below which mu is shown to stay at all frequencies, and whether it was shown."""
+    """Level proved to exceed mu at all frequencies, and whether the proof is complete."""
     end = np.inf if moved.step is None else 0.5 / moved.step
     plane = to_plane(moved)
     open_: list[tuple[float, float]] = [(0.0, end)]
@@ -176,14 +176,14 @@ def _guaranteed_level(moved: System, frequencies: Array, level: float) -> tuple[
 
 
 def _true_crossings(plane: Plane, moved: System, logs: Array, level: float) -> Array:
-    """Those frequencies at which a singular value is the level indeed; eigenvalues near the axis leave more."""
+    """Frequencies where a singular value equals the level; eigenvalues near the axis add false ones."""
     found = level_crossings(plane, level)
     sizes = np.linalg.svd(_scale(moved.sweep(found), logs), compute_uv=False)
     return found[np.min(np.abs(sizes / level - 1.0), axis=1) < _TRUE]
 
 
 def _next_frequency(low: float, high: float, frequencies: Array) -> float:
-    """A frequency in between to look at next: the middle one of those that resolve the loop, else a mean."""
+    """Next frequency in an interval: the middle one of those that resolve the loop, else a mean."""
     inside = frequencies[(frequencies > low) & (frequencies < high)]
     if len(inside):
         return float(inside[len(inside) // 2])

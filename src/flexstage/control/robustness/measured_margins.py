@@ -1,4 +1,4 @@
-"""Margins read off measured frequency responses themselves, with their uncertainty, beside what the models of the plant predict."""
+"""Margins from measured frequency responses, with uncertainty, compared with predictions of plant models."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ _LEAST_LINES = 16
 
 @dataclass(frozen=True)
 class Reading:
-    """A number read off responses: its `value`, the ends `low` and `high` that hold it by 95 % (None: the responses do not say).
+    """Measured margin: its `value`, and 95 % confidence limits `low` and `high` (None: unknown).
 
-    `fitted` is that of the plant that was tuned, `predicted` that of the stage's model, both at the same lines (NaN: there is no edge).
+    `fitted` belongs to the tuned plant, `predicted` to the stage's model, both at the same lines (NaN: no limit).
     """
 
     value: Annotated[float, Heading("measured", digits=4)]
@@ -47,7 +47,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class ReadChannel:
-    """Margins of one loop, the others closed: largest factor on its gain, `phase` [rad], and the frequency up to which |S_ii| < 1."""
+    """Measured margins of one loop, the others closed: upper gain factor, `phase` [rad], and the frequency up to which |S_ii| < 1."""
 
     channel: Annotated[str, INNER]
     gain_high: Reading
@@ -57,9 +57,9 @@ class ReadChannel:
 
 @dataclass(frozen=True, eq=False)
 class ReadLines:
-    """|S_ii| (f, n) over `frequencies` (f,) [Hz]: as measured, the ends that hold it by 95 % at each line, of fit and of model.
+    """Sensitivity |S_ii| (f, n) over `frequencies` (f,) [Hz]: measured, with 95 % confidence limits per line, of the fit and of the model.
 
-    `low` and `high` are absent where the test does not say how sure its responses are.
+    `low` and `high` are absent if the test has no uncertainty of its responses.
     """
 
     frequencies: Array
@@ -72,9 +72,10 @@ class ReadLines:
 
 @dataclass(frozen=True, eq=False)
 class MeasuredMargins(InNotebook):
-    """What the lines of a test say of the loop: the peak of S (largest singular value, rotations as lengths) and margins by coordinate.
+    """Margins of a loop at the frequency lines of a test: peak of S, and margins by coordinate.
 
-    From `band` [Hz], `lines` of them; between lines nothing is known, so a peak narrower than their distance may be higher.
+    The peak is the largest singular value, rotations as lengths. `lines` are the number of frequency lines within `band` [Hz]. Between
+    lines the response is unknown: a narrower peak may be higher.
     """
 
     band: Annotated[tuple[float, float], FREQUENCY]
@@ -91,15 +92,14 @@ class MeasuredMargins(InNotebook):
 
 
 def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> MeasuredMargins:
-    """Margins of a loop on the responses of a test, hold and delay of the loop added: L = P(f) H_0(f) e^{-j w delay} K(e^{j w T}).
+    """Compute margins of a loop on measured responses, with hold and delay: L = P(f) H_0(f) e^{-j w delay} K(e^{j w T}).
 
-    P is what local polynomials tell of the records (`local_responses`), or the analyser's response. Its errors are taken as circular and
-    normal, of stored responses with the variance |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th ed., 2010, ch. 9); ends are
-    quantiles of 100 draws, about their median and mirrored at the value, whichever is wider. Stored responses are taken as measured
-    input by input, each driven alone.
-    H_0 is the hold's response; what folds back of frequencies above half the sampling rate is not counted.
+    P comes from local polynomials on the records (`local_responses`), or is the analyser's response. Errors are circular normal; for stored
+    responses with the variance |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th ed., 2010, ch. 9). Confidence limits are
+    quantiles of 100 draws, about their median and mirrored at the value, whichever is wider. Stored responses are assumed to be measured
+    with one input driven at a time. H_0 is the hold's response. Aliasing from above half the sampling rate is neglected.
 
-    Only lines within the band that was searched, below half the sampling rate, count.
+    Uses only lines within the searched band, below half the sampling rate.
     """
     loop, found = closed.plant.coordinates, seen.found
     step = closed.step or 0.0
@@ -145,7 +145,7 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
 
 
 def coherence_findings(seen: Identification, margins: MeasuredMargins) -> Iterator[Finding]:
-    """Gauges that the inputs do not explain where the loops pass from rejecting to not, in 2/3 to 3/2 of those frequencies."""
+    """Findings for gauges with low coherence around the crossover, from 2/3 to 3/2 of the crossover frequencies."""
     if seen.multiple is None or seen.spectra is None:
         return
     ends = [each.rejection.fitted for each in margins.channels if np.isfinite(each.rejection.fitted)]
@@ -157,17 +157,15 @@ def coherence_findings(seen: Identification, margins: MeasuredMargins) -> Iterat
     shares = np.median(seen.multiple[inside], axis=0) if np.any(inside) else np.zeros(len(seen.spectra.outputs))
     for channel, share in zip(seen.spectra.outputs, shares, strict=True):
         if share < _COHERENT:
-            what = (
-                f"from {low:.3g} to {high:.3g} Hz, where the loops are tuned, inputs explain {share:.0%} of it, {_COHERENT:.0%} are needed"
-            )
-            yield Finding(f"--record: {channel.name}", what, "Drive more there, record longer, or ask for another bandwidth")
+            what = f"low coherence from {low:.3g} to {high:.3g} Hz, at the crossover (got {share:.0%}, expected {_COHERENT:.0%})"
+            yield Finding(f"--record: {channel.name}", what, "Increase the drive there, record longer, or request another bandwidth")
 
 
 def _ends(value: float, drawn: Array) -> tuple[float, float]:
-    """Quantiles of the draws about their median, set about the value, and as much further as draws show the value to be biased.
+    """Confidence limits: quantiles of the draws about their median, set about the value, and extended by the bias of the draws.
 
-    The least of many noisy numbers is too small, and that of noisier ones smaller still: mirrored at the value (the basic bootstrap,
-    Davison & Hinkley, Bootstrap Methods and their Application, 1997, ch. 5), the quantiles take that back.
+    The minimum of many noisy numbers is biased low. Quantiles mirrored at the value correct this (basic bootstrap, Davison & Hinkley,
+    Bootstrap Methods and their Application, 1997, ch. 5).
     """
     low, middle, high = np.quantile(drawn, (_ENDS[0], 0.5, _ENDS[1]), method="nearest")
     if not (np.isfinite(low) and np.isfinite(middle)):
@@ -177,7 +175,7 @@ def _ends(value: float, drawn: Array) -> tuple[float, float]:
 
 
 def _responses(seen: Identification) -> LocalResponses:
-    """Responses with standard deviations (f, p, m), in their units; NaN where the test does not say."""
+    """Responses with standard deviations (f, p, m), in their units; NaN if unknown."""
     found, stored = seen.found, seen.found.responses
     if not isinstance(seen.test, Responses):
         return local_responses(seen.test, found)
@@ -190,8 +188,8 @@ def _responses(seen: Identification) -> LocalResponses:
 def _few_lines(lines: Array, found: Identified) -> Iterator[Finding]:
     if len(lines) < _LEAST_LINES:
         low, high = found.band
-        what = f"between {low:.4g} and {high:.4g} Hz it tells responses at {len(lines)} frequencies, {_LEAST_LINES} are needed"
-        yield Finding("--record", what, "Record longer, or drive with noise over all of the band")
+        what = f"too few response lines between {low:.4g} and {high:.4g} Hz (got {len(lines)}, expected {_LEAST_LINES})"
+        yield Finding("--record", what, "Record longer, or drive with noise over the whole band")
 
 
 def _draws(whole: LoopLines, loop: Coordinates, response: Array, spread: Array, late: Array) -> list[ResponseMargins]:

@@ -1,4 +1,4 @@
-"""Margins read off frequency responses of a plant at lines, whatever the responses are from: a test, a model, a sum of modes."""
+"""Margins from frequency responses of a plant at lines, measured or modelled."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import numpy as np
 from flexstage.base.number import Array
 
 _NOTHING = 1e-300
-"""|L| of loops that are open."""
+"""Magnitude |L| of open loops."""
 
 
 @dataclass(frozen=True, eq=False)
 class ResponseMargins:
-    """Margins of loops at lines; `sizes` (f, n) are |S_ii|, the others stay closed.
+    """Loop margins at frequency lines; `sizes` (f, n) are |S_ii|, the other loops closed.
 
-    `peak` is the largest singular value of S, poses as lengths. By loop: the nearest factors on the gain below and above 1, `lows` and
-    `gains`, `phases` [rad], `delays` [s], and `rejections` [Hz], where |S_ii| first passes 1 (NaN: nowhere).
+    `peak` is the largest singular value of S, poses as lengths. By loop: the nearest gain factors below and above 1 (`lows`, `gains`),
+    `phases` [rad], `delays` [s], and `rejections` [Hz], the first crossing of |S_ii| = 1 (NaN: none).
     """
 
     sizes: Array
@@ -32,14 +32,14 @@ class ResponseMargins:
 
 @dataclass(frozen=True, eq=False)
 class LoopLines:
-    """Lines [Hz], the coordinates' scale, and the controller's response (f, n, c) from error to command."""
+    """Frequency lines [Hz], the coordinates' scale, and the controller's response (f, n, c) from error to command."""
 
     lines: Array
     scale: Array
     control: Array
 
     def sensitivity(self, plant: Array) -> Array:
-        """S (f, c, c) = (I + P K)^-1 of the responses (f, c, n) from commands to pose."""
+        """Sensitivity S (f, c, c) = (I + P K)^-1 of the responses (f, c, n) from commands to pose."""
         return np.linalg.inv(np.eye(plant.shape[1]) + plant @ self.control)
 
     def margins(self, plant: Array) -> ResponseMargins:
@@ -63,7 +63,7 @@ class LoopLines:
 
 
 def _gains(own: Array) -> tuple[float, float]:
-    """The nearest factors below and above 1 at which L crosses -1/k, between lines straight in the plane."""
+    """Nearest factors below and above 1 at which L crosses -1/k, interpolated linearly in the complex plane."""
     places = np.flatnonzero(np.imag(own[:-1]) * np.imag(own[1:]) < 0.0)
     share = np.imag(own[places]) / (np.imag(own[places]) - np.imag(own[places + 1]))
     real = np.real(own[places]) * (1.0 - share) + np.real(own[places + 1]) * share
@@ -72,7 +72,7 @@ def _gains(own: Array) -> tuple[float, float]:
 
 
 def _turns(lines: Array, own: Array) -> tuple[float, float]:
-    """The least turn [rad] either way, and the least delay [s], at which |L| = 1 comes to -1."""
+    """Smallest phase [rad] of either sign, and delay [s], that move L with |L| = 1 to -1."""
     sizes = np.log(np.maximum(np.abs(own), _NOTHING))
     places = np.flatnonzero(sizes[:-1] * sizes[1:] < 0.0)
     share = sizes[places] / (sizes[places] - sizes[places + 1])
@@ -83,7 +83,7 @@ def _turns(lines: Array, own: Array) -> tuple[float, float]:
 
 
 def _rises(lines: Array, sizes: Array) -> float:
-    """Where |S_ii| first passes 1 from below; NaN where it does not."""
+    """First upward crossing of |S_ii| = 1; NaN without one."""
     places = np.flatnonzero((sizes[:-1] < 1.0) & (sizes[1:] >= 1.0))
     if not len(places):
         return float("nan")

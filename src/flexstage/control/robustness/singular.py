@@ -1,4 +1,4 @@
-"""The structured singular value of a matrix for one complex factor in every channel: bounds from both sides."""
+"""Structured singular value of a matrix for one complex factor per channel: upper and lower bounds."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ _POWERS = (4.0, 32.0, 256.0, 2048.0)
 
 
 def balance(matrices: Array) -> Array:
-    """Logarithms d (f, n) of diagonal factors that make e^{d_i} M_ij e^{-d_j} of each matrix (f, n, n) small, by rows and columns in turn.
+    """Balance each matrix (f, n, n) by diagonal scaling e^{d_i} M_ij e^{-d_j}: logarithms d (f, n), by rows and columns in turn.
 
-    Osborne's rule: every row's norm without its diagonal made equal to its column's. A start, and often enough.
+    Osborne's rule: equal off-diagonal row and column norms. A start value, and often sufficient.
 
     >>> balance(np.array([[[0.0, 100.0], [1.0, 0.0]]])).round(6).tolist()
     [[-1.151293, 1.151293]]
@@ -41,10 +41,10 @@ def scaled_size(matrix: Array, logs: Array) -> float:
 
 
 def upper_bound(matrix: Array, start: Array) -> tuple[float, Array]:
-    """min over d of the largest singular value of e^{d_i} M_ij e^{-d_j}, and d: at least mu, whatever is found.
+    """Minimise the largest singular value of e^{d_i} M_ij e^{-d_j} over d; any d gives an upper bound of mu.
 
-    The logarithm is convex in d. Singular values meet at the minimum, so the norms sum(sigma^2p)^(1/2p) are minimised instead, p growing;
-    their gradient is sum w_k (|u_ik|^2 - |v_ik|^2).
+    The logarithm is convex in d. Singular values coincide at the minimum, so the norms sum(sigma^2p)^(1/2p) are minimised instead, with
+    increasing p; their gradient is sum w_k (|u_ik|^2 - |v_ik|^2).
 
     >>> round(upper_bound(np.array([[0.0, 100.0], [1.0, 0.0]]), np.zeros(2))[0], 6)  # mu is the geometric mean of the two
     10.0
@@ -67,9 +67,9 @@ def _smooth(logs: Array, matrix: Array, power: float) -> tuple[float, Array]:
 
 
 def lower_bound(matrix: Array) -> tuple[float, Array]:
-    """max over phases of the spectral radius of e^{j theta_i} M_ij, and theta: at most mu, whatever is found.
+    """Maximise the spectral radius of e^{j theta_i} M_ij over theta; any theta gives a lower bound of mu.
 
-    Climbed by BFGS from several starts: d log|lambda| / d theta_i = -Im(conj(y_i) x_i / y^H x).
+    BFGS from several starts: d log|lambda| / d theta_i = -Im(conj(y_i) x_i / y^H x).
 
     >>> round(lower_bound(np.array([[1.0, 2.0], [2.0, -1.0]]))[0], 6), round(5.0**0.5, 6)  # all of sigma is reached
     (2.236068, 2.236068)

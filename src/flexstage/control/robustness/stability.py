@@ -1,4 +1,4 @@
-"""Stability of a loop: its poles, the least stable one, where it comes from, and how far the gain may be changed."""
+"""Stability of a loop: its poles, the slowest pole and its source, and the stable range of gains."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ _ALIKE = 1e-3
 
 @dataclass(frozen=True)
 class Pole:
-    """A closed-loop pole: where it is, and where it comes from.
+    """Closed-loop pole with its source.
 
-    `frequency` [Hz] of a pair, `growth` [1/s] of its motion (negative: it decays), `ratio` of damping, -growth / |p|. `source` is what has
-    most part in it (`mode 3 at 126 Hz`, `controller`, `amplifier B1`, `gauge S1`, `strokes under way`) with its `share` of the
-    participation; `coordinate` the loop whose error it shows in most, rotations times the stage's length.
+    `frequency` [Hz] of a pair, `growth` [1/s] of its motion (negative: it decays), `ratio` of damping, -growth / |p|. `source` is the owner
+    with the largest participation (`mode 3 at 126 Hz`, `controller`, `amplifier B1`, `gauge S1`, `strokes under way`), `share` that
+    participation. `coordinate` is the loop with the largest error, rotations times the stage's length.
     """
 
     frequency: Annotated[float, FREQUENCY]
@@ -42,12 +42,12 @@ class Pole:
 
 @dataclass(frozen=True, eq=False)
 class Verdict(InNotebook):
-    """Whether a loop is stable: all closed-loop poles decay, exact hold and delay included.
+    """Stability of a loop: stable if all closed-loop poles decay, exact hold and delay included.
 
-    `slowest_pole` is the least stable, `poles` (k,) all as rates [1/s] (ln z / T of a sampled loop), least stable first. With all commands
-    multiplied by the same factor the loop is stable between `gain_low` and `gain_high`: the interval around 1 of a stable loop (0 and
-    infinite: no edge within a factor of 1000), the nearest one below 1 of an unstable loop (NaN: none down to 1/1000). `sentence` says it
-    in words.
+    `slowest_pole` is the least stable. `poles` (k,) are all as rates [1/s] (ln z / T of a sampled loop), least stable first. With all
+    commands multiplied by one factor the loop is stable between `gain_low` and `gain_high`: the interval around 1 for a stable loop (0 and
+    infinite: no limit within a factor of 1000), the nearest interval below 1 for an unstable loop (NaN: none down to 1/1000). `sentence`
+    summarises it.
     """
 
     stable: bool
@@ -60,11 +60,10 @@ class Verdict(InNotebook):
 
 @check_arguments
 def verdict(closed: Loop) -> Verdict:
-    """The stability of a loop from the eigenvalues of its closed system.
+    """Determine the stability of a loop from the eigenvalues of its closed system.
 
-    A mode's part in a pole is |left x right eigenvector| summed over its states (participation; Perez-Arriaga, Verghese, Schweppe 1982);
-    modes within 0.1 % of one another count as one source. Edges of the gain are found by the growth, upwards in steps of 8 %, downwards
-    of 40 %.
+    A mode's participation in a pole is |left x right eigenvector| summed over its states (Perez-Arriaga, Verghese, Schweppe 1982); modes
+    within 0.1 % of one another count as one source. Gain limits are found from the growth rate, upwards in steps of 8 %, downwards of 40 %.
 
     >>> from flexstage.control.example import integral_loop
     >>> verdict(integral_loop()).stable, verdict(integral_loop(gain=1e4)).slowest_pole.source
@@ -99,13 +98,13 @@ def _least(closed: Loop) -> tuple[Pole, Array]:
 
 
 def _is_stable(closed: Loop, least: Pole) -> bool:
-    """What neither grows nor decays but for rounding is not stable."""
+    """A pole without decay beyond rounding is not stable."""
     fastest = 1.0 / closed.step if closed.step is not None else float(np.max(np.abs(closed.system.poles), initial=0.0))
     return least.growth < -_ROUNDING * fastest
 
 
 def _interval(closed: Loop, *, stable: bool) -> tuple[float, float]:
-    """Factors of all commands between which the loop is stable."""
+    """Command factors between which the loop is stable."""
     open_loop = open_at(closed, LoopBreak.COMMAND)
     start, up, down = 1.0, int(np.log(_FARTHEST) / np.log(_UP)), int(-np.log(_FARTHEST) / np.log(_DOWN))
     if not stable:
@@ -118,7 +117,7 @@ def _interval(closed: Loop, *, stable: bool) -> tuple[float, float]:
 
 
 def _edge(open_loop: System, start: float, ratio: float, steps: int) -> float | None:
-    """The first factor, from a stable one on, at which the loop begins to grow."""
+    """First factor, from a stable one, at which the loop becomes unstable."""
     inside = start
     for _ in range(steps):
         outside = inside * ratio
@@ -130,31 +129,31 @@ def _edge(open_loop: System, start: float, ratio: float, steps: int) -> float | 
 
 
 def _growth(open_loop: System, factor: float) -> float:
-    """Growth [1/s] of the loop with its commands multiplied."""
+    """Growth rate [1/s] of the loop with its commands multiplied."""
     inverse = np.linalg.inv(np.eye(len(open_loop.D)) + factor * open_loop.D)
     return replace(open_loop, A=open_loop.A - factor * open_loop.B @ inverse @ open_loop.C).growth
 
 
 def require_stable(closed: Loop, what: str) -> None:
-    """Refuse `what` (margins, rms values) of an unstable loop, with its rate of growth, its least stable pole and where that comes from.
+    """Refuse `what` (margins, rms values) for an unstable loop, with the growth rate and source of its least stable pole.
 
     >>> from flexstage.control.example import integral_loop
     >>> require_stable(integral_loop(), "rms values")
     """
     if closed.system.growth < 0.0:
         return
-    advice = "Lower the gain, or filter or damp what is named; the verdict tells how far"
+    advice = "Reduce the gain, or filter or damp the source"
     require([Finding("loop", f"{what} of an unstable loop: {_sentence(closed, _least(closed)[0])}", advice)])
 
 
 def _left(A: Array, pole: complex) -> Array:
-    """Left eigenvector of a pole by its own solve: registers make A defective at 0, where all of them together would not exist."""
+    """Left eigenvector of a pole by a separate solve: registers make A defective at 0, so that the full set does not exist."""
     values, vectors = np.linalg.eig(A.T)
     return vectors[:, int(np.argmin(np.abs(values - pole)))].conj()
 
 
 def _participation_by_owner(closed: Loop, parts: Array) -> dict[str, float]:
-    """Participations summed by what a state belongs to."""
+    """Participations summed by owner of the states."""
     result: dict[str, float] = {}
     for name, part in zip(closed.states, parts, strict=True):
         owner = _owner(closed, name)
@@ -172,10 +171,10 @@ def _owner(closed: Loop, state: str) -> str:
 
 
 def _modes(closed: Loop, name: str) -> str:
-    """A mode and those that cannot be told from it; a plant may have kept others than the lowest."""
+    """A mode and those with nearly the same frequency; a plant may have retained others than the lowest."""
     kept = mode_names(closed.plant)
     frequencies = dict(zip(kept, closed.plant.frequencies.tolist(), strict=True))
-    alike = [each for each in kept if abs(frequencies[each] / frequencies[name] - 1.0) < _ALIKE]
+    alike = [each for each in kept if abs(frequencies[each] - frequencies[name]) <= _ALIKE * frequencies[name]]
     shown = ", ".join(each.removeprefix("mode") for each in alike)
     return f"mode{'s' if len(alike) > 1 else ''} {shown} at {frequencies[name]:.4g} Hz"
 
@@ -189,7 +188,7 @@ def _coordinate(closed: Loop, vector: Array) -> str:
 
 def _sentence(closed: Loop, least: Pole) -> str:
     where = f"{least.frequency:.4g} Hz" if least.frequency > 0.0 else "0 Hz (without oscillation)"
-    comes = f"from {least.source} ({100.0 * least.share:.0f} % of it), seen most in {least.coordinate}"
+    comes = f"from {least.source} ({100.0 * least.share:.0f} % of it), largest in {least.coordinate}"
     if _is_stable(closed, least):
         return f"stable; the least stable pole, at {where}, decays by {-least.growth:.4g} 1/s, {comes}"
     return f"a pole at {where} grows by {least.growth:.4g} 1/s, {comes}"
@@ -201,4 +200,4 @@ def _gain_words(low: float, high: float, *, stable: bool) -> str:
     span = f"{'between' if low else 'below'} {f'{low:.4g} and ' if low else ''}{high:.4g}"
     if not stable:
         return f"stable with all commands multiplied by a factor {span}"
-    return "the gain has no upper edge" if np.isinf(high) and not low else f"stays so with all commands multiplied by a factor {span}"
+    return "no upper gain limit" if np.isinf(high) and not low else f"stays so with all commands multiplied by a factor {span}"

@@ -1,8 +1,8 @@
-"""Margins of a loop: gain, phase, delay and disk of one loop at a time; peaks of S and T; bandwidths; crosstalk."""
+"""Margins of a loop: gain, phase, delay and disk margin of one loop at a time; peaks of S and T; bandwidths; crosstalk."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
@@ -13,10 +13,10 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Along, Heading, Layout, Mark
-from flexstage.base.units.quantity import ANGLE, FREQUENCY, SHORT_TIME
+from flexstage.base.units.quantity import ANGLE, FREQUENCY, RATIO, SHORT_TIME
 from flexstage.control.robustness.disk import Edge, disk_margin
 from flexstage.control.robustness.stability import require_stable
-from flexstage.control.systems.closed import Loop, LoopBreak, open_at
+from flexstage.control.systems.closed import Loop, LoopBreak, loop, open_at
 from flexstage.control.systems.curves import Curves, curves, roots, sensitivity
 from flexstage.control.systems.norm import Peak, peak
 from flexstage.control.systems.system import System, select
@@ -32,11 +32,11 @@ def _grade_disk(alpha: float) -> Mark:
 
 @dataclass(frozen=True)
 class ChannelMargins:
-    """How far one loop is from the edge of stability while the others stay closed.
+    """Stability margins of one loop, with the others closed.
 
-    Its gain may be multiplied by anything between `gain_low` < 1 and `gain_high` > 1 (0 and infinite: no edge); it may turn by `phase`
-    [rad] either way; it may come `delay` [s] later (the factor e^{-j omega tau} at samples). `disk` is alpha of its balanced disk
-    margin: the factors (1 + d/2)/(1 - d/2) with |d| < alpha, gains and phases *together*.
+    Stable for gain factors between `gain_low` < 1 and `gain_high` > 1 (0 and infinite: no limit), phases up to `phase` [rad] of either
+    sign, and delays up to `delay` [s] (the factor e^{-j omega tau} at samples). `disk` is alpha of its balanced disk margin: the factors (1
+    + d/2)/(1 - d/2) with |d| < alpha, gain and phase *together*.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -61,7 +61,7 @@ class ChannelMargins:
 
 @dataclass(frozen=True)
 class Margins(InNotebook):
-    """Margins of the loops cut open at `cut`, one at a time."""
+    """Margins of the loops opened at `cut`, one at a time."""
 
     cut: LoopBreak
     channels: Annotated[tuple[ChannelMargins, ...], INNER]
@@ -72,17 +72,17 @@ class Margins(InNotebook):
         return {each.channel: each for each in self.channels}
 
     def of(self, channel: str) -> ChannelMargins:
-        """Those of the channel of that name."""
+        """Margins of the channel of that name."""
         return self.loops[channel]
 
 
 @check_arguments
 def margins(closed: Loop, cut: LoopBreak, found: Curves | None = None) -> Margins:
-    """Margins of one loop at a time, the others closed; `found` are its `curves` where they are known already.
+    """Compute margins of one loop at a time, the others closed; `found` are its `curves` if already known.
 
-    An edge is where S_ii = 1/(1 + L_i) is real, below 0 or above 1 (L_i real and negative: a gain), or has real part 1/2 (|L_i| = 1: a
-    phase, a delay), found to rounding between frequencies so dense that no L_i jumps. alpha_i = 1/||S_ii - 1/2|| (Seiler, Packard,
-    Gahinet, IEEE Control Systems 40, 2020) by `peak`. Raises `DesignError` for an unstable loop.
+    Limits are at real S_ii = 1/(1 + L_i) below 0 or above 1 (L_i real and negative: a gain), or at real part 1/2 (|L_i| = 1: a phase, a
+    delay). They are located to rounding between frequencies dense enough for L_i. alpha_i = 1/||S_ii - 1/2|| (Seiler, Packard, Gahinet,
+    IEEE Control Systems 40, 2020) by `peak`. Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = margins(integral_loop(), LoopBreak.POSE).of("x")
@@ -102,7 +102,7 @@ def _channel(found: Curves, whole: System, number: int) -> ChannelMargins:
 
 
 def _gains(found: Curves, number: int) -> tuple[Edge, Edge]:
-    """The nearest gains below and above 1 at which L_i = -1/k; both ends of the frequencies count, where L_i is real anyhow."""
+    """Nearest gains below and above 1 at which L_i = -1/k, including both ends of the frequencies, where L_i is real."""
     places, own = found.crossings(np.imag, number)
     ends = np.array([0.0] if found.response.step is None else [0.0, 0.5 / found.response.step])
     places, own = np.append(places, ends), np.append(own, found.response.sweep(ends)[:, number, number])
@@ -115,7 +115,7 @@ def _gains(found: Curves, number: int) -> tuple[Edge, Edge]:
 
 
 def _phases(found: Curves, number: int) -> tuple[Edge, Edge]:
-    """The least turn, and the least delay, at which |L_i| = 1 comes to -1."""
+    """Smallest phase and delay that move L_i with |L_i| = 1 to -1."""
     places, own = found.crossings(lambda own: np.real(own) - 0.5, number)
     turns = np.angle(-(1.0 / own - 1.0))
     delays = (turns % (2.0 * np.pi)) / (2.0 * np.pi * places)
@@ -125,13 +125,13 @@ def _phases(found: Curves, number: int) -> tuple[Edge, Edge]:
 
 
 def _has_direct_gain(own: complex, step: float | None) -> bool:
-    """Whether a continuous loop's gain is 1 or more at ever higher frequencies, S = 1/(1 + L) there: then no delay is short enough."""
+    """Whether the high-frequency gain of a continuous loop is 1 or more, with S = 1/(1 + L): then every delay destabilises it."""
     return step is None and abs(own) <= abs(1.0 - own)
 
 
 @dataclass(frozen=True)
 class Peaks(InNotebook):
-    """Highest singular values of S = (I + L)^-1 and T = I - S at a cut, with rotations times the stage's length (poses) or as they are."""
+    """Peaks of S = (I + L)^-1 and T = I - S at a cut: largest singular values, poses as lengths, commands unscaled."""
 
     cut: LoopBreak
     sensitivity: Peak
@@ -139,7 +139,7 @@ class Peaks(InNotebook):
 
 
 def peaks(closed: Loop, cut: LoopBreak) -> Peaks:
-    """H-infinity norms of S and T by `peak`. Raises `DesignError` for an unstable loop.
+    """Compute the H-infinity norms of S and T by `peak`. Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> peaks(integral_loop(), LoopBreak.POSE).sensitivity.value > 1.0
@@ -153,12 +153,39 @@ def peaks(closed: Loop, cut: LoopBreak) -> Peaks:
     return Peaks(cut, peak(scaled), peak(rest))
 
 
+@dataclass(frozen=True)
+class ShiftedPeak:
+    """Peak sensitivity Ms with all modes of the plant off by a relative `shift`, the worse of both ways; infinite: unstable."""
+
+    TABLE: ClassVar[Layout] = Layout("Peak sensitivity Ms, all modes shifted either way", "peak", head="shift")
+
+    shift: Annotated[float, RATIO]
+    peak: Annotated[float, Heading("peak sensitivity Ms", digits=4, infinite="unstable")]
+
+
+def shifted_peaks(closed: Loop, shifts: Iterable[float] = (0.0, 0.02, 0.05, 0.1)) -> tuple[ShiftedPeak, ...]:
+    """Peak sensitivity of a sampled loop at the pose with all modes shifted: time of the plant runs faster, of the controller it does not.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> [round(each.peak, 2) for each in shifted_peaks(integral_loop(), (0.0, 0.1))]
+    [1.43, 1.52]
+    """
+    return tuple(ShiftedPeak(shift, max(_shifted_peak(closed, offset) for offset in {-shift, shift})) for shift in shifts)
+
+
+def _shifted_peak(closed: Loop, offset: float) -> float:
+    given, slower = closed.plant.hardware, 1.0 + offset
+    hardware = replace(given, rate=None if given.rate is None else given.rate / slower, delay=given.delay * slower)
+    moved = loop(replace(closed.plant, hardware=hardware), replace(closed.controller, step=hardware.step))
+    return peaks(moved, LoopBreak.POSE).sensitivity.value if moved.system.growth < 0.0 else np.inf
+
+
 @dataclass(frozen=True, eq=False)
 class Bandwidths(InNotebook):
-    """Bandwidths [Hz] (n,) by coordinate, the lowest frequency at which each is first crossed (NaN: never).
+    """Bandwidths [Hz] (n,) by coordinate: the lowest crossing frequency of each (NaN: none).
 
-    `tracking`: the true motion falls 3 dB below its reference; `complementary`: T_ii falls 3 dB below 1; `rejection`: |S_ii| rises through
-    1, above which the loop makes disturbances worse; `half_rejection`: |S_ii| rises through -3 dB.
+    `tracking`: the true motion falls 3 dB below its reference. `complementary`: T_ii falls 3 dB below 1. `rejection`: |S_ii| rises through
+    1, above which the loop amplifies disturbances. `half_rejection`: |S_ii| rises through -3 dB.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -180,7 +207,7 @@ class Bandwidths(InNotebook):
 
 
 def bandwidths(closed: Loop, found: Curves | None = None) -> Bandwidths:
-    """Bandwidths by coordinate; `found` are the `curves` at the pose where they are known already.
+    """Compute bandwidths by coordinate; `found` are the `curves` at the pose if already known.
 
     Raises `DesignError` for an unstable loop.
 
@@ -202,7 +229,7 @@ def bandwidths(closed: Loop, found: Curves | None = None) -> Bandwidths:
 
 
 def _rise(found: Curves, number: int, of: Callable[[Array], Array]) -> float:
-    """Where a function of S_ii first rises through 0."""
+    """First upward zero crossing of a function of S_ii."""
     values = of(found.sensitivity[:, number, number])
     return _first_rise(found.frequencies, values, lambda points: of(found.response.sweep(points)[:, number, number]))
 
@@ -228,10 +255,9 @@ def _tracking(closed: Loop, found: Curves, number: int) -> float:
 
 
 def crosstalk(closed: Loop) -> Matrix:
-    """What moves for each reference: all six motions of the platform against the ground per coordinate commanded, at rest.
+    """Compute static crosstalk: all six platform motions relative to the ground per coordinate commanded.
 
-    The coordinates themselves are tracking, all else is crosstalk.
-    Raises `DesignError` for an unstable loop.
+    The commanded coordinates are tracking, all others crosstalk. Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> round(float(crosstalk(integral_loop()).at("x", "x")), 9)

@@ -1,1 +1,1 @@
-"""A virtual controller: the loop of a stage that runs, and is spoken to over a socket."""
+"""Virtual controller: the running loop of a stage, controlled over a socket."""

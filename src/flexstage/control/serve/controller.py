@@ -1,4 +1,4 @@
-"""The controller that runs a stage's loop: targets, velocities, wave generators, recorder; no words of any protocol."""
+"""Controller of a stage's running loop: targets, velocities, wave generators, recorder; independent of any protocol."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ from flexstage.mechanism.mechanism import Mechanism
 _MICRO = 1e6
 _NOISE = 65_536
 _CROSSING = 10.0
-"""Times a second that an axis crosses its travel at the velocity it begins with."""
+"""Travel ranges per second of an axis at its initial velocity."""
 _TOLERANCE, _WINDOW = 1e-4, 0.01
-"""On target: within this share of the travel, or two steps of the gauges, for so long [s]."""
+"""On-target tolerance: share of the travel, or two steps of the gauges; and its time window [s]."""
 _LARGEST = 1e300
 _UNLIMITED = 1e-3
-"""Travel [m, rad] of an axis whose actuators state no end."""
+"""Travel [m, rad] of an axis whose actuators have no limit."""
 
 
 @dataclass
 class Generator:
-    """A wave generator: its `table` (0: none), `cycles` (0: no end), samples to a point, offset, and where it is."""
+    """Wave generator: its `table` (0: none), `cycles` (0: endless), samples per point, offset, and position."""
 
     table: int = 0
     cycles: int = 0
@@ -48,9 +48,9 @@ class Generator:
 
 
 class StageController:
-    """A stage under its loop, in micrometres and microradians; `advance` runs it on.
+    """Closed-loop stage in micrometres and microradians; `advance` simulates it.
 
-    Raises `DesignError` as `resolve` and `control_and_modes` do, and for a loop that is unstable.
+    Raises `DesignError` as `resolve` and `control_and_modes`, and for an unstable loop.
     """
 
     def __init__(self, mechanism: Mechanism, setup: LoopSetup | None = None) -> None:
@@ -58,7 +58,7 @@ class StageController:
         gains = pose_gains(given, None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model))
         given, control, _ = control_and_modes(given, gains)
         closed = loop(given.plant, control.system)
-        require_stable(closed, "a loop that runs")
+        require_stable(closed, "a running loop")
         stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)
         self.name = mechanism.name or "stage"
         self.running = RunningLoop(driven_machine(given, control, stacks), noise_series(given.plant, given.floor, _NOISE, given.setup.seed))
@@ -83,28 +83,28 @@ class StageController:
         self.volts = np.zeros(len(machine.actuators))
         self.readings = np.zeros(len(machine.gauges))
         self.is_lost = False
-        """Whether numbers grew beyond bounds since this was last asked of."""
+        """Whether numbers exceeded their bounds since the last query."""
         self.advance(int(rest_time(closed) / self.step))
 
     @property
     def seconds(self) -> float:
-        """Time [s] of the stage."""
+        """Simulated time [s]."""
         return self.running.count * self.step
 
     @property
     def moving(self) -> Array:
-        """Which axes (f,) are on their way: their commanded motion has not ended."""
+        """Axes (f,) in motion: their commanded motion has not ended."""
         return np.array([each.at is not None for each in self.generators]) | (self.held & (self._wanted != self.target))
 
     @property
     def on_target(self) -> Array:
-        """Which axes (f,) have stayed within `tolerance` of their target for a hundredth of a second."""
+        """Axes (f,) within `tolerance` of their target for a hundredth of a second."""
         return self.held & ~self.moving & (self._off_target * self.step >= _WINDOW)
 
-    # --- what is asked of it ---
+    # --- commands ---
 
     def hold(self, axis: int, *, on: bool) -> None:
-        """Switch an axis' servo on, to stay where it is, or off."""
+        """Switch an axis' servo on at its present position, or off."""
         if on and not self.held[axis]:
             self.target[axis] = self._wanted[axis] = self.position[axis]
         if not on:
@@ -112,7 +112,7 @@ class StageController:
         self.held[axis] = on
 
     def move(self, targets: dict[int, float]) -> None:
-        """Go to these targets [um, urad], all or none."""
+        """Move to these targets [um, urad], all or none."""
         if any(self.generators[axis].at is not None for axis in targets):
             raise CommandError(Code.WAVE_GENERATOR_ACTIVE)
         if not all(self.held[axis] for axis in targets):
@@ -124,13 +124,13 @@ class StageController:
         self.target = wanted
 
     def jump(self, axis: int, way: float) -> None:
-        """Step by so much at once, whatever the velocity, and record."""
+        """Step by these amounts at once, at any velocity setting, and record."""
         self.move({axis: self.target[axis] + way})
         self._wanted[axis] = self.target[axis]
         self.recorder.start()
 
     def stop(self) -> None:
-        """Stop all axes where they are commanded to be."""
+        """Stop all axes at their commanded positions."""
         for each in self.generators:
             each.at = None
         self.target = self._wanted.copy()
@@ -149,7 +149,7 @@ class StageController:
         one.at = 0
 
     def _require_reach(self, wanted: Array) -> None:
-        """Refuse a pose that an axis by itself, the strokes together or a gauge do not reach."""
+        """Refuse a pose beyond the range of one axis, the strokes together, or a gauge."""
         low, high = self._ends
         needed = self._gains @ (wanted / _MICRO)
         slack = 1e-9 * (self.high - self.low)
@@ -161,7 +161,7 @@ class StageController:
     # --- time ---
 
     def advance(self, count: int) -> None:
-        """Run the loop by so many samples. A loop whose numbers grow beyond bounds is put to rest with its servos off."""
+        """Simulate a number of samples. Diverging numbers reset the loop, with its servos off."""
         if count < 1:
             return
         wanted = np.stack([self._course(axis, count) for axis in range(len(self.axes))], axis=-1)
@@ -189,7 +189,7 @@ class StageController:
         self.is_lost = True
 
     def _course(self, axis: int, count: int) -> Array:
-        """What an axis is commanded to [um, urad] in the next samples."""
+        """Commanded trajectory of an axis [um, urad] for the next samples."""
         one = self.generators[axis]
         if one.at is not None:
             return self._wave(axis, one, one.at, count)
@@ -215,12 +215,12 @@ class StageController:
         return np.asarray(course)
 
     def output_is_known(self, option: int) -> bool:
-        """Whether an option of the recorder has numbers: stacks that state no voltage have no volts."""
+        """Whether a recorder option has data: stacks without specified voltage have none."""
         return option != VOLTAGE or bool(np.all(np.isfinite(self.running.machine.amplifiers.gain)))
 
 
 def _travel(gains: Array, low: Array, high: Array) -> tuple[Array, Array]:
-    """Ends (f,) [um, urad] of each axis by itself, by the strokes or inputs and the readings (n,) that it takes."""
+    """Ends (f,) [um, urad] of each axis alone, by the strokes or inputs and the readings (n,) that it requires."""
     with np.errstate(divide="ignore", invalid="ignore"):
         one, other = low[:, None] / gains, high[:, None] / gains
     used = np.abs(gains) > 1e-12 * np.max(np.abs(gains), axis=0)

@@ -1,4 +1,4 @@
-"""Error codes of the General Command Set, as `ERR?` answers them."""
+"""Error codes of the General Command Set, reported by `ERR?`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class Code(IntEnum):
-    """The codes that the virtual controller uses (MS249E, section 8.7, "Error Codes", and the wave generator's)."""
+    """Codes used by the virtual controller (MS249E, section 8.7, "Error Codes", and the wave generator's)."""
 
     NO_ERROR = 0
     PARAMETER_SYNTAX = 1
@@ -34,7 +34,7 @@ class Code(IntEnum):
 
 
 class CommandError(Exception):
-    """A command that is not carried out, and why."""
+    """Command refused, with its code."""
 
     def __init__(self, code: Code) -> None:
         super().__init__(code.name)

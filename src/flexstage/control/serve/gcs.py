@@ -1,7 +1,7 @@
-"""The commands of the General Command Set, syntax version 2.0, that the virtual controller understands.
+"""Commands of the General Command Set, syntax version 2.0, supported by the virtual controller.
 
-Written from two manuals of Physik Instrumente: "E-727 user manual", E727T0005, 2019-06-28 (syntax, wave generator, data recorder), and
-"C-863.12 Mercury Controller user manual", MS249E, version 1.2.1 (motion, answers, error codes). Each command says where it was read.
+References: two manuals of Physik Instrumente, "E-727 user manual", E727T0005, 2019-06-28 (syntax, wave generator, data recorder), and
+"C-863.12 Mercury Controller user manual", MS249E, version 1.2.1 (motion, answers, error codes). Each command cites its section.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from flexstage.control.serve.controller import Generator, StageController
 from flexstage.control.serve.errors import Code, CommandError
 
 LONGEST = 65_536
-"""Bytes of the longest line."""
+"""Maximum line length [bytes]."""
 _TABLES = 32
 _UPDATE = 0x0E000200
-"""The parameter "servo update time"."""
+"""Parameter number of "servo update time"."""
 _OPTIONS = {
     recorder.NOTHING: "nothing is recorded",
     recorder.TARGET: "target position of axis",
@@ -37,14 +37,14 @@ _TRIGGERS = {0: "default setting", 1: "any command changing target position", 4:
 
 @dataclass(frozen=True)
 class Command:
-    """The answer to a command, and its meaning in a few words."""
+    """Answer function of a command, with a short description."""
 
     answer: Callable[[Session, Sequence[str]], Iterable[str] | None]
     meaning: str
 
 
 class Session:
-    """One client's talk with a controller: its own error, the stage shared with all others."""
+    """Session of one client: its own error code, the stage shared with all others."""
 
     def __init__(self, stage: StageController) -> None:
         self.stage = stage
@@ -52,7 +52,7 @@ class Session:
         self.trigger = 0
 
     def hear(self, line: bytes) -> bytes:
-        """The answer to a line, without its end; empty where there is none. What is not carried out leaves its code for `ERR?`."""
+        """Execute a line, without its end, and return the answer, possibly empty. A refused command sets the code for `ERR?`."""
         if self.stage.is_lost:
             self.stage.is_lost, self.error = False, Code.LOOP_UNSTABLE
         if len(line) > LONGEST:
@@ -77,13 +77,13 @@ class Session:
     # --- arguments ---
 
     def axis(self, word: str) -> int:
-        """The place of an axis."""
+        """Index of an axis."""
         if word not in self.stage.axes:
             raise CommandError(Code.INVALID_AXIS)
         return self.stage.axes.index(word)
 
     def axes(self, words: Sequence[str]) -> list[int]:
-        """Places of the axes that are named, of all where none is."""
+        """Indices of the named axes, default all."""
         return [self.axis(word) for word in words] if words else list(range(len(self.stage.axes)))
 
     def pairs(self, words: Sequence[str]) -> dict[int, float]:
@@ -94,12 +94,12 @@ class Session:
         return found
 
     def places(self, words: Sequence[str], count: int) -> list[int]:
-        """Places by their numbers, counted from 1, of so many; of all where none is named."""
+        """Zero-based indices of numbers counted from 1; default all."""
         return [_place(word, count) for word in words] if words else list(range(count))
 
 
 def spelled(name: str) -> str:
-    """A command as manuals write it: single characters by their number."""
+    """Command as printed in manuals: single characters by their number."""
     return f"#{ord(name)}" if len(name) == 1 else name
 
 
@@ -139,14 +139,14 @@ def _shown(value: float) -> str:
     return f"{round(value, 6) + 0.0:.6f}"
 
 
-# --- what it is ---
+# --- identification ---
 
 
 Answer: TypeAlias = Callable[[Session, Sequence[str]], Iterable[str] | None]
 
 
 def _plain(lines: Callable[[StageController], Sequence[str]]) -> Answer:
-    """An answer to a command without arguments."""
+    """Answer to a command without arguments."""
 
     def answer(session: Session, words: Sequence[str]) -> Sequence[str]:
         _nothing(words)
@@ -197,7 +197,7 @@ def _one(words: Sequence[str], size: int) -> list[Sequence[str]]:
 
 
 def _set_axes(change: Callable[[StageController, int, float], None], *, switches: bool = True) -> Answer:
-    """Give axes a number each: 0 or 1 where it `switches` something, else one above 0."""
+    """Set a number for each axis: 0 or 1 if it `switches`, else positive."""
 
     def answer(session: Session, words: Sequence[str]) -> None:
         wanted = session.pairs(words)
@@ -253,7 +253,7 @@ def _bits(flags: Iterable[bool]) -> list[str]:
 
 
 def _signals(values: Callable[[StageController], Array]) -> Answer:
-    """Answer `number=value` for each channel; unknown where a value is no number."""
+    """Answer `number=value` for each channel; unknown for non-numeric values."""
 
     def answer(session: Session, words: Sequence[str]) -> list[str]:
         found = values(session.stage)
@@ -318,7 +318,7 @@ def _wave_data(session: Session, words: Sequence[str]) -> list[str]:
 
 
 def _set_generators(name: str, read: Callable[[str], float], *, idle: bool = False) -> Answer:
-    """Set a number of wave generators, of those that are `idle` only."""
+    """Set a number of wave generators, only those that are `idle` if required."""
 
     def answer(session: Session, words: Sequence[str]) -> None:
         generators = session.stage.generators
@@ -381,7 +381,7 @@ def _configure(session: Session, words: Sequence[str]) -> None:
 
 
 def _recorded(session: Session, number: str, source: str, option: str) -> tuple[int, int, int]:
-    """A table, and the source that it records by an option."""
+    """A table, and its recorded source for an option."""
     (table,), kind = _tables([number]), _number(option)
     if kind not in _OPTIONS or not session.stage.output_is_known(int(kind)):
         raise CommandError(Code.INVALID_RECORDER_OPTION)
@@ -438,7 +438,7 @@ def _record(session: Session, words: Sequence[str]) -> list[str]:
 
 
 def _array(words: Sequence[str], columns: Sequence[np.ndarray], names: Sequence[str], step: float) -> list[str]:
-    """A GCS array: a header, then a row a point. `words` may begin with the first point (1) and how many."""
+    """A GCS array: a header, then a row per point. `words` may start with the first point (1) and the count."""
     if len(words) == 1:
         raise CommandError(Code.NUMBER_OF_PARAMETERS)
     there = min(len(each) for each in columns)
@@ -465,7 +465,7 @@ COMMANDS: dict[str, Command] = {
     "\x07": Command(lambda _s, _: ["\xb1"], "whether a command can be taken"),
     "\x09": Command(lambda s, _: _bits(each.at is not None for each in s.stage.generators), "which wave generators run"),
     "\x18": Command(_stop, "stop all axes"),
-    "*IDN?": Command(_plain(_identify), "what it is"),
+    "*IDN?": Command(_plain(_identify), "identification"),
     "CSV?": Command(_plain(lambda _: ["2.0"]), "syntax version"),
     "DRC": Command(_configure, "set data recorder configuration"),
     "DRC?": Command(
@@ -530,4 +530,4 @@ COMMANDS: dict[str, Command] = {
         "get wave generator table rate",
     ),
 }
-"""Every command by its mnemonic; single characters by themselves."""
+"""All commands by mnemonic; single characters by their number."""

@@ -1,4 +1,4 @@
-"""The data recorder: tables that are filled from a trigger on."""
+"""Data recorder: tables filled after a trigger."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from flexstage.base.number import Array
 from flexstage.control.simulation.result import Series
 
 TABLES, POINTS = 8, 262_144
-"""Tables, and points that they share alike."""
+"""Number of tables, and of points per table."""
 NOTHING, TARGET, POSITION, ERROR, VOLTAGE = 0, 1, 2, 3, 16
-"""What a table records: record options."""
+"""Record options: the recorded quantity of a table."""
 
 
 @dataclass
 class Recorder:
-    """Tables of points, each of a source (index) and an option; `rate` is the number of samples from point to point."""
+    """Tables of points, each with a source (index) and an option; `rate` is the number of samples per point."""
 
     sources: list[int]
     options: list[int]
@@ -27,16 +27,16 @@ class Recorder:
     _skip: int = 0
 
     def start(self) -> None:
-        """Empty all tables, and fill them from the next sample on."""
+        """Empty all tables, and fill them from the next sample."""
         self.points = [np.empty(0)] * TABLES
         self._left, self._skip = POINTS // TABLES, 0
 
     def empty(self, table: int) -> None:
-        """Forget a table's points."""
+        """Delete a table's points."""
         self.points[table] = np.empty(0)
 
     def take(self, found: Series, scale: Array, volts: Array) -> None:
-        """Points of the samples that were run; `scale` (f,) is what SI units are multiplied by."""
+        """Record points of the samples run; `scale` (f,) converts SI units."""
         if not self._left:
             return
         rows = slice(self._skip, self._skip + self._left * self.rate, self.rate)

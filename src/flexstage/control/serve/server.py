@@ -1,4 +1,4 @@
-"""The virtual controller on a socket of the loopback: clients' lines, and the stage's time by the clock on the wall."""
+"""Virtual controller on a loopback socket: clients' lines, and simulated time synchronised with the clock."""
 
 from __future__ import annotations
 
@@ -17,30 +17,30 @@ from flexstage.control.serve.gcs import LONGEST, Session
 
 HOST = "127.0.0.1"
 PORT = 50_000
-"""The port at which such controllers are spoken to."""
+"""Default TCP port."""
 CLIENTS = 16
 _CHUNK = 200
-"""Samples that are run at a time: clients are heard in between."""
+"""Samples per simulation block; clients are served in between."""
 _LATEST = 1.0
-"""Later than this [s], and the stage's time gives up catching up."""
+"""Largest lag [s] that the simulation recovers."""
 _TURN = 500
-"""Lines of a client that are answered before others are heard."""
+"""Lines of one client answered before the others are served."""
 _SINGLE = b"\x05\x07\x09\x18"
 _READ = 65_536
 _HTTP = re.compile(rb"\s*(?:GET|HEAD|POST|PUT|PATCH|DELETE|CONNECT|OPTIONS|TRACE|PRI)\s|.*\sHTTP/\d", re.IGNORECASE)
-"""Requests of any version of HTTP, their version lost where the line is too long."""
+"""HTTP requests of any version, also without the version if the line is too long."""
 
 
 @dataclass
 class Pace:
-    """The stage's time beside the clock's, from their `offset` at the start: `most` that it was behind [s], and what was given up."""
+    """Simulated time compared with the clock, from their `offset` at the start: largest lag `most` [s], and lost time."""
 
     offset: float
     most: float = 0.0
     lost: float = 0.0
 
     def behind(self, clock: float, seconds: float) -> float:
-        """How far [s] the stage is behind the clock; beyond a second it is given up, and the stage goes on from where it is.
+        """Return the lag [s] behind the clock; beyond a second it counts as lost, and the simulation continues from its present state.
 
         >>> pace = Pace(offset=100.0)
         >>> round(pace.behind(100.25, 0.125), 3), round(pace.behind(102.125, 0.125), 3), round(pace.behind(102.25, 0.125), 3)
@@ -58,33 +58,33 @@ class Pace:
 
 
 class Served:
-    """A stage that clients drive. Not `paced`, its time goes as fast as it is computed, while any client is there."""
+    """Stage controlled by clients. If not `paced`, time runs as fast as it is computed, while a client is connected."""
 
     def __init__(self, stage: StageController, port: int = PORT, *, paced: bool = True) -> None:
         self.stage, self._port = stage, port
         self.pace = Pace(time.perf_counter() - stage.seconds) if paced else None
-        """Absent: as fast as it goes."""
+        """None: as fast as possible."""
         self._server: asyncio.Server | None = None
         self._running: asyncio.Task[None] | None = None
         self._clients: set[asyncio.Task[None]] = set()
 
     @property
     def port(self) -> int:
-        """The port that it listens at."""
+        """TCP port in use."""
         return self._port
 
     async def start(self) -> None:
-        """Listen, and let time go. Raises `DesignError` where the port is taken."""
+        """Listen, and start simulated time. Raises `DesignError` if the port is in use."""
         try:
             self._server = await asyncio.start_server(self._client, HOST, self._port, limit=_READ)
         except OSError as error:
-            what = f"it cannot be listened at: {os.strerror(error.errno) if error.errno else error}"
-            raise refuse(f"--port {self._port}", what, "Choose another one, or 0 for a free one") from None
+            what = f"cannot listen: {os.strerror(error.errno) if error.errno else error}"
+            raise refuse(f"--port {self._port}", what, "Use another port, or 0 for a free one") from None
         self._port = self._server.sockets[0].getsockname()[1]
         self._running = asyncio.create_task(self._race() if self.pace is None else self._follow(self.pace))
 
     async def stop(self) -> None:
-        """End everything."""
+        """Stop the server and all clients."""
         for each in (*self._clients, *([] if self._running is None else [self._running])):
             each.cancel()
             with contextlib.suppress(asyncio.CancelledError):
@@ -95,7 +95,7 @@ class Served:
     # --- time ---
 
     async def _follow(self, pace: Pace) -> None:
-        """The stage's time beside the clock's."""
+        """Synchronise simulated time with the clock."""
         pace.offset = time.perf_counter() - self.stage.seconds
         while True:
             behind = int(pace.behind(time.perf_counter(), self.stage.seconds) / self.stage.step)
@@ -115,7 +115,7 @@ class Served:
     # --- clients ---
 
     async def _client(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        """One client, from its first line to its end, however that comes."""
+        """Serve one client, from its first line to its end."""
         task = asyncio.current_task()
         if task is None or len(self._clients) >= CLIENTS:
             writer.close()
@@ -135,12 +135,12 @@ class Served:
             found = lines.split(received)
             for start in range(0, len(found), _TURN):
                 turn = found[start : start + _TURN]
-                if any(map(_HTTP.match, turn)):  # a page of a browser has no business here
+                if any(map(_HTTP.match, turn)):  # refuse pages of a browser
                     return
                 await self._answer(session, turn, writer)
 
     async def _answer(self, session: Session, lines: list[bytes], writer: asyncio.StreamWriter) -> None:
-        """Answer some lines; long answers one by one, so that a client who does not read them is waited for."""
+        """Answer some lines; long answers one by one, to wait for slow clients."""
         answers = bytearray()
         for line in lines:
             answers += session.hear(line)
@@ -155,14 +155,14 @@ class Served:
 
 
 class _Lines:
-    """What is received, cut into lines; characters that are commands are lines. Of a line that is too long the rest is dropped."""
+    """Received text split into lines; single-character commands are lines. The remainder of an overlong line is dropped."""
 
     def __init__(self) -> None:
         self._rest = b""
         self._is_dropping = False
 
     def split(self, received: bytes) -> list[bytes]:
-        """The lines that are whole now."""
+        """Return the complete lines."""
         for each in _SINGLE:
             if each in received:
                 received = received.replace(bytes([each]), b"\n" + bytes([each]) + b"\n")
@@ -179,7 +179,7 @@ class _Lines:
 
 
 async def run(stage: StageController, port: int, started: Callable[[int], None], *, paced: bool) -> Pace | None:
-    """Serve a stage until it is interrupted; `started` is told the port. How late it was, where it kept to the clock."""
+    """Serve a stage until interrupted; passes the port to `started`. Returns the lag, if synchronised with the clock."""
     served = Served(stage, port, paced=paced)
     await served.start()
     try:

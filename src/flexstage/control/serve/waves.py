@@ -10,13 +10,13 @@ from flexstage.base.number import Array
 from flexstage.control.serve.errors import Code, CommandError
 
 LARGEST = 262_144
-"""Points of all wave tables together."""
+"""Total number of points in all wave tables."""
 
 
 def segment(kind: str, values: Sequence[float]) -> Array:
-    """A segment of a wave table [the axis' unit] by its kind (PNT, SIN_P, RAMP, LIN) and what `WAV` says behind it.
+    """Compute a segment of a wave table [the axis' unit] from its kind (PNT, SIN_P, RAMP, LIN) and the arguments of `WAV`.
 
-    Raises `CommandError` for another kind, a wrong number of values, and values that make no curve.
+    Raises `CommandError` for another kind, a wrong number of values, and invalid values.
 
     >>> segment("LIN", [5, 4, 1, 5, 0, 0]).tolist()
     [1.0, 2.0, 3.0, 4.0, 5.0]
@@ -45,7 +45,7 @@ def _whole(value: float) -> int:
 
 
 def _points(values: Sequence[float]) -> Array:
-    """Points by themselves: where the first stands (1), how many, and they."""
+    """Individual points: position of the first (1), number, and values."""
     if len(values) < 3:
         raise CommandError(Code.NUMBER_OF_PARAMETERS)
     first, count = _whole(values[0]), _whole(values[1])
@@ -57,24 +57,24 @@ def _points(values: Sequence[float]) -> Array:
 
 
 def _sine(at: Array, wave: int, centre: int) -> Array:
-    """An inverted cosine: from 0 to 1 at the centre, and back to 0 at the end."""
+    """Inverted cosine: from 0 to 1 at the centre, and back to 0 at the end."""
     rise = 0.5 - 0.5 * np.cos(np.pi * at / max(centre, 1))
     fall = 0.5 + 0.5 * np.cos(np.pi * (at - centre) / (wave - centre))
     return np.where(at < centre, rise, fall)
 
 
 def _line(at: Array, wave: int, rounded: int) -> Array:
-    """A line from 0 at the first point to 1 at the last, its ends rounded by parabolas over so many points each."""
+    """Line from 0 at the first point to 1 at the last, with parabolic ends over so many points each."""
     return _rounded(at, float(wave - 1), rounded)
 
 
 def _ramp(at: Array, wave: int, rounded: int, centre: int) -> Array:
-    """Up to 1 at the centre and back, rounded at the foot, the top and the end."""
+    """Ramp to 1 at the centre and back, rounded at the foot, the top and the end."""
     return np.where(at < centre, _rounded(at, float(centre), rounded), _rounded(wave - at, float(wave - centre), rounded))
 
 
 def _rounded(at: Array, length: float, rounded: int) -> Array:
-    """From 0 to 1 over a length, with constant acceleration over `rounded` at either end: the middle has the slope 1/(length - rounded)."""
+    """Transition from 0 to 1 over a length, with constant acceleration over `rounded` at both ends; middle slope 1/(length - rounded)."""
     if length <= 0.0:
         return np.ones_like(at, dtype=float)
     edge = min(float(rounded), 0.5 * length)

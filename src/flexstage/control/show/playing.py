@@ -1,4 +1,4 @@
-"""What a loop does over time as motions of a viewer: steps and trajectories, the platform's true pose beside what was wanted."""
+"""Loop responses as motions of the viewer: steps and trajectories, with true pose and reference."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from flexstage.show.viewer.motions import Curve, Group, Motion, Response
 
 _INSTANTS = 300
 _MOST = 12
-"""Runs that are played."""
+"""Maximum number of motions."""
 _SETTLED = 3.0
-"""How many settling times of a step are played."""
+"""Length of a step motion in settling times."""
 
 
 def response_motions(found: LoopStudy, still: StageData) -> tuple[Motion, ...]:
-    """The first runs of a loop as motions of a stage: the platform goes where it truly went, all else follows ideally."""
+    """Convert the first runs of a loop to stage motions: the platform follows its true pose, all other bodies move ideally."""
     axes = {each.name: each.twists for each in still.motions if each.group is Group.AXIS}
     return tuple(motion for number, run in enumerate(found.runs[:_MOST], start=1) for motion in _played(number, run, axes))
 
@@ -50,16 +50,16 @@ def _played(number: int, run: Run, axes: dict[str, Array]) -> Iterator[Motion]:
 
 
 def _followed(name: str, factor: float) -> str:
-    """The name of a trajectory that is played, and how many times too large its error is, so that it is seen."""
-    return name if factor == 1.0 else f"{name}, its error {factor:g} times"
+    """Label of a trajectory, and the magnification of its visible error."""
+    return name if factor == 1.0 else f"{name}, error {factor:g} times"
 
 
 _UNIT = 1e-6
-"""What the viewer's ideal motions of the platform are of, m or rad."""
+"""Unit of the viewer's ideal platform motions, m or rad."""
 
 
 def _until(run: Run) -> float:
-    """The end of what is played [s]: of a step some settling times, else all of it."""
+    """End time of a motion [s]: some settling times of a step, else the whole run."""
     last = float(run.simulated.times[-1])
     if run.figures is None:
         return last
@@ -72,7 +72,7 @@ def _sampled(times: Array, values: Array, wanted: Array) -> Array:
 
 
 def _scale(values: Array) -> Array:
-    """One over the largest of each column, so that metres and radians count alike; nought where nothing moves."""
+    """Reciprocal of the largest value of each column, for equal weight of metres and radians; zero without motion."""
     most = np.max(np.abs(values), axis=0)
     return np.where(most > 0.0, 1.0 / np.where(most > 0.0, most, 1.0), 0.0)
 

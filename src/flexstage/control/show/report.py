@@ -1,4 +1,4 @@
-"""The report of a loop: one HTML file that stands alone."""
+"""Report of a loop: one self-contained HTML file."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from flexstage.show.viewer.motions import Group
 
 @check_arguments
 def loop_report(found: LoopStudy) -> str:
-    """A loop as a page of HTML: verdict, block diagram, margins, open loops, sensitivities, poles, steps, trajectories, noise."""
+    """Write a loop as an HTML page: stability, block diagram, margins, open loops, sensitivities, poles, steps, trajectories, noise."""
     mechanism = found.settled.mechanism
     origin = (
         ("physics", digest(mechanism, physics=True)[:16]),
@@ -50,7 +50,7 @@ def loop_report(found: LoopStudy) -> str:
 
 
 def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison) -> str:
-    """Controllers side by side as a page of HTML: which wins for what, the front between what they trade, motion by motion."""
+    """Write a controller comparison as an HTML page: the best for each quantity, the Pareto front, and values per motion."""
     origin = (("physics", digest(mechanism, physics=True)[:16]), ("model", asked.model.value), ("flexstage", __version__))
     data = stage_data(mechanism)
     best = ", ".join(f"{aim} by {kind_name(name)}" for aim, name in found.wins.items())
@@ -62,7 +62,9 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
     )
     drawn = Picture(
         to_svg(
-            front_figure(lines, [*map(kind_name, found.front)]), "front", "What controllers trade: rejection, noise, settling, delay margin"
+            front_figure(lines, [*map(kind_name, found.front)]),
+            "front",
+            "Trade-off between controllers: rejection, noise, settling, delay margin",
         ),
         caption,
     )

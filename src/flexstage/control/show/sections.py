@@ -1,4 +1,4 @@
-"""Sections of a loop: what it is, over frequency, over time, its noise."""
+"""Report sections of a loop: overview, frequency domain, time domain, noise."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ _NOISELESS = 1e-16
 
 
 def loop_section(found: LoopStudy) -> Section | None:
-    """The loop at a glance: facts, block diagram, what it is made of."""
+    """Overview section: facts, block diagram, components."""
     drawn = to_svg(loop_diagram(diagram_of(found)), "loop-diagram", "Block diagram of the loop")
-    caption = "Block diagram of the loop. Shaded: what the computer does, sample by sample."
+    caption = "Block diagram of the loop. Shaded: computed by the computer, sample by sample."
     return section("The loop", [Facts(tuple(_facts(found))), Picture(drawn, caption), *loop_tables(found)])
 
 
 def headline(found: LoopStudy) -> Headline:
-    """Whether the loop is stable, and how much room it has."""
+    """Headline: stability, and the lowest phase margin."""
     if found.margins is None:
         return Headline("Open loop.")
     stable = found.stability.stable
@@ -69,7 +69,7 @@ def _error_fact(test: Run) -> Fact:
 
 
 def diagram_of(found: LoopStudy) -> Diagram:
-    """The block diagram of a loop, in the words of its set-up."""
+    """Block diagram of the loop, with the names of its set-up."""
     setup, plant = found.setup, found.plant
     rate = f"{number(1e-3 * found.settled.rate, 4)} kHz"
     stage = Box("stage", f"{found.model_name.partition(',')[0]}\n{count_modes(len(plant.frequencies))}")
@@ -141,7 +141,7 @@ def _stacks(found: LoopStudy) -> str:
 
 
 def frequency_section(found: LoopStudy) -> Section | None:
-    """Open loops, sensitivities, margins, poles, crosstalk; `None` in open loop."""
+    """Frequency section: open loops, sensitivities, margins, poles, crosstalk; `None` in open loop."""
     if found.curves is None:
         return None
     seen, plant = found.curves, found.plant
@@ -164,34 +164,35 @@ def frequency_section(found: LoopStudy) -> Section | None:
             Picture(loops, caption, reading=reading(opened, spots)),
             Picture(
                 sensitivities,
-                "What is left of a disturbance, and what is followed; dashed: the highest peak of S that was allowed.",
+                "Sensitivity S: remaining share of a disturbance; T: tracking. Dashed: specified maximum peak of S.",
                 reading=reading(pair),
             ),
             Picture(
-                poles, "Closed-loop poles, delay and hold included, beside those of the stage alone; dotted: damping ratios 0.1, 0.3, 0.6."
+                poles,
+                "Closed-loop poles, delay and hold included, with open-loop poles of the stage; dotted: damping ratios 0.1, 0.3, 0.6.",
             ),
-            fold("Crosstalk at rest", matrix_table("Motion at rest per reference", found.crosstalk)),
+            fold("Static crosstalk", matrix_table("Static motion per reference", found.crosstalk)),
         ],
     )
 
 
 def measured_section(found: LoopStudy) -> Section | None:
-    """The loop on the responses of a test themselves, beside fit and model; `None` without a test."""
+    """Loop on measured responses, compared with fit and model; `None` without a test."""
     if found.measured is None:
         return None
     seen = found.measured.sensitivities
     drawn = measured_figure(seen, found.plant.coordinates.names)
     picture = to_svg(drawn, "measured-loops", "Sensitivities on the measured responses")
-    sure = "shaded: 95 % of every line" if seen.low is not None else "the test does not say how sure its responses are"
-    caption = f"What every loop leaves of a disturbance along its axis, hold and delay included; {sure}."
+    sure = "shaded: 95 % of every line" if seen.low is not None else "the test has no uncertainty of its responses"
+    caption = f"Sensitivity of every loop along its axis, hold and delay included; {sure}."
     return section("On the measured responses", [*measured_tables(found), Picture(picture, caption, reading=reading(drawn))])
 
 
 def margin_spots(found: LoopStudy) -> Iterator[Spot]:
-    """Where the margins of the single loops stand in the picture of the open loops."""
+    """Positions of the single loops' margins in the open-loop figure."""
     for each in () if found.margins is None else found.margins.channels:
         for edge in (each.gain_low, each.gain_high):
-            if 0.0 < edge.value < np.inf and edge.frequency > 0.0:  # at rest nothing is drawn
+            if 0.0 < edge.value < np.inf and edge.frequency > 0.0:  # zero frequency is not drawn
                 decibel = number(20.0 * float(np.log10(edge.value)), 3)
                 yield Spot(edge.frequency, f"{each.channel}: gain margin {decibel} dB at {number(edge.frequency)} Hz", 1.0 / edge.value)
         if np.isfinite(each.phase.value):
@@ -200,7 +201,7 @@ def margin_spots(found: LoopStudy) -> Iterator[Spot]:
 
 
 def time_section(found: LoopStudy) -> Section | None:
-    """Steps and trajectories."""
+    """Time section: steps and trajectories."""
     stepped = [(test.course.name, test.simulated) for test in found.runs if test.figures is not None]
     pictures = []
     if stepped:
@@ -217,13 +218,13 @@ def time_section(found: LoopStudy) -> Section | None:
 def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
     if test.course.plane is not None:
         drawn = to_svg(path_figure(test.simulated, test.course.plane), f"{name}-path", f"Path of the {test.course.name} in plan")
-        yield Picture(drawn, f"The {test.course.name} in plan, to scale, its true error as many times as stands above.")
+        yield Picture(drawn, f"The {test.course.name} in plan, to scale, error magnified by the factor above.")
     drawn = to_svg(error_figure(test.simulated), f"{name}-error", f"Error along the {test.course.name} over time")
-    yield Picture(drawn, "Reference less true pose over time.")
+    yield Picture(drawn, "Reference minus true pose over time.")
     if test.learned is not None:
         taught = test.learned
         figure = lesson_figure(taught.rms, taught.coordinates, taught.units, "passes learned from", taught.noise)
-        caption = f"Error in the band up to {number(taught.band, 4)} Hz, pass by pass; dotted: what of it does not repeat."
+        caption = f"Error in the band up to {number(taught.band, 4)} Hz, pass by pass; dotted: non-repeating part."
         yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by pass"), caption)
     if test.repeated is not None:
         seen = test.repeated
@@ -233,14 +234,14 @@ def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
 
 
 def error_section(found: LoopStudy) -> Section | None:
-    """Errors at rest without the loop, noise with it, hysteresis of the stacks."""
+    """Error section: static errors without the loop, noise with it, hysteresis of the stacks."""
     blocks: list[Block | None] = [*error_tables(found), *_noise_pictures(found)]
     if (swept := found.hysteresis) is not None:
         worst = int(np.argmax(swept.rms_error))
         reached = {"without inverse": swept.bare[:, worst], "with inverse": swept.inverse[:, worst]}
         figure = hysteresis_figure(swept.wanted[:, worst], reached)
         drawn = to_svg(figure, "hysteresis", "Hysteresis of a stack with and without its inverse")
-        blocks.append(Picture(drawn, f"Isolated stack of {swept.actuators[worst]}, driven to and fro in open loop."))
+        blocks.append(Picture(drawn, f"Isolated stack of {swept.actuators[worst]}, driven up and down in open loop."))
     return section("Errors and noise", blocks)
 
 
@@ -249,6 +250,6 @@ def _noise_pictures(found: LoopStudy) -> Iterator[Picture]:
     if not np.any(budget.rms > _NOISELESS):
         return
     drawn = to_svg(noise_share_figure(budget), "noise-shares", "Shares of the noise by source")
-    yield Picture(drawn, "Whose the noise is: shares of the mean square of each motion at rest, and its rms.")
+    yield Picture(drawn, "Noise by source: shares of the mean square of each motion in regulation, and its rms.")
     drawn = to_svg(noise_spectrum_figure(budget), "noise-spectrum", "Noise over frequency")
-    yield Picture(drawn, "Where it lies: amplitude densities of the true motion, and its rms summed up from the lowest frequency.")
+    yield Picture(drawn, "Amplitude densities of the true motion, and its cumulative rms from the lowest frequency.")

@@ -35,19 +35,29 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 _LEAST_DAMPED, _MOVED = 0.01, 1e-3
 _TRACKING = ("measured rms", "measured peak", "true rms", "true peak")
 _AIMS = ("rejection", "noise", "settling", "overshoot", "delay margin", "peak of S")
-"""What is compared, in the order of columns."""
+"""Compared quantities, in column order."""
 _BY_COORDINATE = ("rejection", "noise", "settling", "overshoot")
 
 
 def loop_tables(found: LoopStudy) -> list[Table | None]:
-    """The loop, and its parts: charge drive, force feedback, controller."""
+    """Tables of the loop and its parts: charge drive, force feedback, controller."""
     return [loop_table(found), *_charge_tables(found), *_damping_tables(found), *_controller_tables(found)]
 
 
-def loop_table(found: LoopStudy) -> Table:
-    """The loop, and whether it is stable.
+def short_tables(found: LoopStudy) -> list[Table | str | None]:
+    """The loop, bandwidth, margins, time responses and positioning noise, without notes; of an unstable loop with the reason."""
+    margins = margin_tables(replace(found, disk_margin=None))
+    parts = [*_charge_tables(found), *_damping_tables(found), *measured_tables(found), *time_tables(found.runs), noise_table(found)]
+    shown = [replace(each, notes=()) for each in (loop_table(found), *margins, *parts) if each is not None]
+    if not found.stability.stable:
+        shown[0] = loop_table(found)
+    return [*shown, "All tables and notes: --full. With pictures, in one page: --report FILE."]
 
-    By hand: each row is a sentence of several results.
+
+def loop_table(found: LoopStudy) -> Table:
+    """Table of the loop and its stability.
+
+    Not generated from fields: each row combines several results.
     """
     plant, hardware = found.plant, found.plant.hardware
     delay = f"{number(1e6 * hardware.delay, 4)} us"
@@ -74,10 +84,10 @@ def loop_table(found: LoopStudy) -> Table:
 
 
 def _retained(found: Retention) -> str:
-    """How many modes are retained, and why no more."""
+    """Number of retained modes, and the reason."""
     count = f"Of the model's {count_modes(found.total)} {found.retained} are retained"
     if not found.complete:
-        return f"{count}, as stated; {int(np.sum(found.wanted)) - found.retained} more matter to the loop with this controller."
+        return f"{count}, as specified; {int(np.sum(found.wanted)) - found.retained} more are significant with this controller."
     largest = f"a loop gain of {number(found.gain, 3)} at resonance ({number(found.frequency or 0.0, 4)} Hz)"
     change = "a margin appear or vanish" if np.isinf(found.change) else f"{percent(found.change)} of a margin"
     why = "by loop gain with this controller; of the others the static compliance"
@@ -85,7 +95,7 @@ def _retained(found: Retention) -> str:
 
 
 def count_modes(count: int) -> str:
-    """How many modes.
+    """Format a number of modes.
 
     >>> count_modes(1), count_modes(18)
     ('1 mode', '18 modes')
@@ -103,7 +113,7 @@ def _controller(found: LoopStudy) -> str:
 
 
 def _damping_tables(found: LoopStudy) -> list[Table | None]:
-    """Integral force feedback by mode of the plant, and the stiffness that remains."""
+    """Integral force feedback by mode of the plant, and the remaining stiffness."""
     inner = found.damping
     if inner is None:
         return []
@@ -113,18 +123,18 @@ def _damping_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def _charge_tables(found: LoopStudy) -> list[Table | None]:
-    """Stacks at constant charge, and the modes that this moves."""
+    """Stacks at constant charge, and the modes changed by it."""
     held = found.charge
     if held is None:
         return []
     moved = held.rise > _MOVED
     shown = replace(held, by_volts=held.by_volts[moved], by_charge=held.by_charge[moved])
-    note = f"Without modes that change by {percent(_MOVED)} or less."
+    note = f"Omitted: modes that change by {percent(_MOVED)} or less."
     return [result_table(held), array_table("Modes with charge drive", shown, "by_volts", "by_charge", "rise", notes=[note])]
 
 
 def _controller_tables(found: LoopStudy) -> list[Table | None]:
-    """The controller's numbers, loop by loop, and its filters; none of one that is not made of single loops."""
+    """Controller parameters, loop by loop, and its filters; none for other controllers than single loops."""
     loops = found.controller.loops
     if not loops:
         return []
@@ -136,13 +146,14 @@ def _controller_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def margin_tables(found: LoopStudy) -> list[Table | None]:
-    """Bandwidth and margins by coordinate; none in open loop."""
+    """Tabulate bandwidth and margins by coordinate; none in open loop."""
     margins = None if found.margins is None else found.margins.loops
-    return [result_table(each) for each in (found.bandwidths, margins, found.disk_margin) if each is not None]
+    shifted = {percent(each.shift): each for each in found.shifted_peaks}
+    return [result_table(each) for each in (found.bandwidths, margins, found.disk_margin, shifted or None) if each is not None]
 
 
 def measured_tables(found: LoopStudy) -> list[Table]:
-    """Margins on the responses of a test, with those of fit and model at the same lines; none without a test."""
+    """Tabulate margins on a test's responses, with those of fit and model at the same lines; none without a test."""
     seen = found.measured
     if seen is None:
         return []
@@ -164,7 +175,7 @@ def measured_tables(found: LoopStudy) -> list[Table]:
 
 
 def time_tables(runs: Sequence[Run]) -> list[Table | None]:
-    """Steps, tracking errors, learning, limits, and the load on actuators."""
+    """Tabulate steps, tracking errors, learning, limits, and the load on actuators."""
     simulated = {run.course.name: run.simulated for run in runs}
     lost = {name: each for name, each in simulated.items() if np.any(each.out_of_range)}
     followed = {run.course.name: run.tracking for run in runs if run.figures is None}
@@ -181,7 +192,7 @@ def time_tables(runs: Sequence[Run]) -> list[Table | None]:
 
 
 def error_tables(found: LoopStudy) -> list[Table | None]:
-    """Static errors without the loop, noise with it, hysteresis of the stacks."""
+    """Tabulate static errors without the loop, noise with it, hysteresis of the stacks."""
     static = found.static_errors
     return [
         *([] if static is None else [*static_error_tables(static), _load_table(static)]),
@@ -191,7 +202,7 @@ def error_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def static_error_tables(found: RestErrors) -> list[Table]:
-    """Static errors in open loop, without and with lost motion corrected: coordinates reached (rows) by coordinates commanded."""
+    """Tabulate open-loop static errors, without and with correction of lost motion: coordinates reached (rows) by commanded ones."""
     errors = {"ideal mapping R_a": found.ideal_map, "lost-motion gains": found.lost_motion_gains}
     if found.other_gains is not None:
         errors[f"lost-motion gains of the {found.other_model.value} model"] = found.other_gains
@@ -205,7 +216,7 @@ def static_error_tables(found: RestErrors) -> list[Table]:
 
 
 def _load_table(found: RestErrors) -> Table | None:
-    """Deflection of the platform by its loads; `None` where there are none."""
+    """Deflection of the platform by its loads; `None` without loads."""
     if not np.any(found.load):
         return None
     values, units = np.stack([found.load, found.load_left], axis=-1), tuple((unit, unit) for unit in TWIST_UNITS)
@@ -214,7 +225,7 @@ def _load_table(found: RestErrors) -> Table | None:
 
 
 def noise_table(found: LoopStudy) -> Table:
-    """Positioning noise: the rms of every coordinate at rest by kind of source, and as simulated."""
+    """Tabulate positioning noise: the rms of every coordinate in regulation by kind of source, and as simulated."""
     budget, resting = found.noise, found.resting
     columns = {"rms": budget.rms}
     if resting is not None:
@@ -240,7 +251,7 @@ def _noise_notes(found: LoopStudy) -> tuple[str, ...]:
 
 
 def comparison_tables(found: Comparison) -> list[Table | None]:
-    """Controllers compared, and each by coordinate."""
+    """Tabulate compared controllers, and each by coordinate."""
     named = {kind_name(name): each for name, each in found.controllers.items()}
     best = "; ".join(f"{aim}: {kind_name(name)}" for aim, name in found.wins.items())
     slow = [name for name, each in named.items() if each.slowly_rounding]
@@ -257,7 +268,7 @@ def comparison_tables(found: Comparison) -> list[Table | None]:
 
 
 def _mark_best(table: Table, found: Comparison) -> Table:
-    """The comparison with the best value of each column marked."""
+    """Table of the comparison with the best value of each column marked."""
     wins = [found.wins.get(aim) for aim in _AIMS]
     rows = (
         (first, *(replace(cell, mark=Mark.PASS) if name == best else cell for cell, best in zip_longest(cells, wins)))
@@ -267,7 +278,7 @@ def _mark_best(table: Table, found: Comparison) -> Table:
 
 
 def kind_name(name: str) -> str:
-    """The name of a kind of controller as it is read.
+    """Printed name of a controller kind.
 
     >>> kind_name("pi, damped"), kind_name("resonant")
     ('PI, damped', 'resonant')

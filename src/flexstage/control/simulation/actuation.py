@@ -1,4 +1,4 @@
-"""From commands to free strokes, one sample after the other: inverse, converter, limits, hysteresis."""
+"""Actuation path from commands to free strokes, sample by sample: inverse, converter, limits, hysteresis."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def rounder(steps: Array) -> Callable[[Array], Array]:
 
 
 class Actuation:
-    """The actuators of a machine as they run: the strokes last given, the hysteresis and the model of its inverse; at the bias at first.
+    """Running actuators of a machine: the last applied strokes, hysteresis and inverse model, initially at the bias.
 
     >>> from dataclasses import replace
     >>> from flexstage.control.example import integral_loop
@@ -49,9 +49,9 @@ class Actuation:
             self._rest = stacks.step(self._stacks, bias)[1]
 
     def __call__(self, command: Array) -> tuple[Array, Array, Array]:
-        """Return what is asked of the amplifiers, what they give, and the free stroke (m,) [m] for the command of the next sample.
+        """Return the amplifiers' requested and applied strokes, and the free stroke (m,) [m], for the command of the next sample.
 
-        They are equal where there is neither an inverse nor a converter, limits or hysteresis.
+        All are equal without inverse, converter, limits and hysteresis.
         """
         powers, model = self._machine.amplifiers, self._machine.compensation
         if model is not None:
@@ -67,7 +67,7 @@ class Actuation:
         return asked, given, given if self._machine.hysteresis is None else self._stretch(given)
 
     def _stretch(self, given: Array) -> Array:
-        """Free strokes from those given, relative to the strokes at the bias."""
+        """Free strokes for applied ones, relative to the strokes at the bias."""
         powers, stacks, relief = self._machine.amplifiers, self._machine.hysteresis, self._machine.relief
         assert stacks is not None  # noqa: S101
         self._stacks, stroke = stacks.step(self._stacks, given / powers.gain + powers.bias)

@@ -1,4 +1,4 @@
-"""What comes into a loop from outside, sample by sample: disturbances and noise."""
+"""Inputs of a loop from outside, sample by sample: disturbances and noise."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexstage.control.simulation.machine import Machine
 
 @dataclass(frozen=True, eq=False)
 class Inflow:
-    """`disturbances` (n, w) of the plant, and what is added to `readings` (n, g) [m] and `strokes` (n, m) [m]."""
+    """External inputs: `disturbances` (n, w) of the plant, and additions to `readings` (n, g) [m] and `strokes` (n, m) [m]."""
 
     disturbances: Array
     readings: Array
@@ -22,10 +22,10 @@ class Inflow:
 
 
 def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> Inflow:
-    """Named series (n,) of `count` samples in a machine's order; those that are not named are zero.
+    """Arrange named series (n,) of `count` samples in a machine's order; others are zero.
 
-    Names are those of the plant's further inputs (`ground.x`, `platform.fz`) and `noise.<gauge>`, `noise.<actuator>` [m]. Raises
-    `DesignError` for others, for lengths that differ, and for numbers that are not finite, but of `noise.<gauge>`: that reading is lost.
+    Names are the plant's further inputs (`ground.x`, `platform.fz`) and `noise.<gauge>`, `noise.<actuator>` [m]. Raises `DesignError` for
+    unknown names, different lengths, and numbers that are not finite. A non-finite `noise.<gauge>` marks a lost reading.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -44,8 +44,8 @@ def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> Inf
 def _findings(named: Mapping[str, Array], known: list[str], count: int, readings: list[str]) -> Iterator[Finding]:
     for name, values in named.items():
         if name not in known:
-            yield Finding(name, "the loop has no input of this name", suggest_nearest(name, known))
+            yield Finding(name, "unknown input of the loop", suggest_nearest(name, known))
         elif values.shape != (count,):
-            yield Finding(name, f"it is {values.shape}, where the reference has {count} samples", "Give as many")
+            yield Finding(name, f"wrong length (got {values.shape}, expected {count} samples as the reference)", "Use equal lengths")
         elif name not in readings and not np.all(np.isfinite(values)):
-            yield Finding(name, "a number is not finite", "Mend the series")
+            yield Finding(name, "a number is not finite", "Correct the series")

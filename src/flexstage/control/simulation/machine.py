@@ -1,4 +1,4 @@
-"""All that a simulation of a sampled loop computes in one sample: plant, controller, amplifiers, gauges, as numbers."""
+"""Numerical model of one sample of a sampled loop: plant, controller, amplifiers, gauges."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from flexstage.models.linear.model import Channel
 
 @dataclass(frozen=True, eq=False)
 class Amplifiers:
-    """What amplifiers do to a command, one number an actuator (m,), free strokes counted from the bias.
+    """Amplifier model, one number per actuator (m,), free strokes from the bias.
 
-    The command is rounded to the converter's `step` [m] (0: not), kept between `low` and `high` [m] and within `slew` [m/s] of the last
-    one; volts are `bias` + stroke / `gain` ([V], [m/V]; NaN where the stack states none).
+    The command is rounded to the converter's `step` [m] (0: no rounding), limited to `low` to `high` [m], and to a change of `slew` [m/s].
+    The voltage is `bias` + stroke / `gain` ([V], [m/V]; NaN for a stack without data).
     """
 
     low: Array
@@ -38,9 +38,9 @@ class Amplifiers:
 
 @dataclass(frozen=True, eq=False)
 class Relief:
-    """What holding charge leaves of a stack's own way, hysteresis less its mean slope (m,): a share, and all that is slow.
+    """Charge-drive reduction of hysteresis less its mean slope (m,): a remaining share, and the whole slow part.
 
-    `leak` (m,) is the share of what is missing that a sample adds, 1 - exp(-2 pi f T) of the drives' corners f.
+    `leak` (m,) is the recovered share per sample, 1 - exp(-2 pi f T) for the drives' corners f.
     """
 
     residual_hysteresis: Array
@@ -49,16 +49,16 @@ class Relief:
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A sampled loop as a simulation computes it.
+    """Sampled loop as computed by a simulation.
 
-    In each sample k: readings y = C x + D w + noise of the `plant` (outputs `gap.<gauge>`), rounded to `resolution` (g,) [m] (0: not);
-    instead of one that is no finite number or beyond `half_range` (g,) [m] (absent: unlimited) the last good one of its gauge; pose =
-    `pose` (f, g) y; error = reference - pose; the `controller` (inputs any of `error.<c>`, `reference.<c>`, `pose.<c>`,
-    `applied.<actuator>`; outputs `command.<actuator>`); volts by the inverse of `compensation`, or proportional; `amplifiers`; free
-    stroke by `hysteresis` of the volts (less what `relief` takes), or proportional; then the states of both for k + 1. `applied` is what
-    the amplifiers gave less what they were asked for: nought but where they are at a limit.
+    Order within sample k. Readings y = C x + D w + noise of the `plant` (outputs `gap.<gauge>`), rounded to `resolution` (g,) [m] (0: no
+    rounding). A reading that is not finite or beyond `half_range` (g,) [m] (default: unlimited) is replaced by its gauge's last valid one.
+    Then pose = `pose` (f, g) y, error = reference - pose, and the `controller` (inputs any of `error.<c>`, `reference.<c>`, `pose.<c>`,
+    `applied.<actuator>`; outputs `command.<actuator>`). Voltage follows by the inverse of `compensation`, or proportional, then
+    `amplifiers`. Free stroke follows by `hysteresis` of the voltage (reduced by `relief`), or proportional. Last come the states of both
+    for k + 1. `applied` is the amplifiers' output minus the request: zero except at a limit.
 
-    `plant` is sampled; its inputs are named as `actuators`, all others are disturbances; strokes reach no gauge in the same sample.
+    `plant` is sampled. Its inputs named in `actuators` are strokes, all others disturbances; strokes reach no gauge in the same sample.
     """
 
     plant: System
@@ -75,7 +75,6 @@ class Machine:
     relief: Relief | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be simulated."""
         require(_findings(self))
 
     @property
@@ -85,7 +84,7 @@ class Machine:
 
     @property
     def reach(self) -> Array:
-        """The largest readings (g,) [m] that are taken: the gauges' range and half a step of theirs, or the largest finite number."""
+        """Largest valid readings (g,) [m]: the gauges' range and half their step, or the largest finite number."""
         ends = np.full(len(self.gauges), np.inf) if self.half_range is None else self.half_range
         return np.minimum(ends + 0.5 * self.resolution, np.finfo(float).max)
 
@@ -96,26 +95,26 @@ class Machine:
 
     @property
     def disturbances(self) -> tuple[Channel, ...]:
-        """Inputs of the plant that are not strokes."""
+        """Inputs of the plant except strokes."""
         return tuple(channel for channel in self.plant.inputs if channel.name not in self.actuators)
 
     @property
     def motions(self) -> tuple[Channel, ...]:
-        """Outputs of the plant that are not readings."""
+        """Outputs of the plant except readings."""
         return tuple(channel for channel in self.plant.outputs if channel.name not in self.readings)
 
     @property
     def readings(self) -> tuple[str, ...]:
-        """Names of the plant's outputs that the gauges round."""
+        """Names of the plant's gauge outputs."""
         return tuple(f"gap.{name}" for name in self.gauges)
 
     def read(self, prefix: str = "") -> tuple[Channel, ...]:
-        """A channel a gauge, its name behind a prefix, in the unit of its reading."""
+        """One channel per gauge, with a name prefix, in the unit of its reading."""
         units = {channel.name: channel.unit for channel in self.plant.outputs}
         return tuple(Channel(f"{prefix}{name}", units[f"gap.{name}"]) for name in self.gauges)
 
     def strokes(self, prefix: str = "") -> tuple[Channel, ...]:
-        """A channel an actuator, its name behind a prefix, in the unit of its input."""
+        """One channel per actuator, with a name prefix, in the unit of its input."""
         units = {channel.name: channel.unit for channel in self.plant.inputs}
         return tuple(Channel(f"{prefix}{name}", units[name]) for name in self.actuators)
 
@@ -135,10 +134,10 @@ def machine(
     compensation: PrandtlIshlinskii | None = None,
     motions: tuple[str, ...] | None = None,
 ) -> Machine:
-    """A plant with its hardware and a controller as a simulation computes them.
+    """Assemble a plant with hardware and controller for simulation.
 
-    `electric` (of `drive`) turns strokes into volts; hysteresis and compensation need it. `motions` are the outputs of the plant to be kept
-    (absent: all). Raises `DesignError` for a continuous loop, and for whatever `Machine` refuses.
+    `electric` (of `drive`) maps strokes to volts, required by hysteresis and compensation. `motions` are the plant outputs to keep
+    (default: all). Raises `DesignError` for a continuous loop, and as `Machine`.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.run import simulate
@@ -191,29 +190,35 @@ def _relief(powers: Sequence[Amplifier], step: float) -> Relief | None:
 def _findings(given: Machine) -> Iterator[Finding]:
     plant, controller = given.plant, given.controller
     if plant.step is None or controller.step is None or abs(controller.step / plant.step - 1.0) > 1e-9:
-        yield Finding("loop", f"the plant's step is {plant.step} s, the controller's {controller.step} s", "Sample both alike")
+        yield Finding(
+            "loop",
+            f"different sampling (got {plant.step} s for the plant, {controller.step} s for the controller)",
+            "Use one sampling rate",
+        )
     missing = [
         *_missing("plant", plant.input_names, given.actuators),
         *_missing("plant", plant.output_names, given.readings),
         *_missing("controller", controller.output_names, given.commands),
     ]
     yield from missing
-    if not missing and np.any(select(plant, given.actuators, given.readings).D):  # it would have to be known before it is computed
-        yield Finding("plant", "its readings feel the stroke of their own sample", "Give the loop a delay, or the gauges a bandwidth")
+    if not missing and np.any(select(plant, given.actuators, given.readings).D):  # otherwise an algebraic loop
+        yield Finding(
+            "plant", "its readings depend on the stroke of the same sample", "Add a delay to the loop, or a bandwidth to the gauges"
+        )
     if np.any(controller.D[:, [name.startswith("applied.") for name in controller.input_names]]):
-        yield Finding("controller", "its command depends on what is applied of it in the same sample", "Feed it to the states only")
+        yield Finding("controller", "its command depends on the applied input of the same sample", "Connect it to the states only")
     known = [f"{kind}.{name}" for kind in ("error", "reference", "pose") for name in given.names]
     known += [f"applied.{name}" for name in given.actuators]
     for name in controller.input_names:
         if name not in known:
-            yield Finding(name, "a controller has no such input", suggest_nearest(name, known))
+            yield Finding(name, "unknown input of a controller", suggest_nearest(name, known))
     yield from _electric(given)
 
 
 def _missing(kind: str, known: tuple[str, ...], wanted: tuple[str, ...]) -> Iterator[Finding]:
     for name in wanted:
         if name not in known:
-            yield Finding(f"{kind}: {name}", "there is no channel of this name", suggest_nearest(name, known))
+            yield Finding(f"{kind}: {name}", "unknown channel", suggest_nearest(name, known))
 
 
 def _electric(given: Machine) -> Iterator[Finding]:
@@ -222,11 +227,13 @@ def _electric(given: Machine) -> Iterator[Finding]:
         if model is None:
             continue
         if model.axes != len(given.actuators):
-            yield Finding(name, f"it has {model.axes} axes, the stage {len(given.actuators)} actuators", "Give one to each actuator")
+            yield Finding(
+                name, f"wrong number of axes (got {model.axes}, expected {len(given.actuators)}, the actuators)", "Use one per actuator"
+            )
         for actuator, gain in zip(given.actuators, given.amplifiers.gain, strict=True):
             if np.isnan(gain):
-                yield Finding(actuator, f"{name} takes volts, and its stack states no voltage range", 'Add for example voltage_low = "0 V"')
+                yield Finding(actuator, f"{name} needs the stack's voltage range, which is missing", 'Add for example voltage_low = "0 V"')
     if given.compensation is not None and given.relief is not None:
-        yield Finding("compensation", "it is that of stacks on volts, and their charge is held", "Leave it out")
+        yield Finding("compensation", "this hysteresis is for voltage drive, but the stacks have charge drive", "Omit it")
     if given.compensation is not None:
         yield from inverse_findings(given.compensation)

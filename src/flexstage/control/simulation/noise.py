@@ -1,4 +1,4 @@
-"""Noise as series of numbers: what floor, gauges and amplifiers do to a simulated loop, from their spectra and a seed."""
+"""Noise series for a simulated loop: floor, gauges and amplifiers, from their spectra and a seed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flexstage.control.white_noise import gauge_noise
 
 
 class Stream(IntEnum):
-    """What random numbers are for."""
+    """Random stream of a source kind."""
 
     FLOOR = 16
     GAUGE = 17
@@ -25,12 +25,12 @@ class Stream(IntEnum):
 
 
 def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed: int = 0) -> dict[str, Array]:
-    """Series (samples,) by name, as `simulate` takes them: `ground.<c>` of the `floor`, noise of gauges and amplifiers of the hardware.
+    """Generate series (samples,) by name for `simulate`: `ground.<c>` of the `floor`, noise of gauges and amplifiers.
 
-    Gaussian, each its own, the same for the same seed whatever else there is. The floor goes straight from sample to sample (see `ramped`
-    for what that costs); gauge noise is that behind lag and filter, aliased exactly (`gauge_noise`); noise of amplifiers is white up to
-    half the sampling rate. Rounding is no noise here: the simulation rounds. Raises `DesignError` for a continuous loop, and for motions
-    that the ground does not have.
+    Independent Gaussian series, equal for equal seeds, regardless of other sources. Ground motion is linear between samples (see `ramped`
+    for the error). Gauge noise is taken after lag and filter, with exact aliasing (`gauge_noise`). Amplifier noise is white up to half the
+    sampling rate. Rounding is not included: the simulation rounds. Raises `DesignError` for a continuous loop, and for unknown ground
+    motions.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = noise_series(integral_loop().plant, {"ground.x": Spectrum(1e-18)}, 1000, seed=3)
@@ -62,9 +62,9 @@ def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed
 
 
 def series(spectrum: Spectrum, samples: int, step: float, key: tuple[int, ...]) -> Array:
-    """A Gaussian series (samples,) every `step` [s] with a one-sided spectral density, without mean; `key` is its seed and stream.
+    """Generate a zero-mean Gaussian series (samples,) every `step` [s] with a one-sided density; `key` is its seed and stream.
 
-    Frequencies run from 1/(2 samples step) to half the sampling rate: what a spectrum has outside is not in it.
+    Frequencies range from 1/(2 samples step) to half the sampling rate; the spectrum outside is omitted.
 
     >>> one = series(Spectrum(2e-18), 100_000, 0.5e-3, (1,))
     >>> round(float(np.var(one)) / (2e-18 * 1000.0), 1)  # density times half the sampling rate
@@ -76,10 +76,10 @@ def series(spectrum: Spectrum, samples: int, step: float, key: tuple[int, ...]) 
 
 
 def shape(density: Array, samples: int, step: float, key: tuple[int, ...]) -> Array:
-    """White Gaussian numbers shaped by a one-sided density (f,) at the frequencies of a series twice as long, of which half is taken.
+    """Shape white Gaussian numbers by a one-sided density (f,) at the frequencies of a series twice as long; returns half of it.
 
-    X(f) = W(f) (S(f) / 2 T)^(1/2), W the transform of unit white numbers: Gaussian and stationary, with exactly this density at its
-    frequencies; cutting off half of it takes away that its end meets its beginning (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 1991).
+    X(f) = W(f) (S(f) / 2 T)^(1/2), W the transform of unit white numbers: Gaussian and stationary, with this density at its frequencies.
+    The discarded half removes the periodicity (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 1991).
 
     >>> flat = shape(np.full(9, 2.0), 8, 1.0, (7,))  # one-sided 2 T: unit variance, the white numbers themselves
     >>> bool(np.allclose(flat, generator(7).standard_normal(16)[:8]))
@@ -98,4 +98,4 @@ def _findings(given: Plant, floor: Mapping[str, Spectrum]) -> Iterator[Finding]:
     known = [name for name in given.system.input_names if name.startswith("ground.")]
     for name in floor:
         if name not in known:
-            yield Finding(name, "the ground has no such motion", suggest_nearest(name, known))
+            yield Finding(name, "unknown motion of the ground", suggest_nearest(name, known))

@@ -1,4 +1,4 @@
-"""The matrices of a machine: plant and controller by what goes in and out."""
+"""Matrices of plant and controller by inputs and outputs."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from flexstage.control.systems.system import System, select
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """The matrices of plant and controller, by what goes in and out.
+    """Matrices of plant and controller, by inputs and outputs.
 
-    Of the plant, with strokes f, disturbances w, readings y, motions m: x+ = A x + `stroke` f + `disturbed` w, y = `reading` x +
-    `reading_w` w, m = `motion` x + `motion_f` f + `motion_w` w. Of the controller, with reference r, pose q, applied a:
-    z+ = `controller` z + `from_reference` r + `from_pose` q + `from_applied` a, command = `command` z + `command_r` r + `command_q` q.
+    Plant with strokes f, disturbances w, readings y, motions m: x+ = A x + `stroke` f + `disturbed` w, y = `reading` x + `reading_w` w, m =
+    `motion` x + `motion_f` f + `motion_w` w. Controller with reference r, pose q, applied a: z+ = `controller` z + `from_reference` r +
+    `from_pose` q + `from_applied` a, command = `command` z + `command_r` r + `command_q` q.
     """
 
     A: Array
@@ -38,7 +38,7 @@ class Parts:
 
 
 def parts(given: Machine) -> Parts:
-    """The matrices of a machine; the error is taken apart into reference less pose.
+    """Partition the matrices of a machine; the error is replaced by reference minus pose.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -76,7 +76,7 @@ def parts(given: Machine) -> Parts:
 
 
 def _columns(system: System, names: tuple[str, ...]) -> tuple[Array, Array]:
-    """Columns of B and D, nought for inputs it does not have."""
+    """Columns of B and D, zero for absent inputs."""
     known = system.input_names
     found = [np.zeros((len(matrix), len(names))) for matrix in (system.B, system.D)]
     for column, name in enumerate(names):

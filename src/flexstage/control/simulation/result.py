@@ -1,4 +1,4 @@
-"""What a simulation found, and its figures: settling, overshoot, tracking error."""
+"""Simulation result, and its figures of merit: settling, overshoot, tracking error."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from flexstage.spatial.frame import COMPONENTS
 
 @dataclass(frozen=True, eq=False)
 class Simulated(InNotebook):
-    """A loop over time: all series have a row a sample, `times` (n,) [s].
+    """Simulated loop over time: every series has a row per sample, `times` (n,) [s].
 
-    `reference`, `pose` (estimated) and `error` (n, f) [m, rad] by `coordinates`; `motions` (n, p) by `channels`, the true ones; by
-    `actuators`, all as strokes [m] from the bias: `command` of the controller, `asked` of the amplifiers (behind inverse and converter),
-    `given` by them (behind their limits), `stroke` (n, m) that reaches the stage; `volts` (NaN where a stack states none); `readings`
-    (n, g) [m] by `gauges`, as they give them. `saturated` and `slewing` (m,) are the shares of samples at a limit of range, or of speed
-    alone, `out_of_range` (g,) those in which a gauge was beyond its range or lost, and the loop went on by its last good reading.
+    `reference`, `pose` (estimated) and `error` (n, f) [m, rad] by `coordinates`. `motions` (n, p) are true motions by `channels`. By
+    `actuators`, as strokes [m] from the bias: the controller's `command`, `asked` (amplifier input, after inverse and converter), `given`
+    (amplifier output, after limits), and `stroke` (n, m) at the stage. `volts` are NaN for a stack without data. `readings` (n, g) [m] are
+    in `gauges` order, in their units. `saturated` and `slewing` (m,) are the shares of samples at a range limit, or at a speed limit only.
+    `out_of_range` (g,) are the shares with a gauge beyond its range or lost, when its last valid reading was used.
     """
 
     TABLE: ClassVar[Layout] = Layout("Limits of the actuators", "saturated slewing", head="trajectory, actuator")
@@ -51,17 +51,17 @@ class Simulated(InNotebook):
     out_of_range: Annotated[Array, Along("gauges"), Heading("time out of range", digits=3, unit="%")]
 
     def motion(self, name: str) -> Array:
-        """The true motion (n,) of that channel (`platform.x`) [m, rad]; raises `DesignError` where it was not kept."""
+        """True motion (n,) of that channel (`platform.x`) [m, rad]; raises `DesignError` if it was not recorded."""
         known = [channel.name for channel in self.channels]
         if name not in known:
-            raise refuse(name, "this motion was not kept in the simulation", f"{suggest_nearest(name, known)}; name it among the motions")
+            raise refuse(name, "not recorded in the simulation", f"{suggest_nearest(name, known)}; add it to the motions")
         return self.motions[:, known.index(name)]
 
     @property
     def true_error(self) -> Array:
-        """Reference less the platform's true pose (n, f) [m, rad], what noise of the gauges hides from the loop included.
+        """Reference minus true platform pose (n, f) [m, rad], including the loop's response to gauge noise.
 
-        Against the moving ground, as gauges see it, where its motions `relative.<c>` were kept.
+        Relative to the moving ground, as the gauges measure, if its motions `relative.<c>` were recorded.
         """
         known = {channel.name for channel in self.channels}
         names = [f"relative.{channel.name}" for channel in self.coordinates]
@@ -71,16 +71,16 @@ class Simulated(InNotebook):
 
 @dataclass(frozen=True)
 class Excursion:
-    """The largest motion along an axis [`unit`]."""
+    """Largest motion along an axis [`unit`]."""
 
     largest: float
     unit: str
 
 
 def other_motions(found: Simulated, moved: str) -> dict[str, Excursion]:
-    """The largest motion along every axis but the one that is `moved`: what it departs from its reference, or from rest.
+    """Compute the cross-axis error: largest motion along every axis except the `moved` one, from its reference or from zero.
 
-    All of the platform's axes that were kept count, whether the loop controls them or not, and whatever their unit.
+    Includes all recorded platform axes, controlled or not, of any unit.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -102,7 +102,7 @@ def other_motions(found: Simulated, moved: str) -> dict[str, Excursion]:
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """What a loop computes, a row a sample; names as in `Simulated`."""
+    """Series computed by a loop, a row per sample; names as in `Simulated`."""
 
     reference: Array
     pose: Array
@@ -115,7 +115,7 @@ class Series:
 
 
 def simulation_result(given: Machine, found: Series) -> Simulated:
-    """The result from what a loop computed.
+    """Build the result from the computed series.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -145,7 +145,7 @@ def simulation_result(given: Machine, found: Series) -> Simulated:
 
 @check_arguments
 def tracking(found: Simulated) -> Matrix:
-    """Rms and peak of the error by coordinate: as the loop sees it, and against the true pose of the platform.
+    """Compute rms and peak tracking error by coordinate: measured by the loop, and of the true platform pose.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -167,10 +167,10 @@ def _rms(values: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class StepFigures:
-    """Of an answer to steps, by coordinate (f,): `settling` time [s] from the step until the true error stays within `band` [m, rad].
+    """Step response figures by coordinate (f,): `settling` time [s] until the true error stays within `band` [m, rad].
 
-    Infinite where it does not settle. `overshoot` is the largest excess over the step as a share of it, `undershoot` that the other way
-    (both NaN where there is no step); `residual` [m, rad] the true error at the end.
+    Infinite without settling. `overshoot` is the largest excess relative to the step, `undershoot` the same in the opposite direction (both
+    NaN without a step). `residual` [m, rad] is the true error at the end.
     """
 
     coordinates: tuple[Channel, ...]
@@ -183,10 +183,10 @@ class StepFigures:
 
 @check_arguments
 def step_figures(found: Simulated, share: float = 0.02, *, start: float = 0.0) -> StepFigures:
-    """Settling and overshoot of a simulated step that began at `start` [s].
+    """Compute settling time and overshoot of a simulated step at `start` [s].
 
-    The band is a `share` of each coordinate's step; coordinates without a step use the largest step
-    of their unit. The error is that of the true pose.
+    The band is a `share` of each coordinate's step; coordinates without a step use the largest step of their unit. Uses the error of the
+    true pose.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

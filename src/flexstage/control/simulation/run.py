@@ -1,4 +1,4 @@
-"""The simulation itself: one sample after the other, in numpy."""
+"""Time-domain simulation of a loop, sample by sample, in numpy."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _NONE: Mapping[str, Array] = {}
 
 @check_arguments
 def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Annotated[Array, GAPS]] = _NONE) -> Simulated:
-    """The loop's answer to a reference (n, f) [m, rad] and disturbances (n,) each, from rest, sample by sample.
+    """Simulate the loop's response to a reference (n, f) [m, rad] and disturbances (n,), from rest, sample by sample.
 
-    `disturbances` are `ground.<c>`, `platform.fx` ... (further inputs of the plant), `noise.<gauge>` [m] added to a reading before it is
-    rounded (not finite: that reading is lost), `noise.<actuator>` [m] added to a free stroke. Nothing here is random (see `noises`).
-    Between samples the plant is exact for strokes and wrenches that are held and a ground that goes straight (see `zero_order_hold`): there
-    is no error of integration. Raises `DesignError` for unknown names, lengths that differ, and where numbers grow beyond bounds.
+    `disturbances` are `ground.<c>`, `platform.fx` ... (further inputs of the plant), `noise.<gauge>` [m] added to a reading before rounding
+    (not finite: lost reading), `noise.<actuator>` [m] added to a free stroke. The simulation is deterministic (see `noises`). Between
+    samples the plant is exact for zero-order-hold strokes and wrenches and linear ground motion (see `zero_order_hold`), without
+    integration error. Raises `DesignError` for unknown names, different lengths, and diverging numbers.
 
     >>> import numpy as np
     >>> from flexstage.control.example import integral_loop
@@ -33,5 +33,5 @@ def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Annota
     1000.0
     """
     if reference.ndim != 2 or reference.shape[1] != len(given.names) or not len(reference):
-        raise refuse("reference", f"it is {reference.shape}", f"Give a row a sample, with {', '.join(given.names)}")
+        raise refuse("reference", f"it is {reference.shape}", f"Use one row per sample, with {', '.join(given.names)}")
     return simulation_result(given, RunningLoop(given, disturbances, len(reference)).advance(reference))

@@ -1,4 +1,4 @@
-"""A loop that runs, sample after sample: whole simulations, and loops whose reference is only known as it comes."""
+"""Running loop, sample by sample: whole simulations, and loops with a reference supplied during the run."""
 
 from __future__ import annotations
 
@@ -16,11 +16,10 @@ from flexstage.control.simulation.result import Series
 
 
 class RunningLoop:
-    """A machine at rest that is run on by `advance`.
+    """Machine simulated by `advance`, initially at rest.
 
-    `disturbances` are series (`count`,) by name as `simulate` takes them, by default as long as the longest; at their end they run back to
-    their beginning, which leaves the spectra of noise as they are. An axis that is not held takes its reading for its reference: its error
-    is zero, and nothing pulls it back.
+    `disturbances` are series (`count`,) by name as for `simulate`, by default as long as the longest. At the end they are replayed
+    backwards, which preserves noise spectra. An axis that is not `held` uses its reading as reference: zero error, no restoring action.
     """
 
     def __init__(self, given: Machine, disturbances: Mapping[str, Array], count: int | None = None) -> None:
@@ -36,16 +35,16 @@ class RunningLoop:
         self.reset()
 
     def reset(self) -> None:
-        """Put it back to rest."""
+        """Reset to rest."""
         self._row = np.zeros(self._ends[-1])
         self._actuate, self._taken = Actuation(self.machine), np.zeros(len(self.machine.gauges))
         self.count = 0
-        """Samples since it was at rest."""
+        """Samples since the reset."""
 
     def advance(self, wanted: Array, held: Array | None = None) -> Series:
-        """Run as many samples as `wanted` (n, f) has rows, with the axes that are `held` (f,), by default all.
+        """Simulate as many samples as `wanted` (n, f) has rows, with the servo-controlled axes `held` (f,), default all.
 
-        Raises `DesignError` where its numbers grow beyond bounds, and puts the loop back to rest.
+        Raises `DesignError` for diverging numbers, and resets the loop.
         """
         linear, row, ends, reach, rows = self._linear, self._row, self._ends, self.machine.reach, np.empty((len(wanted), self._ends[-1]))
         x, stroke, z, reference, pose, applied, command, asked, gives, reading = np.split(row, ends[:-1])
@@ -85,16 +84,16 @@ class RunningLoop:
 
 
 def require_finite(given: Machine, rows: Array) -> None:
-    """Raise `DesignError` where some of the rows (n, ...) are not finite, with the time at which the loop was lost.
+    """Raise `DesignError` if some of the rows (n, ...) are not finite, with the time of divergence.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
     >>> example = integral_loop()
     >>> require_finite(machine(example.plant, example.controller), np.array([[0.0], [np.inf]]))
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: loop: its numbers have grown beyond bounds 0.0001 s after the start: the loop is unstable. ...
+    flexstage.base.finding.DesignError: loop: the numbers diverged 0.0001 s after the start: the loop is unstable. ...
     """
     lost = ~np.all(np.isfinite(rows), axis=-1)
     if np.any(lost):
-        what = f"its numbers have grown beyond bounds {int(np.argmax(lost)) * given.step:g} s after the start: the loop is unstable"
-        raise refuse("loop", what, "Lower the gains, or see the verdict on its stability for the mode that grows")
+        what = f"the numbers diverged {int(np.argmax(lost)) * given.step:g} s after the start: the loop is unstable"
+        raise refuse("loop", what, "Reduce the gains, or see the growing mode in the stability result")

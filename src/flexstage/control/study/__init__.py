@@ -1,1 +1,1 @@
-"""The loop of a stage as a whole: its set-up, and everything that follows from it."""
+"""Loop study of a stage: its set-up and all results."""

@@ -1,4 +1,4 @@
-"""What is wrong with a set-up by itself, before any stage is looked at."""
+"""Checks of a set-up on its own, independent of a stage."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _TUNED = ("bandwidth", "sensitivity", "goal")
 
 
 def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
-    """All of it: numbers out of their bounds, and numbers that contradict one another; each with its key.
+    """Findings for numbers out of bounds and contradicting numbers, each with its key.
 
     >>> from flexstage.control.study.setup import GaugeSetup
     >>> [str(each) for each in setup_findings(LoopSetup(gauges=GaugeSetup(filter_order=4)))]
@@ -52,16 +52,16 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
 
 def _trajectory(found: TrajectorySetup) -> Iterator[Finding]:
     if isinstance(found, FileMotion) and not Path(found.file).is_file():
-        yield Finding(found.file, "there is no such file", "Check the path: a CSV table of times and poses")
+        yield Finding(found.file, "file not found", "Check the path: a CSV table of times and poses")
     pair = (found.fast, found.slow) if isinstance(found, RasterMotion) else None
     pair = (found.first, found.second) if isinstance(found, SpiralMotion) else pair
     if pair is not None and pair[0] is pair[1]:
-        yield Finding("trajectory", f"both its axes are {pair[0].value}", "Give two different ones")
+        yield Finding("trajectory", f"both its axes are {pair[0].value}", "Use two different ones")
     limits = {} if not isinstance(found, StepMotion) else {name: getattr(found, name) for name in ("speed", "acceleration", "jerk")}
     missing = [name for name, value in limits.items() if value is None]
     if missing and len(missing) < len(limits):
         yield Finding(
-            "trajectory", f"it has no {' and no '.join(missing)}", "Give speed, acceleration and jerk, or none of them for a jump"
+            "trajectory", f"it has no {' and no '.join(missing)}", "Specify speed, acceleration and jerk, or none of them for a step"
         )
 
 
@@ -83,12 +83,12 @@ def _shaking(where: str, found: VibrationSetup) -> Iterator[Finding]:
     tables = {name: getattr(found, name) for name in ("acceleration", "velocity", "displacement") if getattr(found, name)}
     given = [*(["criterion"] if found.criterion is not None else []), *tables]
     if len(given) != 1:
-        what = f"it is given by {' and '.join(given)}" if given else "nothing says how much it shakes"
+        what = f"it is given by {' and '.join(given)}" if given else "no amplitude is specified"
         yield Finding(where, what, "Give one of criterion, acceleration, velocity, displacement")
         return
     if found.criterion is not None:
         if found.frequencies:
-            yield Finding(f"{where}.frequencies", "a criterion has its own frequencies", "Leave them out")
+            yield Finding(f"{where}.frequencies", "a criterion has its own frequencies", "Omit them")
         return
     ((name, table),) = tables.items()
     wanted = len(found.frequencies) or 1
@@ -97,7 +97,7 @@ def _shaking(where: str, found: VibrationSetup) -> Iterator[Finding]:
     if found.frequencies and (len(found.frequencies) < 2 or any(low >= high for low, high in pairwise(found.frequencies))):
         yield Finding(f"{where}.frequencies", "they do not ascend", "Give at least two, ascending")
     if found.frequencies and 0.0 in table:
-        yield Finding(f"{where}.{name}", "a density of a table is 0", "Give positive ones: between points the table is straight in log-log")
+        yield Finding(f"{where}.{name}", "a density of a table is 0", "Use positive ones: the table is interpolated in log-log")
 
 
 def _controller(found: ControllerSetup) -> Iterator[Finding]:
@@ -107,7 +107,7 @@ def _controller(found: ControllerSetup) -> Iterator[Finding]:
         yield Finding(f"controller.{gains[0]}", f"a controller of kind {found.law.value} does not have it", "Leave it out, or take kind pi")
     elif tuned and gains:
         what = f"{tuned[0]} asks for tuning, and {', '.join(gains)} is given" if len(gains) == 1 else _contradiction(tuned, gains)
-        yield Finding("controller", what, "Give what the loop shall reach, or the numbers")
+        yield Finding("controller", what, "Specify either the requirements or the gains")
     yield from _goal(found)
     yield from _loops(found)
     if "derivative" in gains and found.law is not ControllerKind.PID:
@@ -121,13 +121,11 @@ def _controller(found: ControllerSetup) -> Iterator[Finding]:
 
 def _follow(found: FollowSetup, path: TrajectorySetup) -> Iterator[Finding]:
     if found.method is Following.REPETITIVE and not isinstance(path, RasterMotion | SineMotion):
-        what = f"a {path.TOLD_BY[1]} has no period that comes again"
-        yield Finding("follow.method", what, "Take a raster or a sine as trajectory, or follow by learning or the inverse")
+        what = f"a {path.TOLD_BY[1]} is not periodic"
+        yield Finding("follow.method", what, "Use a raster or a sine as trajectory, or tracking by learning or the inverse")
     shaped = found.method in (Following.ZV, Following.ZVD)
     if shaped and found.frequency is None:
-        yield Finding(
-            "follow.frequency", "a shaper is for a mode, and its frequency is not given", 'Write for example frequency = "106 Hz"'
-        )
+        yield Finding("follow.frequency", "a shaper needs the frequency of its mode", 'Use e.g. frequency = "106 Hz"')
     if not shaped and found.frequency is not None:
         yield Finding("follow.frequency", f"{found.method.value} has no mode of its own", "Leave it out, or take zv or zvd")
 
@@ -137,17 +135,21 @@ def _damping(found: DampingSetup) -> Iterator[Finding]:
         yield Finding("damping", "both a damping ratio and a gain are given", "Give one of them: the other follows")
     if found.gauges and found.noise is not None:
         yield Finding(
-            "damping.noise", "it is that of force sensors, and strain gauges sense the legs", "Leave it out: theirs is in the design"
+            "damping.noise",
+            "it applies to force sensors, but strain gauges measure the tension of the legs",
+            "Omit it: the design contains the strain gauges' noise",
         )
 
 
 def _goal(found: ControllerSetup) -> Iterator[Finding]:
-    """What a goal does not go with."""
+    """Findings for keys that contradict an objective."""
     if found.goal is None:
         return
+    if found.quick:
+        yield Finding("controller.goal", "quick tuning has no goal", "Leave one of them out (--quick, --tune-for)")
     if found.law not in (*SEARCHED, ControllerKind.NONE):
         advice = "Take kind pi, pid or lqg, or leave it out"
-        yield Finding("controller.goal", f"a controller of kind {found.law.value} is not searched for", advice)
+        yield Finding("controller.goal", f"a controller of kind {found.law.value} has no optimisation", advice)
     if found.bandwidth is not None:
         yield Finding("controller.goal", "a bandwidth is given too, and a search finds its own", "Leave one of them out")
     if found.notches or found.notching is Notching.NONE:
@@ -155,13 +157,13 @@ def _goal(found: ControllerSetup) -> Iterator[Finding]:
 
 
 def _loops(found: ControllerSetup) -> Iterator[Finding]:
-    """Loops that are named twice, or not at all; numbers without gains, and prefilters of what takes none."""
+    """Findings for loops stated twice or unnamed, numbers without gains, and prefilters without a reference input."""
     names = [name for each in found.loops for name in each.axes]
     for name in dict.fromkeys(names):
         if names.count(name) > 1:
             yield Finding("controller.loops", f"{name} stands {names.count(name)} times", "State the numbers of a loop once")
     if not all(each.axes for each in found.loops):
-        yield Finding("controller.loops", "nothing says of which loops the numbers are", 'Write for example axes = ["x", "y"]')
+        yield Finding("controller.loops", "the axes of the numbers are missing", 'Use e.g. axes = ["x", "y"]')
     if found.loops and not found.stated and found.law in (ControllerKind.PI, ControllerKind.PID):
         yield Finding("controller.loops", "loops are stated without gains", "Give proportional or integral, or leave loops out")
     if found.prefilter is not None and not found.stated:
@@ -180,8 +182,8 @@ def _hysteresis(found: HystereticStacks) -> Iterator[Finding]:
 
 def _compensation(setup: LoopSetup) -> Iterator[Finding]:
     if Compensation.HYSTERESIS in setup.compensate and setup.amplifier.settings.charge is not None:
-        what = "the inverse is that of stacks on volts, and their charge is held"
-        yield Finding("compensate", what, "Leave hysteresis out: what charge leaves of it is another loop")
+        what = "the inverse applies to voltage drive, but the stacks have charge drive"
+        yield Finding("compensate", what, "Omit hysteresis: its remainder under charge drive differs")
     if Compensation.HYSTERESIS in setup.compensate and setup.hysteresis is None:
         yield Finding("compensate", "hysteresis is to be compensated, and the stacks have none", "Give [hysteresis], a file or a width")
     for each in dict.fromkeys(setup.compensate):

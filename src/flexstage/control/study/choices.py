@@ -1,4 +1,4 @@
-"""The words of a loop's set-up. Light: the command line names the choices without loading more."""
+"""Choices of a loop's set-up. A light module: the command line lists the choices without further imports."""
 
 from __future__ import annotations
 
@@ -6,26 +6,28 @@ from enum import Enum
 
 
 class ControllerKind(Enum):
-    """What closes the loop."""
+    """Kind of controller."""
 
     PI = "pi"
-    """Proportional and integral."""
+    """Proportional and integral control."""
     PID = "pid"
-    """The same with a filtered derivative."""
+    """Proportional, integral and filtered derivative control."""
     RESONANT = "resonant"
-    """Integral resonant control: positive feedback that damps the modes, an integrator around it."""
+    """Integral resonant control: positive feedback damps the modes inside an integral loop."""
     LQG = "lqg"
     """Linear-quadratic regulator with a Kalman filter and integrators."""
     NONE = "none"
-    """Nothing: the stage is commanded in open loop."""
+    """Open loop."""
 
 
-SEARCHED = (ControllerKind.PI, ControllerKind.PID, ControllerKind.LQG)
-"""Kinds that a goal searches for; the others are tuned to the highest bandwidth."""
+SEARCHED_BY_DEFAULT = (ControllerKind.PI, ControllerKind.PID)
+"""Kinds that are optimised without a specified goal: LQG takes minutes."""
+SEARCHED = (*SEARCHED_BY_DEFAULT, ControllerKind.LQG)
+"""Kinds with optimisation-based tuning; the others are tuned to the highest bandwidth."""
 
 
 class OfferedKind(str):
-    """A kind of controller that stands in `CONTROLLERS` and not among the words above, by its name there."""
+    """Kind of controller listed in `CONTROLLERS` but not above, by its name there."""
 
     __slots__ = ()
 
@@ -39,7 +41,7 @@ class Axes(Enum):
     """Coordinates in which single loops are closed."""
 
     ACTUATOR = "actuator"
-    """One loop for each actuator: what the platform's error asks of it."""
+    """One loop for each actuator: the platform's error in actuator coordinates."""
     PLATFORM = "platform"
     """One loop for each motion of the platform."""
     MODAL = "modal"
@@ -47,53 +49,53 @@ class Axes(Enum):
 
 
 class Notching(Enum):
-    """Which resonances notch filters are placed on."""
+    """Automatic placement of notch filters."""
 
     AUTOMATIC = "automatic"
-    """On the modes that the loop needs them for."""
+    """On the modes that require them."""
     NONE = "none"
-    """On none but those stated."""
+    """None except those specified."""
 
 
 class Compensation(Enum):
-    """What is fed forward to the actuators."""
+    """Feedforward to the actuators."""
 
     LOST_MOTION = "lost-motion"
     """Commands corrected by the gains of the lost-motion analysis."""
     LOAD = "load"
-    """The strokes that hold up payloads and own weight."""
+    """Strokes that balance payloads and own weight."""
     REFERENCE = "reference"
-    """The commanded trajectory itself; the controller sees what is left."""
+    """The commanded trajectory; the controller corrects the residual."""
     HYSTERESIS = "hysteresis"
     """The inverse of the stacks' hysteresis."""
 
 
 class Following(Enum):
-    """What is commanded along a known path."""
+    """Tracking method for a known path."""
 
     INVERSE = "inverse"
-    """The path through the inverse of the model's loop."""
+    """Inverse of the model's loop applied to the path."""
     LEARNING = "learning"
-    """What passes over it have taught."""
+    """Iterative learning over passes."""
     REPETITIVE = "repetitive"
-    """What the periods before have taught, as it runs."""
+    """Repetitive control, learning from previous periods during the run."""
     ZV = "zv"
-    """The path through a shaper that leaves a mode at rest."""
+    """Zero-vibration shaper for one mode."""
     ZVD = "zvd"
-    """The same, less sensitive to the mode's frequency."""
+    """Zero-vibration-derivative shaper, less sensitive to the mode's frequency."""
 
 
 class StackKind(Enum):
-    """How hysteretic stacks behave."""
+    """Behaviour of hysteretic stacks."""
 
     MODEL = "model"
-    """As the model of their hysteresis says, to the end."""
+    """According to the model of their hysteresis."""
     BOUC_WEN = "bouc-wen"
-    """As Bouc-Wen stacks of the same width: of another kind than what is inverted."""
+    """Bouc-Wen stacks of the same width: a different model than the inverted one."""
 
 
 class Axis(Enum):
-    """A motion of the platform that rasters and spirals go along."""
+    """Platform motion of rasters and spirals."""
 
     X = "x"
     """Along x."""

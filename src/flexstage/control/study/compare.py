@@ -1,4 +1,4 @@
-"""Controllers of one stage side by side: what each reaches, what it costs, and which wins for what."""
+"""Comparison of controllers on one stage: performance, trade-offs, and the best for each quantity."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ from flexstage.mechanism.mechanism import Mechanism
 
 _OWN = (ControllerKind.PI, ControllerKind.PID, ControllerKind.RESONANT, ControllerKind.LQG)
 _SEEN = 0.75
-"""Share of the length of a step after which it counts as not settled within it: lines of a spectrum lead slow ones to their end."""
+"""Share of the step length after which settling counts as not reached: lines of a spectrum end slow responses early."""
 _TURNED = np.geomspace(1.0, 0.1, 9)
-"""Gains by which the output of a controller is multiplied for the front: a tenth is slower by ten, and quiet."""
+"""Output gains of a controller for the trade-off curve: a tenth is ten times slower, with low noise."""
 
 
 CROSSOVER = Heading("sensitivity crossover", digits=4)
@@ -51,9 +51,9 @@ OVERSHOOT = Heading("overshoot", digits=3, unit="%")
 class DetunedController:
     """Detuned controller: the tuned one with its output times `gains` (g,), those that are stable.
 
-    By gain the worst of all loops, without limits and with rounding as white noise: `rejection`, `settling` (NaN: longer than the step
-    that is looked at) and `delay_margin`; `noise` is the rms at rest, poses as lengths, in the geometric mean of the loops (empty: nothing
-    disturbs).
+    By gain the worst of all loops, without limits and with rounding as white noise. `rejection` is the crossover, `settling` the settling
+    time (NaN: longer than the step), and `delay_margin`. `noise` is the rms in regulation, poses as lengths, geometric mean of the loops
+    (empty: no disturbance).
     """
 
     gains: Annotated[Array, RATIO]
@@ -65,13 +65,13 @@ class DetunedController:
 
 @dataclass(frozen=True, eq=False)
 class Rival:
-    """What one controller comes to, by the loop's `coordinates`, whose `units` those of noise are.
+    """Result of one controller, by the loop's `coordinates`; `units` are the units of noise.
 
-    `peak` is the coupled peak of S, `rejection` where |S| first rises through 1, `noise` the rms at rest, `settling` the time
-    to 2 % of a step (infinite: it does not settle), `overshoot` a share of the step, `delay_margin` the least of the loops, `gauge_share`
-    the largest share of the gauges' noise and steps in a mean square (absent: nothing disturbs). `tuned` says how it was found, `detuned`
-    is the same with less gain. `slowly_rounding` are the gauges whose rounding is no white noise, as which it is counted in `noise`;
-    `warnings` are the loop's.
+    `peak` is the coupled peak of S, `rejection` the first crossing of |S| = 1, `noise` the rms in regulation. `settling` is the 2 %
+    settling time (infinite: not settled), `overshoot` relative to the step, `delay_margin` the least of the loops. `gauge_share` is the
+    largest share of gauge noise and quantisation in a mean square (absent: no disturbance). `tuned` is the tuning, `detuned` the same
+    controller with less gain. `slowly_rounding` are gauges whose rounding is not white, as assumed in `noise`; `warnings` belong to the
+    loop.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -100,28 +100,28 @@ class Rival:
 
     @property
     def crossover(self) -> Annotated[float, FREQUENCY, INNER, CROSSOVER]:
-        """The lowest sensitivity crossover."""
+        """Lowest sensitivity crossover."""
         return float(np.min(self.rejection))
 
     @property
     def worst_noise(self) -> Annotated[tuple[str, ...], INNER, Heading("positioning noise")]:
-        """The largest rms of translations and of rotations."""
+        """Largest rms of translations and of rotations."""
         largest = {unit: max(value for value, own in zip(self.noise, self.units, strict=True) if own == unit) for unit in self.units}
         return tuple(f"{1e9 * value:.3g} n{unit}" for unit, value in largest.items())
 
     @property
     def slowest_settling(self) -> Annotated[float, SHORT_TIME, INNER, SETTLING_TIME]:
-        """The longest settling time."""
+        """Longest settling time."""
         return float(np.max(self.settling))
 
     @property
     def largest_overshoot(self) -> Annotated[float, INNER, OVERSHOOT]:
-        """The largest overshoot."""
+        """Largest overshoot."""
         return float(np.max(self.overshoot))
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """What counts, each such that less is better: the worst of all coordinates; noise as the mean of logarithms, absent of none."""
+        """Criteria, all smaller-is-better: the worst of all coordinates; noise as the mean of logarithms, absent without noise."""
         return {
             "rejection": -self.crossover,
             **({"noise": float(np.mean(np.log(self.noise)))} if np.all(self.noise > 0.0) else {}),
@@ -134,27 +134,27 @@ class Rival:
 
 @dataclass(frozen=True, eq=False)
 class Comparison(InNotebook):
-    """Controllers by name, on the same stage, clock, floor and gauges; those that could not be had have their `reasons`."""
+    """Controllers by name, with equal stage, sampling, floor and gauges; failed designs have their `reasons`."""
 
     controllers: Mapping[str, Rival]
     reasons: Mapping[str, str]
 
     @property
     def wins(self) -> Annotated[Mapping[str, str], VIEW]:
-        """Which controller is best at what; what none has is left out."""
+        """Best controller by quantity; missing quantities are omitted."""
         every = {name: each.figures for name, each in self.controllers.items()}
         aims = dict.fromkeys(aim for figures in every.values() for aim in figures)
         return {aim: min((name for name in every if aim in every[name]), key=lambda name: every[name][aim]) for aim in aims}
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """What holds of every controller."""
+        """Warnings common to all controllers."""
         every = [each.warnings for each in self.controllers.values()]
         return tuple(each for each in dict.fromkeys(every[0] if every else ()) if all(each in others for others in every))
 
     @property
     def front(self) -> Annotated[tuple[str, ...], VIEW]:
-        """Controllers that no other beats in rejection, noise, settling and delay margin at once."""
+        """Pareto front: controllers not dominated in rejection, noise, settling and delay margin."""
         points = {name: [each.figures.get(aim, 0.0) for aim in _TRADED] for name, each in self.controllers.items()}
         return tuple(name for name, own in points.items() if not any(_beats(other, own) for other in points.values()))
 
@@ -177,11 +177,11 @@ def compare_controllers(
     tell: Told | None = None,
     workers: int = 0,
 ) -> Comparison:
-    """PI, PID, integral resonant control, LQG and the kinds of `CONTROLLERS`: each tuned to the same set-up, and what steps come to.
+    """Tune PI, PID, integral resonant control, LQG and the kinds of `CONTROLLERS` for one set-up, and compare their step responses.
 
-    With a goal PI, PID and LQG are searched for; the others are tuned to the highest bandwidth within the same peak of S. With `workers`
-    as many processes share the kinds; what comes out is the same. Raises `DesignError` where none of them can be had, or where the set-up
-    states gains, which belong to one kind.
+    With an objective PI, PID and LQG are optimised; the others are tuned to the highest bandwidth within the same peak of S. `workers`
+    processes share the kinds, with equal results. Raises `DesignError` if no design succeeds, or if the set-up contains gains, which belong
+    to one kind.
     """
     asked = replace(setup or LoopSetup(), trajectory=StepMotion())
     rivals = _rivals(mechanism, asked, tested=test is not None)
@@ -204,7 +204,7 @@ _Came: TypeAlias = "Rival | tuple[Finding, ...]"
 
 
 def _every(one: Callable[[Line | None, LoopSetup], _Came], rivals: Mapping[str, LoopSetup], workers: int) -> Iterator[tuple[str, _Came]]:
-    """What every kind comes to, as it is there; those that are searched for first, as they take longest."""
+    """Results of all kinds, as completed; optimised kinds first, because they take longest."""
     slowest = sorted(rivals, key=lambda name: rivals[name].controller.kind not in SEARCHED)
     if not workers:
         yield from ((name, one(None, rivals[name])) for name in slowest)
@@ -216,7 +216,7 @@ def _every(one: Callable[[Line | None, LoopSetup], _Came], rivals: Mapping[str, 
     except CallError as failed:
         if failed.error is not None:
             raise failed.error from None
-        what = "processes died over it again and again"
+        what = "processes terminated repeatedly"
         raise refuse(f"controller {names[id(failed.arguments[0])]}", what, "Free memory, and run it again") from None
 
 
@@ -228,7 +228,7 @@ def _rival_of(
     _line: Line | None,
     asked: LoopSetup,
 ) -> _Came:
-    """What a kind comes to, or why it cannot be had."""
+    """Result of a kind, or the findings of its failure."""
     try:
         return rival(loop_study(mechanism, asked, there=there, solid=solid, test=test))
     except DesignError as error:
@@ -236,7 +236,7 @@ def _rival_of(
 
 
 def _rivals(mechanism: Mechanism, asked: LoopSetup, *, tested: bool) -> dict[str, LoopSetup]:
-    """The set-up with each kind of controller, and PI on legs that force feedback damps, where stacks are in them."""
+    """Set-ups with each kind of controller, and PI with force feedback in the legs of stacks."""
     kinds = (*_OWN, *map(OfferedKind, CONTROLLERS))
     found = {kind.value: replace(asked, controller=_of_kind(asked, kind)) for kind in kinds}
     if asked.damping is None and not tested and expand(mechanism).strokes:
@@ -253,7 +253,7 @@ def _of_kind(asked: LoopSetup, kind: ControllerKind | OfferedKind) -> Controller
 
 
 def rival(study: LoopStudy) -> Rival:
-    """What a closed loop, simulated in steps of all its motions, comes to."""
+    """Summarise a closed loop, simulated in steps of all its motions."""
     names = study.plant.coordinates.names
     steps = {run.course.moved[0]: run.step for run in study.runs if run.step is not None}
     if study.peaks is None or study.bandwidths is None or study.margins is None:
@@ -277,7 +277,7 @@ def rival(study: LoopStudy) -> Rival:
 
 
 def _detuned(study: LoopStudy, settling: float) -> DetunedController:
-    """The same controller with less gain; of all its gain the `settling` [s] is known, however long it takes."""
+    """Same controller with less gain; at full gain the `settling` [s] is known, of any length."""
     loops = platform_loops(study.plant.coordinates)
     seen = view(study.plant, loops, 0.0)
     within = field(seen, TuningSpec(PI_FAMILY, spread=0.0, floor=study.settled.floor))

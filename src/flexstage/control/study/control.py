@@ -1,4 +1,4 @@
-"""The controller of a set-up: tuned to what it shall reach, or of the stated numbers."""
+"""Controller of a set-up: tuned for its specification, or with specified gains."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ from flexstage.control.tuning.spec import Tuning, TuningSpec
 from flexstage.control.tuning.tune import tune
 
 _EXPECTED = 1e-9
-"""Density [m/Hz^0.5] that an observer takes strokes to be disturbed by where no amplifier's noise is stated."""
+"""Density [m/Hz^0.5] of stroke disturbances assumed by an observer without specified amplifier noise."""
 _QUIETEST = 1e-13
-"""Least density [m/Hz^0.5] that it takes gauges to have: it would trust one without noise beyond all measure."""
+"""Lowest gauge noise density [m/Hz^0.5] assumed by an observer: it would rely entirely on a noiseless gauge."""
 _FILTER = 1e3
 
 
 @dataclass(frozen=True)
 class SingleLoop:
-    """One of several loops: its `law`, with the numbers that its kind has, the `notches` behind it, the `prefilter` of its reference."""
+    """Single loop: its `law`, with the parameters of its kind, its `notches`, and the `prefilter` of its reference."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Notch filters and prefilters", "notch_filters prefilter.frequency prefilter.damping prefilter.lead", head="loop"
@@ -53,15 +53,15 @@ class SingleLoop:
 
     @property
     def notch_filters(self) -> Annotated[tuple[str, ...], INNER, Heading("notch filters")]:
-        """Frequencies and depths."""
+        """Frequencies and depths of the notches."""
         return tuple(f"{each.frequency:.5g} Hz to {each.depth:.3g}" for each in self.notches)
 
 
 @dataclass(frozen=True, eq=False)
 class Control:
-    """A controller as a system, and where it is from: what it is made of, and how it was tuned (`None`: it was not).
+    """Controller as a system, with its components and its tuning (`None`: specified).
 
-    `gains` (n, f) are the strokes by which poses are commanded: R_a, or those that correct lost motion.
+    `gains` (n, f) map poses to strokes: R_a, or gains that correct lost motion.
     """
 
     system: System
@@ -71,7 +71,7 @@ class Control:
 
     @property
     def loops(self) -> Annotated[Mapping[str, SingleLoop], VIEW]:
-        """Single loops by name; none of a controller that is not made of any."""
+        """Single loops by name; empty for other controllers."""
         made = self.made_of
         if not isinstance(made, Decentralised):
             return {}
@@ -87,19 +87,21 @@ class Control:
 
     @property
     def tuned(self) -> Annotated[str | None, VIEW]:
-        """How it was tuned."""
+        """Tuning of the controller."""
         return None if self.tuning is None else self.tuning.reason
 
     @property
     def bandwidth(self) -> Annotated[float | None, FREQUENCY]:
-        """To which bandwidth it was tuned, that of the slowest loop."""
+        """Tuned bandwidth, of the slowest loop."""
         return None if self.tuning is None else self.tuning.bandwidth
 
 
-def make_controller(given: ResolvedSetup, gains: Array) -> Control:
-    """The controller that a set-up asks for, `gains` (n, f) being the strokes by which poses are commanded.
+def make_controller(given: ResolvedSetup, gains: Array, known: tuple[Tuning, ...] = ()) -> Control:
+    """Design the controller of a set-up; `gains` (n, f) map poses to strokes.
 
-    Raises `DesignError` for a bandwidth that cannot be reached, with the highest that can and why; for numbers that make no controller.
+    `known` are tunings of the same loops with fewer modes, from which optimisation starts.
+
+    Raises `DesignError` for a bandwidth beyond the maximum, with this maximum and the reason, and for invalid parameters.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.study.resolve import resolve
@@ -116,7 +118,7 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
     if asked.stated:
         made_of = _of_numbers(given, loops, forward)
         return Control(made_of.system(given.step), made_of, None, gains)
-    goal = {} if asked.goal is None else vars(asked.goal)
+    goal = {} if asked.search_goal is None else vars(asked.search_goal)
     spec = TuningSpec(
         family=FAMILIES.get(asked.law.value) or CONTROLLERS.all[asked.law.value],
         bandwidth=asked.bandwidth,
@@ -128,12 +130,12 @@ def make_controller(given: ResolvedSetup, gains: Array) -> Control:
         feedforward=forward,
         **goal,
     )
-    found = (find if goal else tune)(given.plant, loops, spec)
+    found = find(given.plant, loops, spec, known) if goal else tune(given.plant, loops, spec)
     return Control(found.controller.system(given.step), found.controller, found, gains)
 
 
 def _open_loop(given: ResolvedSetup, gains: Array) -> System:
-    """Strokes for the reference, whatever the gauges say."""
+    """Strokes for the reference, without feedback."""
     loop = given.plant.coordinates
     return static(gains, loop.motions("reference."), loop.commands("command."), given.step)
 
@@ -149,7 +151,7 @@ def _loops(given: ResolvedSetup, gains: Array) -> Loops:
 
 
 def _of_numbers(given: ResolvedSetup, loops: Loops, forward: Array | None) -> Decentralised:
-    """Laws, notches and prefilters as stated, loop by loop."""
+    """Specified laws, notches and prefilters, loop by loop."""
     asked = given.setup.controller
     require(_loop_findings(asked, loops.names))
     own = {name: each for each in asked.loops for name in each.axes}
@@ -166,11 +168,11 @@ def _of_numbers(given: ResolvedSetup, loops: Loops, forward: Array | None) -> De
 
 
 def _loop_findings(asked: ControllerSetup, names: tuple[str, ...]) -> Iterator[Finding]:
-    """Numbers of loops that the stage does not have, and loops without any."""
+    """Findings for parameters of unknown loops, and loops without parameters."""
     stated = [name for each in asked.loops for name in each.axes]
     for name in dict.fromkeys(stated):
         if name not in names:
-            what = f"the stage has no such loop: in {asked.coordinates.value} coordinates it has {', '.join(names)}"
+            what = f"unknown loop (expected {', '.join(names)} in {asked.coordinates.value} coordinates)"
             yield Finding(f"controller.loops {name}", what, suggest_nearest(name, names))
     missing = [name for name in names if name not in stated]
     if missing and all(getattr(asked, name) is None for name in GAINS):
@@ -179,7 +181,7 @@ def _loop_findings(asked: ControllerSetup, names: tuple[str, ...]) -> Iterator[F
 
 
 def _law(asked: ControllerSetup, own: LoopNumbers) -> PI | PID:
-    """The law of a loop by its `own` numbers, or those of all loops."""
+    """Law of a loop by its `own` parameters, or the common ones."""
     proportional, integral, derivative, corner = (
         value if (value := getattr(own, name)) is not None else getattr(asked, name) for name in (*GAINS, "filter")
     )
@@ -193,7 +195,7 @@ def _prefilter(stated: PrefilterSetup | None) -> Prefilter | None:
 
 
 def _notch(stated: NotchSetup, given: ResolvedSetup) -> Notch:
-    """As stated; without a depth it cancels the mode next to it."""
+    """Notch as specified; without a depth it cancels the nearest mode."""
     if stated.depth is not None:
         return Notch(stated.frequency, stated.depth) if stated.damping is None else Notch(stated.frequency, stated.depth, stated.damping)
     nearest = int(np.argmin(np.abs(given.plant.frequencies - stated.frequency)))
@@ -202,7 +204,7 @@ def _notch(stated: NotchSetup, given: ResolvedSetup) -> Notch:
 
 
 def _expected_noise(given: ResolvedSetup) -> Disturbances:
-    """Noise of the gauges as stated, with that of their steps, spread evenly up to half the rate; that of the strokes as stated."""
+    """Gauge noise with quantisation, white up to half the sampling rate, and stroke noise, as specified."""
     hardware = given.plant.hardware
     gauges = {
         name: max(float(np.hypot(each.noise_density or 0.0, each.resolution * np.sqrt(given.step / 6.0))), _QUIETEST)

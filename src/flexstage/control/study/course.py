@@ -1,4 +1,4 @@
-"""What is commanded: the trajectories a set-up asks for, as a stage's coordinates let them be."""
+"""Trajectories of a set-up in a stage's coordinates."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ from flexstage.spatial.frame import COMPONENTS
 
 _LENGTH, _ANGLE = 1e-6, 10e-6
 _FADED = 0.5
-"""Periods in which a sine grows."""
+"""Periods over which a sine amplitude increases."""
 _RAMP = 0.1
 _MOST_SAMPLES = 5_000_000
 
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """A trajectory by name; `plane` are two coordinates to be shown in plan.
+    """Named trajectory; `plane` are two coordinates for a plan view.
 
-    It does the same again every `period` [s], from when to when `repeats` [s] says (absent: it does not), and is cut at its `end` [s].
+    It is periodic with `period` [s] within the times `repeats` [s] (default: not periodic), and truncated at its `end` [s].
     """
 
     name: str
@@ -50,24 +50,24 @@ class Course:
 
     @property
     def moved(self) -> Annotated[tuple[str, ...], VIEW]:
-        """The coordinates that it moves."""
+        """Moved coordinates."""
         return self.trajectory.coordinates
 
     @property
     def duration(self) -> Annotated[float, TIME]:
-        """Its duration [s]."""
+        """Duration [s]."""
         return min(self.trajectory.duration, self.end)
 
     @property
     def is_step(self) -> bool:
-        """Whether it is a step, of which settling is asked."""
+        """Whether it is a step, evaluated by settling."""
         return isinstance(self.trajectory, Step)
 
 
 def courses(commanded: TrajectorySetup, coordinates: Coordinates) -> tuple[Course, ...]:
-    """The trajectories of a set-up for a loop of these coordinates: of a step, one for every motion.
+    """Construct the trajectories of a set-up for a loop of these coordinates: for a step, one per motion.
 
-    Raises `DesignError` for motions that the loop does not have, and for numbers that make no trajectory.
+    Raises `DesignError` for unknown motions, and for numbers that make no trajectory.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -122,7 +122,7 @@ def _plane(names: tuple[str, ...]) -> tuple[str, str] | None:
 
 
 def stated_motions(by: AxisAmplitudes) -> dict[str, float]:
-    """Amounts [m, rad] by the motions that are stated.
+    """Amplitudes [m, rad] by the specified motions.
 
     >>> stated_motions(AxisAmplitudes(x=1e-6))
     {'x': 1e-06}
@@ -141,9 +141,9 @@ def _limits(commanded: StepMotion) -> Limits | None:
 
 
 def sampled_course(course: Course, coordinates: Coordinates, step: float, seconds: float) -> tuple[Array, Array]:
-    """Times (n,) [s] and poses (n, f) [m, rad] of a course, sampled every `step` for so many `seconds`.
+    """Sample a trajectory every `step` for so many `seconds`: times (n,) [s] and poses (n, f) [m, rad].
 
-    Raises `DesignError` where that is too short or too long to be simulated.
+    Raises `DesignError` for a duration too short or too long to simulate.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -162,7 +162,7 @@ def sampled_course(course: Course, coordinates: Coordinates, step: float, second
 
 
 def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, limits: StrokeLimits) -> list[Finding]:
-    """What of a course the strokes do not reach; `gains` (strokes by coordinate) are those that the poses are commanded by.
+    """Findings for a trajectory beyond the strokes; `gains` (strokes by coordinate) map the commanded poses.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -172,7 +172,7 @@ def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, l
     >>> loop = coordinates(ideal(stage))
     >>> far = courses(StepMotion(amplitude=AxisAmplitudes(x=1e-3)), loop)[0]
     >>> found = course_findings(far, np.array([[1e-3]]), np.zeros(1), ideal(stage).mapping, stroke_limits(stage))
-    >>> found[0].where, "leaves what the strokes reach" in found[0].what
+    >>> found[0].where, "beyond the strokes" in found[0].what
     ('trajectory x', True)
     """
     found = reach_findings(poses, times, reachable(gains, limits)) if np.all(np.isfinite(limits.full)) else []
@@ -182,7 +182,7 @@ def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, l
 def course_warnings(
     course: Course, poses: Array, times: Array, gains: Matrix, slew: Array, *, units: tuple[str, ...] = ()
 ) -> list[Finding]:
-    """Where a course that is no jump asks amplifiers for more speed than they have: they then run at their limit."""
+    """Warnings for a trajectory, not a step, that exceeds the amplifiers' speed: they saturate."""
     if course.is_step or not np.any(np.isfinite(slew)):
         return []
     found = speed_findings(poses, times, gains, slew, units=units)

@@ -1,4 +1,4 @@
-"""Active damping of a set-up: force feedback in the legs, under the plants that the loop of the pose is closed around."""
+"""Active damping of a set-up: force feedback in the legs, inside the pose loop."""
 
 from __future__ import annotations
 
@@ -30,9 +30,10 @@ _WHOLE = 1e-9
 
 
 def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], asked: DampingSetup) -> tuple[Plant, Plant, ActiveDamping]:
-    """Close the inner loops of a set-up around both plants, which have the links' forces; return both with their description.
+    """Close the inner loops of a set-up around both plants, which have link force outputs; return both with their description.
 
-    Raises `DesignError` where they are unstable, with all modes or with those retained, and for a rate that is no multiple of the loop's.
+    Raises `DesignError` if they are unstable, with all modes or with the retained ones, and for a rate that is not a multiple of the
+    loop's.
     """
     require(_rate_findings(asked.rate, plant.hardware.rate))
     pairs = pair_zeros(model, legs)
@@ -46,14 +47,14 @@ def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], 
     closed, both = close_damping(plant, law, felt), close_damping(whole, law, felt)
     growth = max(closed.system.growth, both.system.growth)
     if growth >= 0.0:
-        what = f"with a gain of {law.gain:.4g} 1/s the inner loops are unstable: they grow by {growth:.3g} 1/s"
-        raise refuse("damping", what, "Ask for less damping; faster amplifiers, a higher lag and a shorter delay let it be more")
+        what = f"the inner loops are unstable at a gain of {law.gain:.4g} 1/s: they grow by {growth:.3g} 1/s"
+        raise refuse("damping", what, "Specify less damping, or use faster amplifiers, a higher lag corner and a shorter delay")
     found = replace(describe_damping(plant, closed, law, felt, pairs), rate=asked.rate)
     return with_damped_modes(closed, found), both, found
 
 
 def _delay(asked: DampingSetup) -> float:
-    """From tension to stroke [s]; of a computer a sample, if nothing is stated, and half a one of the hold behind it."""
+    """Delay from tension to stroke [s]; for a computer by default one sample, plus half a sample of the hold."""
     if asked.rate is None:
         return asked.delay or 0.0
     return (1.0 / asked.rate if asked.delay is None else asked.delay) + 0.5 / asked.rate
@@ -64,11 +65,11 @@ def _rate_findings(inner: float | None, outer: float | None) -> Iterator[Finding
         return
     turns = max(round(inner / outer), 1)
     if abs(inner / (turns * outer) - 1.0) > _WHOLE:
-        what = f"{inner:.6g} Hz is {inner / outer:.6g} times the rate of the loop, {outer:.6g} Hz"
-        yield Finding("damping.rate", what, f"Take a whole multiple of it: {turns * outer:.6g} Hz")
+        what = f"rate must be a multiple of the loop's {outer:.6g} Hz (got {inner:.6g} Hz, ratio {inner / outer:.6g})"
+        yield Finding("damping.rate", what, f"Use {turns * outer:.6g} Hz")
 
 
 def _lowest_zero(plant: Plant, pairs: Pairs) -> float:
-    """The lowest frequency [Hz] without the legs' stiffness, of the modes that the loop feels most."""
+    """Lowest transmission zero [Hz] without the legs' stiffness, of the modes with the largest residues."""
     lowest = (pairs.others[np.argmin(np.abs(pairs.frequencies - each))] for each in plant.frequencies[felt_most(plant)])
     return float(min(lowest))

@@ -1,4 +1,4 @@
-"""Loops that are simulated in their noise."""
+"""Simulation of loops with noise."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ _RINGING, _GONE, _LEAKED = 0.1, 1e-6, 1.5
 
 
 def rest_time(closed: Loop, *, ringing: bool = False) -> float:
-    """How long [s] the loop is given to settle: eight times the time constant of its slowest pole, at most 2 s.
+    """Return the time [s] for initial settling: eight time constants of the slowest pole, at most 2 s.
 
-    Poles that ring count only where they are set `ringing`, by commands that pass the controller by; charge that leaks away is not awaited.
+    Oscillating poles count only if `ringing`, excited by feedforward; charge leakage is not included.
 
     >>> from flexstage.control.example import integral_loop
     >>> rest_time(integral_loop(gain=300.0))
@@ -42,9 +42,9 @@ def rest_time(closed: Loop, *, ringing: bool = False) -> float:
 
 @dataclass(frozen=True, eq=False)
 class DisturbedLoop:
-    """A loop in its noise, which begins `rest` [s] before a simulation does, so that it is stationary by then.
+    """Loop with noise that starts `rest` [s] before a simulation, so that it is stationary.
 
-    The floor begins to shake gently, not at once.
+    Floor vibration fades in.
     """
 
     given: ResolvedSetup
@@ -52,7 +52,7 @@ class DisturbedLoop:
     rest: float
 
     def simulate(self, poses: Array, number: int = 0, held: Array | float = 0.0) -> Simulated:
-        """A simulation of commanded poses (n, f), the `number` of which gives its random numbers, from a pose that is `held` before."""
+        """Simulate commanded poses (n, f) from a pose `held` before; `number` seeds the random numbers."""
         lead, series = self._noise(len(poses), number)
         if not series and not np.any(held):
             return simulate(self.machine, poses)
@@ -60,7 +60,7 @@ class DisturbedLoop:
         return part_of(simulate(self.machine, np.concatenate([before, poses]), series), slice(lead, None))
 
     def begin(self, count: int) -> Callable[[Array], Array]:
-        """A loop of so many samples that runs on by commanded poses and returns the pose, in the noise of number 0."""
+        """Start a loop of so many samples, with noise number 0; it runs by commanded poses and returns the pose."""
         lead, series = self._noise(count, 0)
         running = RunningLoop(self.machine, series)
         running.advance(np.zeros((lead, len(self.machine.names))))
@@ -76,7 +76,7 @@ class DisturbedLoop:
 
 
 def part_of(found: Simulated, part: slice) -> Simulated:
-    """The samples of a simulation in a slice, their time from its start; shares of limits are those of the whole."""
+    """Slice of a simulation, with time from its start; limit shares are those of the whole."""
     names = [field.name for field in fields(Simulated) if np.shape(getattr(found, field.name))[:1] == found.times.shape]
     kept = {name: getattr(found, name)[part] for name in names}
     return replace(found, **(kept | {"times": found.times[part] - found.times[part.start]}))

@@ -1,4 +1,4 @@
-"""The set-up file of a loop: TOML with units, every key absent that the stage settles."""
+"""Set-up file of a loop: TOML with units; missing keys have defaults from the stage."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ FORMAT = "flexstage loop 1"
 
 @check_arguments
 def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
-    """Return the set-up in a file; the files that it names are looked for from its folder.
+    """Return the set-up in a file; relative file names refer to its folder.
 
-    Raises `DesignError` with everything that is wrong with it, each finding with file, line and key.
+    Raises `DesignError` with all errors, each finding with file, line and key.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -37,14 +37,14 @@ def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
 
 @dataclass(frozen=True)
 class SetupChange:
-    """A raw value that goes before the file's, or a function of the file's own; `option` names it in findings."""
+    """Override of a set-up: a raw value that replaces the file's, or a function of the file's value; `option` names it in findings."""
 
     option: str
     value: Any
 
 
 def read_setup(path: str | os.PathLike[str] | None, changes: Mapping[str, SetupChange]) -> tuple[LoopSetup, list[Finding]]:
-    """Return the set-up in a file, none: the default, with the changes by address that fit, and what is wrong with the others.
+    """Return the set-up in a file (default: the default set-up) with valid overrides by address, and findings for the others.
 
     >>> read_setup(None, {"controller.bandwidth": SetupChange("--bandwidth", "30 Hz")})[0].controller.bandwidth
     30.0
@@ -68,7 +68,7 @@ def read_setup(path: str | os.PathLike[str] | None, changes: Mapping[str, SetupC
 
 
 def _apply(table: Any, keys: list[str], value: Any) -> None:
-    """Set a value in a table of tables; what is no table is left for its own finding."""
+    """Set a value in nested tables; another type is left for its own finding."""
     if isinstance(table, dict) and len(keys) > 1:
         _apply(table.setdefault(keys[0], {}), keys[1:], value)
     elif isinstance(table, dict):
@@ -76,7 +76,7 @@ def _apply(table: Any, keys: list[str], value: Any) -> None:
 
 
 def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
-    r"""Return the set-up that a text means; `where` names it in findings.
+    r"""rParse a set-up text; `where` names it in findings.
 
     >>> loads_setup('format = "flexstage loop 1"\nrate = "5 kHz"').rate
     5000.0
@@ -88,7 +88,7 @@ def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
 
 
 def setup_schema() -> dict[str, Any]:
-    """The JSON Schema of a set-up file, for editors.
+    """Return the JSON Schema of a set-up file, for editors.
 
     >>> setup_schema()["properties"]["rate"]["examples"]
     ['4 kHz']
@@ -97,7 +97,7 @@ def setup_schema() -> dict[str, Any]:
 
 
 def example() -> str:
-    """A commented file to start from: what is not commented out is the default.
+    """Return a commented example file; the lines not commented out are the defaults.
 
     >>> example().splitlines()[0]
     'format = "flexstage loop 1"'

@@ -1,4 +1,4 @@
-"""A course as it is commanded where the path is known beforehand: inverted, shaped or learned."""
+"""Command of a trajectory for a known path: inverted, shaped or learned."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ _FEWEST = 2.0
 def follow(
     asked: FollowSetup, closed: Loop, control: System, path: Array, course: Course, *, noisy: DisturbedLoop
 ) -> tuple[Simulated, dict[str, Any]]:
-    """The simulation of a path (n, f) of a course as a set-up wants it followed, with rest around it, and fields of its `Run`.
+    """Simulate a path (n, f) by the set-up's tracking method, with rest around it, and return fields of its `Run`.
 
-    Raises `DesignError` where the loop is not known well enough to be inverted at any frequency.
+    Raises `DesignError` if the loop is not known well enough for an inverse at any frequency.
     """
     step = closed.step or 1.0
     around = round(noisy.rest / step)
@@ -53,10 +53,10 @@ def follow(
 
 
 def _repetition(course: Course, around: int, step: float) -> Repetition:
-    """The period of a course, and where in its samples it repeats; raises `DesignError` where that is less than two periods long."""
+    """Period of a trajectory, and its samples in repetition; raises `DesignError` for less than two periods."""
     period, (start, stop) = course.period or np.inf, course.repeats or (0.0, 0.0)
     count = (stop - start) / period
     if count < _FEWEST:
-        what = f"the {course.name} repeats {count:.3g} times every {period:.4g} s, and what is learned in one period acts in the next"
-        raise refuse("follow", what, "Take more lines or periods: 6 periods leave little of what repeats")
+        what = f"the {course.name} repeats {count:.3g} times every {period:.4g} s, but learning acts one period later"
+        raise refuse("follow", what, "Use more lines or periods: 6 periods remove most of the repeating error")
     return Repetition(period, slice(around + round(start / step), around + round(stop / step)))

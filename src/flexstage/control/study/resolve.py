@@ -1,4 +1,4 @@
-"""A set-up with everything settled by the stage: rate, delay, hardware, plant, floor."""
+"""Complete set-up with defaults from the stage: rate, delay, hardware, plant, floor."""
 
 from __future__ import annotations
 
@@ -42,19 +42,18 @@ _OVER_HIGHEST = 10.0
 _LEAST_OVER_HIGHEST = 4.0
 _MOST_LATE = 50
 _RESONANCE = 0.01
-"""Modes whose resonance is this share of a static stroke are retained from the start; others if the controller's loop gain asks for it."""
+"""Modes with at least this resonance, relative to a static stroke, are retained initially; others by the controller's loop gain."""
 
 
 @dataclass(frozen=True, eq=False)
 class ResolvedSetup:
-    """What a set-up means for a stage: its kinematics, its linear model by the set-up's model, the plant, the floor's spectra by input.
+    """Set-up resolved for a stage: its kinematics, linear model, plant, and the floor's spectra by input.
 
-    `plant` has the modes that its loop retains, or as many as the set-up says; `whole` all of the model, `stage` too, without inner loops.
-    `highest` [Hz] is that of the platform's modes, of as many as the loop has coordinates. `displaced`: the model is that of the stage
-    brought somewhere, where it has already sagged; `loaded` what its dead load changes as drawn, whose model it is where that is felt.
-    Where the plant is a measured one, `predicted` is that of the model. `damping` is what inner loops do, which the plants then have;
-    `charge` what amplifiers of charge do, which they have too, while `model` is that at constant volts, which counts at rest. `solid` is
-    the stage by finite elements, where that is the model.
+    `plant` has the modes retained for the loop, or as many as specified; `whole` has all modes of the model, `stage` too, without inner
+    loops. `highest` [Hz] is the highest of the platform modes, as many as loop coordinates. `displaced`: the model is linearised at an
+    operating point, deflection included. `loaded` is the effect of permanent load on the nominal stage, and defines the model if
+    significant. With a measured plant, `predicted` is the model's. `damping` describes the inner loops, `charge` the charge amplifiers; the
+    plants include both, while `model` is at constant voltage, valid for statics. `solid` is the finite-element stage, if it is the model.
     """
 
     mechanism: Mechanism
@@ -75,7 +74,7 @@ class ResolvedSetup:
 
     @property
     def model_name(self) -> str:
-        """What the plant is a model by."""
+        """Name of the plant's model."""
         return self.setup.model.value if self.solid is None else f"solid, elements of order {self.solid.order}"
 
     @property
@@ -90,12 +89,12 @@ class ResolvedSetup:
 
 
 def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None = None, solid: FeaModes | None = None) -> ResolvedSetup:
-    """Settle a set-up for a stage, drawn or as small motions about where it is brought, or where its dead load brings it if that is felt.
+    """Resolve a set-up for a stage: nominal, at an operating point, or under permanent load if that is significant.
 
-    With a `solid` the model is that of the drawn stage by finite elements; what kinematics says is the ideal stage's all the same.
+    With a `solid` the model is the nominal finite-element stage; the kinematics remains that of the ideal stage.
 
-    Raises `DesignError` with all findings: of the set-up itself, gauges that do not tell the pose, actuators that cannot make it, stacks
-    that do not state what amplifiers need, sampling too slow for the platform's modes, a model without stiffness.
+    Raises `DesignError` with all findings: of the set-up, gauges that cannot observe the pose, actuators that cannot produce it, missing
+    stack data for amplifiers, a sampling rate too low for the platform's modes, a model without stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = resolve(double_triangle(), LoopSetup())
@@ -108,7 +107,7 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None
     drives = len(kinematics.actuators) + len(kinematics.thrusts)
     if not kinematics.coordinates or not drives:
         what = f"the platform has {len(kinematics.coordinates)} ideal motions and {drives} actuators"
-        raise refuse("loop", f"{what}: there is nothing to control", "Free a motion in the design, and add an actuator that drives it")
+        raise refuse("loop", f"{what}: no motion to control", "Release a motion in the design, and add an actuator for it")
     model = solid.model if solid is not None else there.linear if there is not None else felt(mechanism, setup.model)
     if model is None:
         raise refuse("model", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
@@ -147,7 +146,7 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None
 
 
 def retain_modes(given: ResolvedSetup, wanted: Array) -> ResolvedSetup:
-    """The same set-up with the `wanted` modes (k,) of the whole plant; inner loops are designed on these.
+    """Return the same set-up with the `wanted` modes (k,) of the whole plant; inner loops are designed on these.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> found = resolve(parallelogram(), LoopSetup())
@@ -161,7 +160,7 @@ def retain_modes(given: ResolvedSetup, wanted: Array) -> ResolvedSetup:
 
 
 def _with_inner_loops(given: ResolvedSetup, found: Plant, stage: StagePlant) -> ResolvedSetup:
-    """The set-up with this plant of the stage, behind amplifiers of charge and force feedback where it has them."""
+    """Set-up with this plant of the stage, behind charge amplifiers and with force feedback, if specified."""
     whole, charge, damping = stage.plant, None, None
     if stage.drives:
         charge = describe_charge(found, given.model, stage.moving, stage.drives)
@@ -174,10 +173,10 @@ def _with_inner_loops(given: ResolvedSetup, found: Plant, stage: StagePlant) -> 
 
 @dataclass(frozen=True, eq=False)
 class StagePlant:
-    """The stage with all modes of its model, before inner loops are closed: plants with some of the modes are made from it.
+    """Stage with all modes of its model, before inner loops: the source of reduced plants.
 
-    `moving` is the model at constant charge where amplifiers hold it, in the legs `charged` with their `drives`; `sensed` are the legs
-    with force feedback.
+    `moving` is the model at constant charge for charge drives, in the legs `charged` with their `drives`. `sensed` are the legs with force
+    feedback.
     """
 
     plant: Plant
@@ -188,7 +187,7 @@ class StagePlant:
 
 
 def _charges(mechanism: Mechanism, model: LinearModel, setup: LoopSetup) -> tuple[tuple[Leg, ...], Mapping[str, ChargeDrive]]:
-    """The legs that amplifiers hold at their charge, and their drives; empty where there are none."""
+    """Legs with charge drive, and their drives; empty without any."""
     if setup.amplifier.settings.charge is None:
         return (), {}
     powers = sampling_chain(mechanism, amplifiers=setup.amplifier.settings).amplifiers
@@ -197,7 +196,7 @@ def _charges(mechanism: Mechanism, model: LinearModel, setup: LoopSetup) -> tupl
 
 
 def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
-    """The same loop on the plant that a test found. Raises `DesignError` as `measured_plant` does.
+    """Return the same loop on the identified plant of a test. Raises `DesignError` as `measured_plant` does.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.experiment.example import one_mode_record
@@ -205,19 +204,17 @@ def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
     >>> on_test(resolve(parallelogram(), LoopSetup()), identify(one_mode_record()))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: --record: B: no input of the record is called so. There are u; a loop needs all.
-    --record: S: no output of the record is called so. There are y; a loop needs all.
+    flexstage.base.finding.DesignError: --record: B: no input channel of this name in the record. There are u; a loop needs all.
+    --record: S: no output channel of this name in the record. There are y; a loop needs all.
     """
     if given.setup.damping is not None:
-        raise refuse(
-            "damping", "the plant is that of a test, which tells no forces in the legs", "Record the stage with its inner loops closed"
-        )
+        raise refuse("damping", "the test's plant has no forces in the legs", "Record the stage with its inner loops closed")
     seen = measured_plant(given.plant, given.model, found)
     return replace(given, plant=seen, whole=seen, predicted=given.plant, stage=None)
 
 
 def _settle(setup: LoopSetup, *, forced: bool) -> LoopSetup:
-    """The usual controller where none is stated: force moves a mass above its resonance, and what is as late as that needs a lead."""
+    """Default controller: force-driven masses need phase lead above their resonance."""
     asked = setup.controller
     kind = ControllerKind.PID if forced and not asked.stated and asked.kind is None else asked.law
     fed = tuple(each for each in setup.compensate if not forced or each is not Compensation.LOST_MOTION)
@@ -225,19 +222,19 @@ def _settle(setup: LoopSetup, *, forced: bool) -> LoopSetup:
 
 
 def _force_findings(kinematics: Kinematics, setup: LoopSetup) -> Iterator[Finding]:
-    """What is asked of stacks where forces drive the stage."""
+    """Findings for stack options of a force-driven stage."""
     if kinematics.thrusts and setup.hysteresis is not None:
-        yield Finding("hysteresis", f"forces drive the stage ({', '.join(kinematics.thrusts)}), and it has no stacks", "Leave it out")
+        yield Finding("hysteresis", f"forces drive the stage ({', '.join(kinematics.thrusts)}), and it has no stacks", "Omit it")
     if kinematics.thrusts and setup.amplifier.settings.charge is not None:
-        what = f"it holds the charge of stacks, and forces drive the stage ({', '.join(kinematics.thrusts)})"
-        yield Finding("amplifier.kind", what, "Leave kind out: amplifiers of coils drive the current")
+        what = f"charge drive needs stacks, but forces drive the stage ({', '.join(kinematics.thrusts)})"
+        yield Finding("amplifier.kind", what, "Omit kind: coil amplifiers control the current")
     if kinematics.thrusts and Compensation.LOAD in setup.compensate:
-        what = "what loads take of the forces is not worked out"
-        yield Finding("compensate", what, "Leave load out: the controller's integrator carries it")
+        what = "load compensation is not supported for forces"
+        yield Finding("compensate", what, "Omit load: the controller's integrator supplies these forces")
 
 
 def highest_platform_mode(mechanism: Mechanism, model: LinearModel, count: int) -> float:
-    """The highest [Hz] of the `count` lowest platform modes: those that move as the stage is meant to.
+    """Return the highest frequency [Hz] of the `count` lowest platform modes, along ideal motions.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -248,7 +245,7 @@ def highest_platform_mode(mechanism: Mechanism, model: LinearModel, count: int) 
 
 
 def default_rate(highest: float) -> float:
-    """The sampling rate [Hz] where none is stated: 10 kHz, or ten times the highest platform mode, rounded up to 1, 2 or 5 times a power.
+    """Choose the default sampling rate [Hz]: 10 kHz, or ten times the highest platform mode, rounded up to 1, 2 or 5 times a power of ten.
 
     >>> default_rate(173.0), default_rate(2853.9)
     (10000.0, 50000.0)
@@ -257,7 +254,7 @@ def default_rate(highest: float) -> float:
 
 
 def round_up(value: float) -> float:
-    """The next of 1, 2 or 5 times a power of ten.
+    """Round up to 1, 2 or 5 times a power of ten.
 
     >>> round_up(0.03)
     0.05
@@ -276,8 +273,8 @@ def _rate_findings(rate: float, highest: float) -> Iterator[Finding]:
 
 def _delay_findings(samples: float) -> Iterator[Finding]:
     if samples > _MOST_LATE:
-        what = f"it is {samples:.4g} samples long: every stroke under way would be a state of its own"
-        yield Finding("delay", what, f"Give {_MOST_LATE} samples at most, or sample more slowly")
+        what = f"too long (got {samples:.4g} samples): each delayed stroke is a state"
+        yield Finding("delay", what, f"Use at most {_MOST_LATE} samples, or a lower sampling rate")
 
 
 def _hardware(mechanism: Mechanism, setup: LoopSetup, rate: float, delay: float) -> Hardware:
@@ -291,7 +288,7 @@ def _hardware(mechanism: Mechanism, setup: LoopSetup, rate: float, delay: float)
 
 
 def _sensing(gauges: GaugeSetup, unit: str) -> GaugeSettings:
-    """Settings of a gauge of that unit: noise and steps of a set-up are those of displacement gauges."""
+    """Gauge settings for that unit: noise and steps of a set-up belong to displacement gauges."""
     return GaugeSettings(
         bandwidth=gauges.bandwidth,
         noise_density=gauges.noise if unit == "m" else None,

@@ -1,4 +1,4 @@
-"""Errors at rest in open loop: by the ideal map alone, with gains that correct lost motion, by gains of another model."""
+"""Static errors in open loop: with the ideal map, with gains that correct lost motion, and with gains of another model."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from flexstage.models.theory import Model
 
 @dataclass(frozen=True, eq=False)
 class RestErrors(InNotebook):
-    """Errors at rest of the stage by its model: commanded by R_a (`ideal_map`), and by the gains of the same model (`lost_motion_gains`).
+    """Static errors of the stage by its model: commanded by R_a (`ideal_map`), and by the gains of the same model (`lost_motion_gains`).
 
-    `other_gains` is what gains of the `other_model` leave on it (`None` where that model does not have the stage). `load` (6,) [m, rad]
-    is the twist of the platform under all its loads, strokes held, `load_left` (6,) what of it no stroke takes back, `load_strokes` (n,)
-    [m] those that take back the rest.
+    `other_gains` is the error with gains of the `other_model` (`None` if that model does not apply). `load` (6,) [m, rad] is the platform's
+    deflection under all its loads, strokes fixed. `load_left` (6,) is its part outside the strokes' motions, `load_strokes` (n,) [m] the
+    strokes that cancel the other part.
     """
 
     ideal_map: StaticError
@@ -41,7 +41,7 @@ class RestErrors(InNotebook):
 
 
 def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
-    """Errors at rest of a settled set-up.
+    """Compute the static errors of a resolved set-up.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -67,7 +67,7 @@ def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
 
 
 def _load(given: ResolvedSetup) -> Array:
-    """How far the dead load moves the platform (6,) [m, rad]: nought where the stage is brought somewhere, as strokes count from there."""
+    """Platform deflection (6,) [m, rad] under permanent load; zero at an operating point, the reference of strokes there."""
     if given.displaced:
         return np.zeros(6)
     sagged = None if given.loaded is None else given.loaded.state

@@ -1,4 +1,4 @@
-"""Simulations of a loop: every course of its set-up."""
+"""Simulations of a loop: all trajectories of its set-up."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ def _settled(time: float) -> Mark:
 
 @dataclass(frozen=True, eq=False)
 class StepAnswer:
-    """What a step of `size` [`unit`] came to, along its own coordinate: `settling` time [s], infinite where it does not settle.
+    """Response to a step of `size` [`unit`] in its own coordinate: `settling` time [s], infinite without settling.
 
-    `overshoot` is a share of the step, `residual` [`unit`] the true error at the end, `others` what every other axis of the platform did,
-    `largest` (f,) [m, rad] the largest true error of each coordinate.
+    `overshoot` is relative to the step, `residual` [`unit`] the true error at the end. `others` are the motions of all other platform axes.
+    `largest` (f,) [m, rad] are the largest true errors of the coordinates.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -75,7 +75,7 @@ class StepAnswer:
 
     @property
     def cross_axis_error(self) -> Annotated[tuple[str, ...], INNER, Heading("cross-axis error")]:
-        """The largest motion of each unit, and its axis; below 0.1 fm, or frad, it is rounding."""
+        """Largest motion of each unit, with its axis; below 0.1 fm or frad it is rounding."""
         largest = {
             each.unit: max((other.largest, name) for name, other in self.others.items() if other.unit == each.unit)
             for each in self.others.values()
@@ -85,16 +85,16 @@ class StepAnswer:
 
 @dataclass(frozen=True)
 class CoilHeat:
-    """What a force actuator bears where a course is run over and over: the `rms` of its input [`unit`], and the most it may be `held` at.
+    """Thermal load of a force actuator in a repeated trajectory: `rms` of its input [`unit`], and its continuous limit `held`.
 
-    `power` [W] is what it turns into heat and `warming` [K] by how much that warms it in the end; absent where its data do not tell.
+    `power` [W] is the dissipated power, and `warming` [K] the steady temperature rise; absent without data.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Heat of force actuators",
         "rms held power warming",
         head="trajectory, actuator",
-        notes=("Each trajectory repeated for ever, without heat removed by motion.",),
+        notes=("Each trajectory repeated indefinitely, without heat removal by motion.",),
     )
 
     rms: Annotated[float, UnitIn("unit"), Heading("rms input", digits=3)]
@@ -106,10 +106,10 @@ class CoilHeat:
 
 @dataclass(frozen=True)
 class LegUse:
-    """What force feedback takes of an amplifier: the largest stroke [m] that it has `added`, and of both loops together the `largest`.
+    """Amplifier load by force feedback: the largest stroke [m] `added`, and the `largest` of both loops together.
 
-    `fastest` [m/s] is how fast both change together from sample to sample. `reach` [m] is how far the amplifier goes that way, `slew` [m/s]
-    how fast: infinite where nothing bounds it.
+    `fastest` [m/s] is the largest rate of both together between samples. `reach` [m] is the amplifier's limit in that direction, `slew`
+    [m/s] its rate limit: infinite without a limit.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -127,27 +127,27 @@ class LegUse:
 
     @property
     def is_held(self) -> Annotated[bool, VIEW, Heading("achievable", mark={True: Mark.PASS, False: Mark.FAIL}.__getitem__)]:
-        """Whether the amplifier gives it."""
+        """Whether the amplifier's limits are kept."""
         return self.largest <= self.reach and self.fastest <= self.slew
 
     @property
     def stroke_share(self) -> Annotated[float, INNER, Heading("share of stroke", digits=3, unit="%")]:
-        """The largest stroke over that of the amplifier."""
+        """Largest stroke relative to the amplifier's limit."""
         return self.largest / self.reach
 
     @property
     def speed_share(self) -> Annotated[float | None, INNER, Heading("share of speed", digits=3, unit="%")]:
-        """The largest speed over that of the amplifier; absent where nothing bounds it."""
+        """Largest rate relative to the amplifier's limit; absent without a limit."""
         return None if np.isinf(self.slew) else self.fastest / self.slew
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A course and what came of it: `figures` of a step, `tracking` errors (rms and peak, as seen by the gauges and true).
+    """Simulated trajectory: `figures` of a step, `tracking` errors (rms and peak, measured by the gauges and true).
 
-    `learned` is what passes over it have taught, `repeated` what its periods have, where the set-up asks for that; `heat` what force
-    actuators bear by name, `legs` what inner loops take of their amplifiers. `commanded` (n, f) is what the loop is
-    asked to follow where that is not the course itself, from some rest before it on.
+    `learned` and `repeated` are results of iterative and repetitive learning, if requested. `heat` is the load of force actuators by name,
+    `legs` the amplifier load of inner loops. `commanded` (n, f) is the command if different from the trajectory, including some rest before
+    it.
     """
 
     course: Course
@@ -163,13 +163,13 @@ class Run:
 
     @property
     def seconds(self) -> Annotated[float, VIEW]:
-        """How long it was simulated [s]."""
+        """Simulated duration [s]."""
         times = self.simulated.times
         return float(times[-1] + (times[1] - times[0]))
 
     @property
     def step(self) -> Annotated[StepAnswer | None, VIEW]:
-        """The answer where the course is a step."""
+        """Response, if the trajectory is a step."""
         if self.figures is None:
             return None
         seen, index = self.simulated, self.index
@@ -186,19 +186,19 @@ class Run:
 
     @property
     def index(self) -> int:
-        """Place of the first coordinate that the course is about."""
+        """Index of the first moved coordinate."""
         return [channel.name for channel in self.simulated.coordinates].index(self.course.moved[0])
 
 
 def runs(
     given: ResolvedSetup, control: Control, closed: Loop, stacks: Stacks | None = None, offset: Array | None = None
 ) -> tuple[Run, ...]:
-    """Simulate every course of a set-up.
+    """Simulate all trajectories of a set-up.
 
-    Steps are simulated without noise, all else with it; gauges are read in their steps, amplifiers keep to their limits, and the stacks
-    have the hysteresis of `stacks`, inverted where the set-up says so. A loop is simulated until it has settled (see `rest_time`), or
-    for the seconds that the set-up says. `offset` (n,) [m] are strokes that loads have taken up already. Raises `DesignError` with all
-    findings: motions that the stage does not have, courses beyond the strokes.
+    Steps are simulated without noise, all else with it. Gauge resolution and amplifier limits apply. The stacks have the hysteresis of
+    `stacks`, inverted if specified. A loop is simulated until settled (see `rest_time`), or for the set-up's duration. `offset` (n,) [m]
+    are strokes already used by loads. Raises `DesignError` with all
+    findings: unknown motions, trajectories beyond the strokes.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.systems.closed import loop
@@ -240,7 +240,7 @@ def runs(
 
 
 def _with_heat(given: ResolvedSetup, run: Run) -> Run:
-    """The run with what its force actuators bear; a warning where that is more than they may be held at."""
+    """Run with the load of its force actuators; a warning above their continuous limit."""
     assembly, heat, warnings = expand(given.mechanism), {}, []
     for number, channel in enumerate(given.plant.coordinates.commands()):
         if channel.name not in assembly.thrusts or not isinstance(part := assembly.actuator(channel.name), ThrustActuator):
@@ -251,13 +251,13 @@ def _with_heat(given: ResolvedSetup, run: Run) -> Run:
         told = (None if power is None else float(power), None if warming is None else float(warming))
         heat[channel.name] = CoilHeat(rms, channel.unit, min(ends, default=None), *told)
         if ends and rms > min(ends):
-            what = f"{channel.name} runs at {rms:.3g} {channel.unit} rms, and bears {min(ends):.3g} {channel.unit} for ever"
-            warnings.append(Finding(f"trajectory {run.course.name}", what, "Rest between courses, or command less"))
+            what = f"{channel.name} runs at {rms:.3g} {channel.unit} rms, above its continuous limit of {min(ends):.3g} {channel.unit}"
+            warnings.append(Finding(f"trajectory {run.course.name}", what, "Pause between trajectories, or reduce the amplitude"))
     return replace(run, heat=Table(heat), warnings=(*run.warnings, *warnings)) if heat else run
 
 
 def _with_legs(run: Run, computed: Machine) -> Run:
-    """The run with what inner loops take of their amplifiers; a warning where that is more than these give, which is simulated so."""
+    """Run with the amplifier load of inner loops; a warning beyond the limits, which the simulation does not apply."""
     seen, powers = run.simulated, computed.amplifiers
     channels = [channel.name for channel in seen.channels]
     used, warnings = {}, []
@@ -272,13 +272,13 @@ def _with_legs(run: Run, computed: Machine) -> Run:
         used[name] = LegUse(float(np.max(np.abs(added))), abs(float(both[place])), reach, fastest, float(powers.slew[number]))
         if not used[name].is_held:
             what = f"with force feedback {name} goes to {1e6 * used[name].largest:.4g} um of {1e6 * reach:.4g} um"
-            rates = f"at up to {1e3 * fastest:.4g} mm/s of {1e3 * used[name].slew:.4g} mm/s, and is simulated as if its amplifier gave it"
-            warnings.append(Finding(f"trajectory {run.course.name}", f"{what} {rates}", "Command less or more slowly, or damp less"))
+            rates = f"at up to {1e3 * fastest:.4g} mm/s of {1e3 * used[name].slew:.4g} mm/s; the simulation ignores these limits"
+            warnings.append(Finding(f"trajectory {run.course.name}", f"{what} {rates}", "Reduce amplitude, speed or damping"))
     return replace(run, legs=Table(used), warnings=(*run.warnings, *warnings)) if used else run
 
 
 def command_ends(given: ResolvedSetup) -> StrokeLimits:
-    """Strokes around the bias, or the inputs of force actuators."""
+    """Limits of strokes around the bias, or of the inputs of force actuators."""
     if not given.kinematics.thrusts:
         return stroke_limits(given.mechanism)
     powers = [given.plant.hardware.amplifiers[name] for name in given.plant.actuators]
@@ -287,7 +287,7 @@ def command_ends(given: ResolvedSetup) -> StrokeLimits:
 
 
 def driven_machine(given: ResolvedSetup, control: Control, stacks: Stacks | None = None) -> Machine:
-    """The loop as it is simulated: hardware with its limits and steps, and hysteretic `stacks` that may creep."""
+    """Loop for simulation: hardware with limits and quantisation, and hysteretic `stacks` with optional creep."""
     if stacks is None:
         return machine(given.plant, control.system, _electric(given))
     inverted = stacks.model if Compensation.HYSTERESIS in given.setup.compensate else None
@@ -296,14 +296,14 @@ def driven_machine(given: ResolvedSetup, control: Control, stacks: Stacks | None
 
 
 def _electric(given: ResolvedSetup) -> Drive | None:
-    """Voltages of the stacks, where all state them."""
+    """Voltages of the stacks, if all have data."""
     piezos = dict(piezo_stacks(given.mechanism))
     stated = all(each.voltage_low is not None and each.voltage_high is not None for each in piezos.values())
     return drive(given.mechanism) if stated and piezos and tuple(piezos) == given.plant.actuators else None
 
 
 def simulate_rest(given: ResolvedSetup, control: Control, closed: Loop) -> Simulated | None:
-    """The loop holding still in all its noise, from when it has got used to it; `None` where there is no noise but rounding."""
+    """Simulate the regulated loop with all noise, in the steady state; `None` without noise except rounding."""
     hardware = given.plant.hardware
     noisy = given.floor or any(each.noise_density for each in (*hardware.sensors.values(), *hardware.amplifiers.values()))
     if not noisy:
@@ -313,16 +313,16 @@ def simulate_rest(given: ResolvedSetup, control: Control, closed: Loop) -> Simul
 
 
 def _resting_loop(given: ResolvedSetup, control: Control, closed: Loop) -> tuple[DisturbedLoop, int]:
-    """The loop with its noise, and the samples of a simulation at rest."""
+    """Loop with its noise, and the samples of a regulation simulation."""
     rest = rest_time(closed)
     return DisturbedLoop(given, driven_machine(given, control), rest), int(np.clip((_STILL * rest) / given.step, _FEWEST, _MOST))
 
 
 @dataclass(frozen=True, eq=False)
 class RestRms:
-    """Rms (f,) of the true motion at rest of the loop's coordinates, by simulations that share nothing but the loop.
+    """Rms (f,) of the true motion of the loop's coordinates in regulation, from independent simulations.
 
-    `low` and `high` (f,) hold it by 95 %, from how much `count` simulations of `seconds` each differ.
+    `low` and `high` (f,) are 95 % confidence limits, from the scatter of `count` simulations of `seconds` each.
     """
 
     rms: Array
@@ -333,9 +333,9 @@ class RestRms:
 
 
 def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
-    """The rms at rest of several simulations, each from its own random numbers, for noise that no budget adds up.
+    """Compute the rms in regulation from several simulations with independent random numbers, for noise without a linear budget.
 
-    Each holds another place within the gauges' steps: on the middle of a step a loop rests, near its edge it wanders to and fro.
+    Each has another position within the gauges' steps: quiet at the middle of a step, wandering near its edge.
     """
     (noisy, whole), to_pose, squares = _resting_loop(given, control, closed), given.plant.coordinates.pose, list[Array]()
     count = whole // 3
@@ -353,14 +353,14 @@ def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
 
 
 def _simulated_time(course: Course, rest: float) -> float:
-    """A course, and a rest: of a step to see it settle, of a trajectory a fifth at most."""
+    """Trajectory, plus rest: for a step its settling, for others at most a fifth."""
     return course.duration + (rest if course.is_step else min(rest, 0.2 * course.duration))
 
 
 def _range_warnings(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:
-    """Gauges that went beyond their range."""
+    """Warnings for gauges beyond their range."""
     for read, share, reach in zip(computed.read(), found.out_of_range, computed.reach, strict=True):
         if share > 0.0:
-            what = f"{read.name} measures {1e6 * reach:.4g} u{read.unit} both ways and is beyond it in {100.0 * share:.3g} % of the samples"
-            advice = "The loop goes on by its last good reading: command less, or take a gauge of a longer range"
+            what = f"{read.name} exceeds its range of +-{1e6 * reach:.4g} u{read.unit} in {100.0 * share:.3g} % of the samples"
+            advice = "Reduce the amplitude, or use a gauge of a larger range: the loop uses the last valid reading"
             yield Finding(f"trajectory {course.name}", what, advice)

@@ -1,6 +1,6 @@
-"""How a loop is set up: clock, amplifier, gauges, floor, controller, compensation, trajectory. The form of a set-up file.
+"""Set-up of a loop, the form of its file: sampling, amplifier, gauges, floor, controller, compensation, trajectory.
 
-Every field carries its quantity: that alone makes the file's reader and its schema.
+Every field has its quantity, from which the file reader and schema are generated.
 """
 
 from __future__ import annotations
@@ -28,7 +28,18 @@ from flexstage.base.units.quantity import (
     Bound,
 )
 from flexstage.control.controllers.kinds import CONTROLLERS
-from flexstage.control.study.choices import Axes, Axis, Compensation, ControllerKind, Criterion, Following, Notching, OfferedKind, StackKind
+from flexstage.control.study.choices import (
+    SEARCHED_BY_DEFAULT,
+    Axes,
+    Axis,
+    Compensation,
+    ControllerKind,
+    Criterion,
+    Following,
+    Notching,
+    OfferedKind,
+    StackKind,
+)
 from flexstage.control.study.hardware.amplifier_kinds import AMPLIFIERS
 from flexstage.control.study.hardware.amplifiers import AmplifierForm, AmplifierSetup
 from flexstage.control.tuning.objective import TuningObjective
@@ -44,23 +55,23 @@ _CREEP = Bound(low=-0.2, high=0.2)
 
 @dataclass(frozen=True)
 class KindNode(ChoiceNode):
-    """A kind of controller: those that stand here, and those of `CONTROLLERS`, which other packages add to."""
+    """Kinds of controllers: those listed here, and those of `CONTROLLERS`, which other packages extend."""
 
     @property
     def words(self) -> dict[str, Any]:
-        """The kinds by what a file calls them."""
+        """Kinds by their names in files."""
         return {each.value: each for each in ControllerKind} | {name: OfferedKind(name) for name in CONTROLLERS}
 
 
 KINDS = KindNode(ControllerKind)
-"""Kinds of controllers as files and options name them."""
+"""Kinds of controllers by the names in files and options."""
 GAINS = ("proportional", "integral", "derivative")
 """Keys of a law's gains."""
 
 
 @dataclass(frozen=True)
 class AxisAmplitudes(CheckedFields):
-    """Amounts by motion of the platform; absent: none."""
+    """Amplitudes by platform motion; default: none."""
 
     x: Annotated[float, DISPLACEMENT] | None = None
     y: Annotated[float, DISPLACEMENT] | None = None
@@ -72,9 +83,9 @@ class AxisAmplitudes(CheckedFields):
 
 @dataclass(frozen=True)
 class GaugeSetup(CheckedFields):
-    """Gauges: white `noise`, steps of `resolution`, `bandwidth`; absent: what each gauge of the design states.
+    """Gauges: white `noise`, steps of `resolution`, `bandwidth`; default: the data of each gauge in the design.
 
-    `filter_order` and `filter_corner` are those of an analogue low-pass (Butterworth) before sampling (order 0: none).
+    `filter_order` and `filter_corner` describe an analogue low-pass filter (Butterworth) before sampling (order 0: none).
     """
 
     noise: Annotated[float, NOISE_DENSITY, NOT_NEGATIVE] | None = None
@@ -88,7 +99,7 @@ class GaugeSetup(CheckedFields):
 class VibrationSetup(CheckedFields):
     """The floor along one axis: a `criterion` by name, or an amplitude density of `acceleration`, `velocity` or `displacement`.
 
-    One density alone is white; with `frequencies`, as many as there are densities, straight between them in log-log and none outside.
+    A single density is white. With `frequencies`, as many as densities, it is interpolated in log-log, and zero outside.
     """
 
     criterion: Criterion | None = None
@@ -100,7 +111,7 @@ class VibrationSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class Floor(CheckedFields):
-    """The floor's vibration by axis; absent: it stands still."""
+    """Floor vibration by axis; default: none."""
 
     x: VibrationSetup | None = None
     y: VibrationSetup | None = None
@@ -109,7 +120,7 @@ class Floor(CheckedFields):
 
 @dataclass(frozen=True)
 class NotchSetup(CheckedFields):
-    """A notch filter: at which `frequency`, how `deep` (gain there), how wide (`damping` of its poles)."""
+    """Notch filter: `frequency`, `deep` (gain at the notch), and width (`damping` of its poles)."""
 
     frequency: Annotated[float, FREQUENCY, POSITIVE]
     depth: Annotated[float, RATIO, NOT_NEGATIVE] | None = None
@@ -118,7 +129,7 @@ class NotchSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class PrefilterSetup(CheckedFields):
-    """A prefilter of the reference: a low-pass of second order at a `frequency` with a `damping`, and a `lead` above it."""
+    """Second-order low-pass prefilter of the reference, with `frequency` and `damping`, and a `lead` above it."""
 
     frequency: Annotated[float, FREQUENCY, POSITIVE]
     damping: Annotated[float, RATIO, POSITIVE] = 1.0
@@ -127,9 +138,9 @@ class PrefilterSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class LoopNumbers(CheckedFields):
-    """The numbers of some of the loops, `axes` names them: x, rz ..., in other coordinates mode1 or the actuator's name.
+    """Parameters of some loops, named by `axes`: x, rz ..., in other coordinates mode1 or the actuator's name.
 
-    What is absent is that of all loops; `notches` are besides theirs.
+    Missing parameters are the common ones; `notches` are additional.
     """
 
     axes: tuple[str, ...]
@@ -143,11 +154,11 @@ class LoopNumbers(CheckedFields):
 
 @dataclass(frozen=True)
 class GoalSetup(CheckedFields):
-    """What a search for the controller is after: its `objective`, and what every loop shall keep.
+    """Specification of optimisation-based tuning: its `objective`, and limits for every loop.
 
-    `rejection` is the least frequency up to which disturbances are made smaller, `settling` the longest time to 2 % of a step, `overshoot`
-    the most of it, `delay_margin` the least; absent: as good as it gets. The peak of S holds with all modes up to `spread` and all gains up
-    to `gain` off. With `prefilter` what is commanded is shaped too.
+    `rejection` is the lowest sensitivity crossover, `settling` the longest 2 % settling time, `overshoot` the maximum, `delay_margin` the
+    minimum; default: no limit. The peak of S must hold with all modes up to `spread` and all gains up to `gain` off. `prefilter` also
+    optimises a reference prefilter.
     """
 
     objective: TuningObjective = TuningObjective.BALANCE
@@ -162,13 +173,14 @@ class GoalSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class ControllerSetup(CheckedFields):
-    """The controller: its `kind`, in which coordinates, and either what it shall reach or its numbers.
+    """Controller: `kind`, coordinates, and either a specification or gains.
 
-    Without a kind it is PI, where forces drive the stage PID (unless numbers are given). What it shall reach: `bandwidth` (where the open
-    loop's gain passes 1; absent: the highest that `sensitivity` allows) and `sensitivity`, the highest peak of S. Its numbers:
-    `proportional` (strokes or motion per error), `integral` rate, `derivative` time and its `filter` corner, of all loops; `loops` state
-    those of single ones. `notches` besides those placed by themselves. `prefilter` shapes what is commanded. With
-    a `goal` laws and notches are searched for instead, within `sensitivity`.
+    The default kind is PI, for force-driven stages PID (unless gains are specified). Specification: `bandwidth` (the gain crossover;
+    default: the highest that `sensitivity` allows) and `sensitivity`, the maximum peak of S. Gains: `proportional` (strokes or motion per
+    error), `integral` rate, `derivative` time and its `filter` corner, common to all loops; `loops` specify individual ones. `notches` are
+    additional to automatic ones. `prefilter` shapes the reference.
+
+    PI and PID are optimised for a `goal` within `sensitivity`, by default balance. `quick`, a bandwidth, gains or notches disable this.
     """
 
     kind: Annotated[ControllerKind | OfferedKind, KINDS] | None = None
@@ -184,27 +196,34 @@ class ControllerSetup(CheckedFields):
     loops: tuple[LoopNumbers, ...] = ()
     prefilter: PrefilterSetup | None = None
     goal: GoalSetup | None = None
+    quick: bool = False
+
+    @property
+    def search_goal(self) -> GoalSetup | None:
+        """Goal of the optimisation-based tuning in force; absent: plain tuning, or none."""
+        plain = self.quick or self.stated or self.bandwidth is not None or self.notches or self.notching is Notching.NONE
+        return self.goal if self.goal is not None or plain or self.law not in SEARCHED_BY_DEFAULT else GoalSetup()
 
     @property
     def stated(self) -> tuple[str, ...]:
-        """Gains that are stated, of all loops or of single ones: what is then not tuned."""
+        """Specified gains, common or individual: these are not tuned."""
         return tuple(name for name in GAINS if any(getattr(each, name) is not None for each in (self, *self.loops)))
 
     @property
     def law(self) -> ControllerKind | OfferedKind:
-        """Its kind, PI where none is stated."""
+        """Kind of controller, PI by default."""
         return self.kind or ControllerKind.PI
 
 
 @dataclass(frozen=True)
 class DampingSetup(CheckedFields):
-    """Integral force feedback in the legs, under the loop of the pose: each stack gives way at the rate of its leg's tension.
+    """Integral force feedback in the legs, inside the pose loop: each stack extends at a rate proportional to its leg's tension.
 
-    `ratio` is the damping wanted of the modes that the loop feels most, or the `gain` is stated. `corner` of the high pass (absent: a tenth
-    of the lowest of these modes without the stacks' stiffness) and its `order`: 2 keeps the stiffness at rest, 1 leaves a / (a + gain) of
-    it. The tension is that of a sensor of force in each leg, of white `noise`, or of strain `gauges` on links of the legs, whose noise and
-    bandwidth are theirs. `lag` and `delay` are those of the electronics, which are analogue; or a computer runs the law at a `rate`, a
-    whole multiple of the loop's, and gives its strokes after `delay` (absent: one sample of that rate).
+    `ratio` is the required damping of the modes with the largest residues; alternatively `gain`. `corner` belongs to the high-pass filter
+    (default: a tenth of the lowest of these modes without the stacks' stiffness). Its `order` 2 preserves the static stiffness, 1 keeps a /
+    (a + gain) of it. The tension comes from a force sensor in each leg, with white `noise`, or from strain `gauges` on links of the legs,
+    with their own noise and bandwidth. `lag` and `delay` belong to analogue electronics. Alternatively a computer runs the law at a `rate`,
+    an integer multiple of the loop's, with strokes after `delay` (default: one sample of that rate).
     """
 
     ratio: Annotated[float, RATIO, _DAMPED] | None = None
@@ -220,10 +239,10 @@ class DampingSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class FollowSetup(CheckedFields):
-    """What the loop is asked to follow instead of the trajectory itself, which is known beforehand; the error is against the trajectory.
+    """Tracking method for a trajectory known in advance; the error is relative to the trajectory.
 
-    `method`: the inverse of the model's loop, learning (so many `passes` of a `gain`) or repetitive control of that gain (of a path that
-    repeats: a raster, a sine), all in the band that holds with all modes up to `spread` off; or a shaper for a mode at `frequency` of a
+    `method`: the inverse of the model's loop, iterative learning (`passes`, `gain`), or repetitive control with that gain (for a periodic
+    path: a raster, a sine), all in the band that is robust to modes up to `spread` off. Or an input shaper for a mode at `frequency` of a
     `damping` ratio.
     """
 
@@ -237,12 +256,11 @@ class FollowSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class HystereticStacks(CheckedFields):
-    """The stacks' hysteresis: a model in a `file`, as `flexstage hysteresis` writes it, or only the `width` of the loop per stroke.
+    """Hysteresis of the stacks: a model in a `file`, from `flexstage hysteresis`, or only the `width` of the loop relative to the stroke.
 
-    The model is scaled to each stack's stroke and voltage. It is what the inverse inverts; the stacks themselves behave as `plant` says:
-    by the same model, or as Bouc-Wen stacks of the same width, which no such inverse can follow to the end (absent: the model of a
-    file, Bouc-Wen where only the width is known). `creep`: by how much of its stroke a stack goes on in each decade of time, from 0.1 s
-    on (absent: as the file says).
+    The model is scaled to each stack's stroke and voltage, and defines the inverse. The stacks themselves follow `plant`: the same model,
+    or Bouc-Wen stacks of the same width, which the inverse does not cancel exactly (default: the model of a file, Bouc-Wen for a width).
+    `creep` is the creep per decade of time relative to the stroke, from 0.1 s (default: as in the file).
     """
 
     file: str | None = None
@@ -253,10 +271,10 @@ class HystereticStacks(CheckedFields):
 
 @dataclass(frozen=True)
 class StepMotion(CheckedFields):
-    """A step of every stated motion, each by itself; without any: 1 um and 10 urad, of all motions that the stage has.
+    """Step of every specified motion, one at a time; default: 1 um and 10 urad, for all motions of the stage.
 
-    With `speed`, `acceleration` and `jerk`, all three, it is a move within them: along the way, in m; of a move that only turns, a metre
-    stands for a radian.
+    With `speed`, `acceleration` and `jerk`, all three, it is a motion profile within these limits, along the path in m. For pure rotations
+    a metre represents a radian.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "step")
@@ -269,9 +287,9 @@ class StepMotion(CheckedFields):
 
 @dataclass(frozen=True)
 class RasterMotion(CheckedFields):
-    """`lines` of a `length`, `pitch` apart, to and fro at an even `speed`, turned around with `acceleration`; along `fast` and `slow`.
+    """Raster scan: `lines` of a `length`, `pitch` apart, at constant `speed`, reversed with `acceleration`.
 
-    Of a motion that turns, a metre stands for a radian: a line of 20 um along rx is one of 20 urad.
+    The axes are `fast` and `slow`. For rotations a metre represents a radian: a line of 20 um along rx is one of 20 urad.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "raster")
@@ -287,9 +305,9 @@ class RasterMotion(CheckedFields):
 
 @dataclass(frozen=True)
 class SpiralMotion(CheckedFields):
-    """A spiral from the middle to `radius`, its turns `pitch` apart, at an even `speed`; in the plane of `first` and `second`.
+    """Spiral from the centre to `radius`, with `pitch` between turns, at constant `speed`, in the plane of `first` and `second`.
 
-    Of a motion that turns, a metre stands for a radian.
+    For rotations a metre represents a radian.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "spiral")
@@ -303,7 +321,7 @@ class SpiralMotion(CheckedFields):
 
 @dataclass(frozen=True)
 class SineMotion(CheckedFields):
-    """A sine of every stated motion at `frequency`, all at once, for so many `periods`; without any motion: 1 um in the first one."""
+    """Sine of every specified motion at `frequency`, simultaneously, for `periods`; default: 1 um in the first one."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "sine")
 
@@ -314,7 +332,7 @@ class SineMotion(CheckedFields):
 
 @dataclass(frozen=True)
 class FileMotion(CheckedFields):
-    """A table of times and poses in a `file` (CSV): a first column `time [s]`, and motions with units, as `x [um]`, `rz [urad]`."""
+    """Table of times and poses in a `file` (CSV): a first column `time [s]`, and motions with units, e.g. `x [um]`, `rz [urad]`."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "file")
 
@@ -326,11 +344,11 @@ TrajectorySetup: TypeAlias = StepMotion | RasterMotion | SpiralMotion | SineMoti
 
 @dataclass(frozen=True)
 class LoopSetup(CheckedFields):
-    """A loop: by which `model` the stage is the plant, sampled at `rate`, its outputs `delay` late, and all that belongs to it.
+    """Loop set-up: plant `model`, sampling `rate`, output `delay`, and all other parts.
 
-    Without a rate it is 10 kHz, or for faster stages ten times the highest platform mode; without a delay it is one sample. `modes` is
-    how many are retained, lowest first (absent: those that matter), the others' compliance stays. The simulation lasts `seconds`
-    (absent: as long as the trajectory, and until the loop has settled), its random numbers are those of `seed`.
+    The default rate is 10 kHz, or ten times the highest platform mode for faster stages; the default delay is one sample. `modes` is the
+    number retained, lowest first (default: the significant ones), with the static compliance of the others. The simulation lasts `seconds`
+    (default: the trajectory, and settling); `seed` determines its random numbers.
 
     >>> LoopSetup().controller.law.value
     'pi'
@@ -353,7 +371,7 @@ class LoopSetup(CheckedFields):
     follow: FollowSetup | None = None
 
     def to_json(self) -> dict[str, Any]:
-        """The keys of its file with plain values, SI."""
+        """Keys of its file with plain values, SI."""
         kind, word = self.trajectory.TOLD_BY
         chosen = {"amplifier": {"kind": self.amplifier.kind, **asdict(self.amplifier)}}  # type: ignore[call-overload]
         return asdict(self) | chosen | {"trajectory": {kind: word, **asdict(self.trajectory)}}

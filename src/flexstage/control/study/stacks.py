@@ -1,4 +1,4 @@
-"""Hysteretic stacks of a stage: how they behave, and the model whose inverse is fed forward."""
+"""Hysteretic stacks of a stage: their behaviour, and the model for inverse compensation."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ from flexstage.mechanism.mechanism import Mechanism
 _LEGS = ((0.0, 1.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.2), (0.2, 0.8), (0.8, 0.0), (0.0, 0.6), (0.6, 0.0))
 _LEG = 60
 _STROKE, _VOLTS = 150e-6, (0.0, 1000.0)
-"""A stack that stands for all where only the width is known; its model is stretched to the others."""
+"""Reference stack if only the width is known; its model is scaled to the others."""
 _SWEPT = 0.6
 _CREEPS = (0.01, 100.0)
-"""Times [s] over which creep is followed: before, it counts to the stroke; a simulation lasts no longer."""
+"""Time range [s] of simulated creep: earlier creep counts as stroke; a simulation is shorter."""
 _EXACT = 1e-12
 _TURNS = (1.0, -1.0, 0.7, -0.7, 0.4, -0.4, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Stacks:
-    """The actuators' stacks: `plant` is how they behave, `model` what is known of them and inverted, both from volts to strokes [m].
+    """Stacks of the actuators: `plant` is their behaviour, `model` the known and inverted model, both from volts to strokes [m].
 
-    `electric` is their voltage, `width` (n,) that of the plant's loops as a share of the stroke; `creep` follows the hysteresis (`None`:
-    there is none).
+    `electric` is their voltage. `width` (n,) is the plant's loop width relative to the stroke. `creep` follows the hysteresis (`None`: no
+    creep).
     """
 
     electric: Drive
@@ -56,9 +56,9 @@ class Stacks:
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """Strokes (k, n) [m] that came where `wanted` ones were asked for, over and over again less far: `bare` and with the `inverse`.
+    """Open-loop sweep: strokes (k, n) [m] for the requested ones, `wanted`, with decreasing amplitude: `bare` and with the `inverse`.
 
-    `width` (n,) is that of each stack's loop as a share of its stroke.
+    `width` (n,) is each stack's loop width relative to its stroke.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -75,22 +75,22 @@ class Sweep:
 
     @property
     def range(self) -> Annotated[Array, LENGTH, Along("actuators"), Heading("range swept", digits=4, varying=True)]:
-        """The range swept (n,) [m]."""
+        """Swept range (n,) [m]."""
         return np.ptp(self.wanted, axis=0)
 
     @property
     def rms_error(self) -> Annotated[Array, SHARE, Along("actuators"), Heading("rms error", digits=3)]:
-        """Rms (n,) of what came less what was wanted, as a share of the range swept."""
+        """Rms error (n,) of the strokes relative to the swept range."""
         return self._error(self.bare)
 
     @property
     def rms_error_inverse(self) -> Annotated[Array, SHARE, Along("actuators"), Heading("rms error with inverse", digits=3)]:
-        """The same with the inverse."""
+        """Rms error (n,) with the inverse."""
         return self._error(self.inverse)
 
     @property
     def improvement(self) -> Annotated[Array, Along("actuators"), Heading("improvement factor", digits=3, infinite="exact")]:
-        """Without inverse over with it (n,); infinite where the inverse is exact but for rounding."""
+        """Ratio of the errors without and with inverse (n,); infinite for an inverse exact to rounding."""
         exact = self.rms_error_inverse <= _EXACT
         return np.where(exact, np.inf, self.rms_error / np.where(exact, 1.0, self.rms_error_inverse))
 
@@ -99,11 +99,11 @@ class Sweep:
 
 
 def stacks_of(mechanism: Mechanism, given: HystereticStacks) -> Stacks:
-    """The stacks of a stage with the hysteresis of a set-up, scaled to each one's stroke and volts.
+    """Construct the stacks of a stage with the hysteresis of a set-up, scaled to their strokes and volts.
 
-    A file's model is stretched so that its loop over each stack's range of voltage has its full stroke. Of a width alone the plant is a
-    Bouc-Wen stack, and the model is identified from a record of it. Raises `DesignError` for files that are none, and for stacks that
-    state no range of voltage.
+    A file's model is scaled so that its loop over each stack's voltage range has the full stroke. For a width only, the plant is a Bouc-Wen
+    stack, and the model is identified from its simulated record. Raises `DesignError` for invalid files, and for stacks without a voltage
+    range.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = stacks_of(double_triangle(), HystereticStacks(width=0.15))
@@ -123,7 +123,7 @@ def stacks_of(mechanism: Mechanism, given: HystereticStacks) -> Stacks:
 
 
 def _known_model(given: HystereticStacks) -> tuple[PrandtlIshlinskii, Range | None, LogCreep | None]:
-    """A model of one stack, the volts it is of (`None`: not stated, as many as the stage's first), and its creep."""
+    """Model of one stack, its voltage range (`None`: that of the stage's first stack), and its creep."""
     stated = LogCreep(given.creep) if given.creep else None
     if given.file is not None:
         stack = load_hysteresis(given.file)
@@ -133,7 +133,7 @@ def _known_model(given: HystereticStacks) -> tuple[PrandtlIshlinskii, Range | No
 
 
 def _creep(law: LogCreep | None, axes: int) -> Creep | None:
-    """The same law for all stacks, as exponentials over four decades."""
+    """Common creep law of all stacks, as exponentials over four decades."""
     if law is None:
         return None
     one = exponentials(law, _CREEPS).creep
@@ -142,13 +142,13 @@ def _creep(law: LogCreep | None, axes: int) -> Creep | None:
 
 @cache
 def _of_width(width: float) -> PrandtlIshlinskii:
-    """The model identified from a record of a Bouc-Wen stack: pure, and it takes a second."""
+    """Model identified from a record of a Bouc-Wen stack; a pure function of about a second."""
     volts = _VOLTS[1] * np.concatenate([np.linspace(*leg, _LEG) for leg in _LEGS])
     return identify_hysteresis(volts, bouc_wen(_STROKE, _VOLTS, width).run(volts)).model
 
 
 def _bouc_wen(strokes: Array, ranges: Sequence[Range], width: Array | float) -> BoucWen:
-    """Bouc-Wen stacks side by side."""
+    """Parallel Bouc-Wen stacks."""
     widths = np.broadcast_to(width, len(strokes)).tolist()
     kinds = list(zip(strokes.tolist(), ranges, widths, strict=True))
     made = {kind: bouc_wen(*kind) for kind in set(kinds)}
@@ -156,7 +156,7 @@ def _bouc_wen(strokes: Array, ranges: Sequence[Range], width: Array | float) -> 
 
 
 def loop_widths(model: Hysteresis, ranges: Sequence[Range]) -> Array:
-    """Widths (n,) of each stack's settled loop over its own volts.
+    """Widths (n,) of each stack's settled loop over its own voltage range.
 
     >>> from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
     >>> loop_widths(bouc_wen(150e-6, (0.0, 1000.0), 0.1), [(0.0, 1000.0)]).round(3).tolist()
@@ -167,7 +167,7 @@ def loop_widths(model: Hysteresis, ranges: Sequence[Range]) -> Array:
 
 
 def sweep_stacks(given: Stacks) -> Sweep:
-    """The stacks driven to and fro in open loop by wanted strokes, 60 % of the range and less and less, from the bias.
+    """Sweep the stacks in open loop around the bias, from 60 % of the range with decreasing amplitude.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = sweep_stacks(stacks_of(double_triangle(), HystereticStacks(width=0.15)))
@@ -188,6 +188,6 @@ def sweep_stacks(given: Stacks) -> Sweep:
 
 
 def _drive(plant: Hysteresis, volts: Array, bias: Array) -> Array:
-    """Strokes from those at the bias."""
+    """Strokes relative to those at the bias."""
     start = plant.start(bias)
     return plant.run(volts, start) - plant.step(start, bias)[1]

@@ -1,9 +1,10 @@
-"""The loop of a stage: controller, stability, margins, static errors, noise, simulations, from one set-up."""
+"""Loop study: controller, stability, margins, static errors, noise, simulations, from one set-up."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -29,7 +30,17 @@ from flexstage.control.plant_models.retention import Retention
 from flexstage.control.robustness.disk import DiskMargin, disk_margins
 from flexstage.control.robustness.measured_margins import MeasuredMargins, coherence_findings, measured_margins
 from flexstage.control.robustness.stability import Verdict, require_stable, verdict
-from flexstage.control.robustness.stability_margins import Bandwidths, Margins, Peaks, bandwidths, crosstalk, margins, peaks
+from flexstage.control.robustness.stability_margins import (
+    Bandwidths,
+    Margins,
+    Peaks,
+    ShiftedPeak,
+    bandwidths,
+    crosstalk,
+    margins,
+    peaks,
+    shifted_peaks,
+)
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.study.choices import Compensation, ControllerKind
 from flexstage.control.study.control import Control
@@ -42,28 +53,27 @@ from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stack
 from flexstage.control.systems.closed import Loop, LoopBreak, loop
 from flexstage.control.systems.curves import Curves, curves
 from flexstage.experiment.pipeline import Identification
-from flexstage.experiment.progress import Told
+from flexstage.experiment.progress import Told, followed, part
 from flexstage.mechanism.mechanism import Mechanism
 
 _LOWEST = 0.1
 _ENOUGH = 0.98
-"""Of the damping asked for."""
+"""Sufficient fraction of the requested damping."""
 _NO_LOOP = "the stage is commanded in open loop"
-_NO_TEST = "no record of a test is given"
-_NO_STROKES = "forces drive the stage: no stroke is lost, and it stands where its stiffness lets it"
+_NO_TEST = "no test record is available"
+_NO_STROKES = "force-driven stage: no lost motion, static pose by its stiffness"
 
 
 @dataclass(frozen=True, eq=False)
 class LoopStudy(InNotebook):
-    """A loop and everything that follows from it.
+    """Loop study: a loop and all its results.
 
-    `closed` is the loop with the modes that its plant retains, which `retention` tells of, `growth_all_modes` [1/s] that of the slowest
-    motion with all modes of the model.
-    `margins`, `peaks`, `disk_margin` (of all loops at once), `bandwidths`, `curves` are at the pose; absent, as `reasons` say, of a stage
-    in open loop. `static_errors` are those at rest of the stage without its loop. `noise` is the budget at rest, `still` (where there is
-    any noise) a simulation of it, `resting` what several find where rounding is no white noise, so that the budget does not hold. `stacks`
-    are those with hysteresis, if the set-up states any, `hysteresis` what they do in open loop. `runs` are the simulations. `warnings`
-    are what one should know of all this.
+    `closed` is the loop with the modes retained in its plant, see `retention`. `growth_all_modes` [1/s] is the spectral abscissa with all
+    modes of the model. `margins`, `peaks`, `disk_margin` (of all loops at once), `bandwidths`, `curves` are at the pose; absent in open
+    loop, see `reasons`. `static_errors` are those of the stage without its loop. `noise` is the budget in regulation, `still` (with any
+    noise) a simulation of it. `resting` summarises several simulations if rounding is not white, so that the budget does not apply.
+    `stacks` are those with hysteresis, if specified, `hysteresis` their open-loop sweep. `runs` are the simulations. `warnings` list
+    assumptions and limits.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a loop study", "fs.control.loop_study(stage)")
@@ -93,58 +103,63 @@ class LoopStudy(InNotebook):
 
     @property
     def setup(self) -> Annotated[LoopSetup, VIEW]:
-        """The set-up file's keys with what was asked for, SI; null: settled by the stage."""
+        """Keys of the set-up file with the specified values, SI; null: default from the stage."""
         return self.settled.setup
 
     @property
     def model_name(self) -> Annotated[str, VIEW]:
-        """What the plant is a model by: one of theory's, or finite elements with their order."""
+        """Name of the plant's model: an analytical one, or finite elements with their order."""
         return self.settled.model_name
 
     @property
     def plant(self) -> Annotated[Plant, VIEW]:
-        """The plant with the modes that are retained."""
+        """Plant with the retained modes."""
         return self.settled.plant
 
     @property
     def damping(self) -> Annotated[ActiveDamping | None, VIEW]:
-        """What force feedback in the legs does, which the plant then has; null where there is none."""
+        """Force feedback in the legs, included in the plant; null without any."""
         return self.settled.damping
 
     @property
     def charge(self) -> Annotated[ChargedStacks | None, VIEW]:
-        """What amplifiers of charge do, which the plant then has; null where volts are driven."""
+        """Charge amplifiers, included in the plant; null for voltage drive."""
         return self.settled.charge
 
     @property
     def loaded(self) -> Annotated[LoadEffect | None, VIEW]:
-        """What the dead load changes as drawn: where that is felt, the plant is the loaded stage's."""
+        """Effect of permanent load on the nominal stage; if significant, the plant is the loaded stage."""
         return self.settled.loaded
 
     @property
     def second_order(self) -> Annotated[SecondOrder | None, VIEW]:
-        """By how much linear kinematics, by which the plant is as drawn, is off over the runs; null where no motion is known."""
+        """Error of the linear kinematics of the nominal plant over the runs; null without a motion."""
         given = self.settled
         if given.displaced or not self.runs:
             return None
         most = np.max([np.max(np.abs(run.simulated.reference), axis=0, initial=0.0) for run in self.runs], axis=0)
         return second_order(given.mechanism, given.kinematics, dict(zip(given.plant.coordinates.names, most, strict=True)))
 
+    @cached_property
+    def shifted_peaks(self) -> Annotated[tuple[ShiftedPeak, ...], VIEW]:
+        """Peak sensitivity with all modes shifted; none in open loop."""
+        return () if self.peaks is None else shifted_peaks(self.closed)
+
     @property
     def highest_platform_mode(self) -> Annotated[float, FREQUENCY]:
-        """The highest of the platform's modes, of as many as the loop has coordinates."""
+        """Highest platform mode, counting as many as loop coordinates."""
         return self.settled.highest
 
     @property
     def simulated_rms(self) -> Annotated[Array | None, VIEW]:
-        """Rms (f,) of the true motion at rest by simulation, by coordinate; null where there is no noise."""
+        """Rms (f,) of the true motion in regulation by simulation, by coordinate; null without noise."""
         if self.resting is not None:
             return self.resting.rms
         return None if self.still is None else np.sqrt(np.mean(self.still.true_error**2, axis=0))
 
     @property
     def simulated_interval(self) -> Annotated[tuple[Array, Array] | None, VIEW]:
-        """Low and high (f,) ends that hold it by 95 %, where rounding is not white."""
+        """95 % confidence limits (low, high) (f,) of it, if rounding is not white."""
         return None if self.resting is None else (self.resting.low, self.resting.high)
 
 
@@ -159,16 +174,17 @@ def loop_study(
     test: Identification | None = None,
     tell: Told | None = None,
 ) -> LoopStudy:
-    """Close the loop of a stage as a set-up says; with everything left out it says what is usual.
+    """Analyse the loop of a stage for a set-up; missing keys have usual defaults.
 
-    The plant is small motions about where the stage is brought, if it is brought `there`, else the model of the set-up, the lumped one of
-    the loaded stage where its dead load is felt; with a `solid` the drawn stage by finite elements. With a `test` it is what that found of
-    strokes and gauges (`measured_plant`), and margins are read off its responses too (`measured`).
+    The plant is linearised at an operating point `there`, if specified. Otherwise it is the set-up's model, or the lumped model of the
+    loaded stage if permanent load is significant. With a `solid` it is the nominal finite-element stage. With a `test` it is the identified
+    plant from strokes to gauges (`measured_plant`), and margins also come from its responses (`measured`).
 
-    Raises `DesignError` with all findings: see `resolve`, `make_controller` and `runs`; for a loop that is unstable, with what makes it so.
+    Raises `DesignError` with all findings: see `resolve`, `make_controller` and `runs`; for an unstable loop with the cause.
 
     >>> from flexstage.cases.parallelogram import parallelogram
-    >>> found = loop_study(parallelogram())
+    >>> from flexstage.control.study.setup import ControllerSetup
+    >>> found = loop_study(parallelogram(), LoopSetup(controller=ControllerSetup(quick=True)))
     >>> found.stability.stable, found.runs[0].course.name
     (True, 'x')
     """
@@ -177,7 +193,8 @@ def loop_study(
     given = resolve(mechanism, setup or LoopSetup(), there, solid)
     given = given if test is None else on_test(given, test.found)
     lost = None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model)
-    given, control, retained = control_and_modes(given, pose_gains(given, lost), lambda text: said(text, 0.05))
+    with followed(said), part(0.05, 0.6):
+        given, control, retained = control_and_modes(given, pose_gains(given, lost))
     closed = loop(given.plant, control.system)
     require_stable(closed, "margins, noise and simulations")
     found, growth = verdict(closed), _whole_growth(given, control)
@@ -235,59 +252,61 @@ def _reasons(*, is_closed: bool, forced: bool, tested: bool) -> dict[str, str]:
 
 
 def pose_gains(given: ResolvedSetup, lost: LostMotion | None) -> Array:
-    """Strokes (n, f) by which poses are commanded; the inputs of forces are those of the elastic model, and lose nothing."""
+    """Strokes (n, f) per commanded pose; for force actuators the inputs by the elastic model, without lost motion."""
     if lost is not None and Compensation.LOST_MOTION in given.setup.compensate:
         return np.real(first_design(np.asarray(lost.correction.values), 2))
     return given.plant.coordinates.strokes
 
 
 def _whole_growth(given: ResolvedSetup, control: Control) -> float:
-    """Growth with all modes; raises `DesignError` where one that was left out makes the loop unstable."""
+    """Growth rate with all modes; raises `DesignError` if an omitted mode makes the loop unstable."""
     whole = loop(given.whole, control.system)
     if whole.system.growth >= 0.0:
         what = verdict(whole).sentence
-        raise refuse("modes", f"with all modes {what}", "Keep more of them (modes), or lower the bandwidth")
+        raise refuse("modes", f"with all modes {what}", "Retain more of them (modes), or reduce the bandwidth")
     return float(whole.system.growth)
 
 
 def _slow_rounding(noise: NoiseBudget) -> Iterator[Finding]:
-    """Rounding that is no white noise."""
+    """Warnings for rounding that is not white noise."""
     if noise.slowly_rounding:
-        what = f"readings of {', '.join(noise.slowly_rounding)} move by less than half a step a sample: rounding is slow, no white noise"
-        advice = "Take the simulated rms, with its interval; a finer step, or noise of half a step, would make it white"
+        what = f"readings of {', '.join(noise.slowly_rounding)} change by less than half a step per sample: rounding is not white noise"
+        advice = "Use the simulated rms, with its interval; a finer step, or noise of half a step, would make rounding white"
         yield Finding("gauges", what, advice)
 
 
 def _warnings(given: ResolvedSetup) -> list[Finding]:
-    """What a design does not state, and is taken as ideal."""
+    """Warnings for missing data that are assumed ideal."""
     found = []
     silent = [name for name, each in given.plant.hardware.sensors.items() if each.noise_density is None]
     if silent:
-        what = f"noise is not stated of {', '.join(silent)}; only their steps count"
-        found.append(Finding("gauges", what, "State noise_density in the design, or gauges.noise in the set-up"))
+        what = f"no specified noise for {', '.join(silent)}; only quantisation counts"
+        found.append(Finding("gauges", what, "Specify noise_density in the design, or gauges.noise in the set-up"))
     if given.damping is not None:
         yielding = given.damping
         worst = int(np.argmin(yielding.softest))
-        what = f"against forces on the platform the stage is down to {100.0 * yielding.softest[worst]:.3g} % of its stiffness at rest"
-        advice = "The loop of the pose has to hold them; a higher corner or a lower ratio yields less"
+        what = f"the platform's dynamic stiffness falls to {100.0 * yielding.softest[worst]:.3g} % of the static stiffness"
+        advice = "The pose loop must supply the difference; a higher corner or a lower ratio reduces it"
         found.append(Finding("damping", f"{what} along {yielding.coordinates[worst]}, at {yielding.softest_at[worst]:.3g} Hz", advice))
         asked = None if given.setup.damping is None else given.setup.damping.ratio
         if asked is not None and yielding.reached < _ENOUGH * asked:
-            what = f"a damping of {100.0 * asked:.3g} % was asked for, and the least of the modes that the loop feels most is "
-            advice = (
-                "Shorter delays, faster amplifiers and sensors, a higher rate let it be more; legs that do not feel a mode cannot damp it"
-            )
+            what = f"a damping of {100.0 * asked:.3g} % was specified, but the lowest of the dominant modes is "
+            advice = "Use shorter delays, faster amplifiers and sensors, or a higher rate; legs cannot damp modes that do not strain them"
             found.append(Finding("damping.ratio", f"{what}{100.0 * yielding.reached:.3g} %", advice))
         quiet = [each.actuator for each in yielding.sensed if each.noise is None]
         if quiet:
-            found.append(Finding("damping", f"noise is not stated of what senses the legs of {', '.join(quiet)}", "State damping.noise"))
+            found.append(Finding("damping", f"no specified sensor noise for the legs of {', '.join(quiet)}", "Specify damping.noise"))
     if given.setup.hysteresis is not None and given.charge is not None:
         left, corner = 100.0 * float(np.max(given.charge.residual_hysteresis)), float(np.max(given.charge.corners))
-        what = f"of stacks held at their charge {left:.3g} % of it is simulated above {corner:.3g} Hz, all of it far below"
+        what = f"for charge-driven stacks {left:.3g} % of it is simulated above {corner:.3g} Hz, all of it far below"
         found.append(
-            Finding("hysteresis", what, "A stack alone is shown on volts; state amplifier.residual_hysteresis from a record on charge")
+            Finding(
+                "hysteresis",
+                what,
+                "The isolated stack is shown with voltage drive; specify amplifier.residual_hysteresis from a record with charge drive",
+            )
         )
     if given.setup.hysteresis is not None:
-        what = "margins, noise and poles are those of stacks without it, and without creep"
-        found.append(Finding("hysteresis", what, "See the simulations for what it does"))
+        what = "margins, noise and poles exclude hysteresis and creep of the stacks"
+        found.append(Finding("hysteresis", what, "See the simulations for their effect"))
     return found

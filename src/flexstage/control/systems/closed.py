@@ -1,4 +1,4 @@
-"""Closed loops: plant and controller wired, and cut open where margins are asked for."""
+"""Closed loops: interconnection of plant and controller, and loop-breaking points for margins."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ class LoopBreak(Enum):
     COMMAND = "command"
 
     def channels(self, given: Plant) -> tuple[Channel, ...]:
-        """Signals of a plant's loop there."""
+        """Signals of a plant's loop at the break."""
         return given.coordinates.motions("pose.") if self is LoopBreak.POSE else given.coordinates.commands("command.")
 
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """A plant with its controller, wired: what margins, verdicts, budgets and simulations start from.
+    """Interconnected plant and controller: the basis of margins, stability, budgets and simulations.
 
-    `plant` is the continuous plant, `held` the same between hold and sampler, `controller` as given without what is not wired in a linear
-    loop (`applied.<actuator>`). `states` names the states of `system`.
+    `plant` is the continuous plant, `held` the same between hold and sampler, `controller` the given one without unused inputs
+    (`applied.<actuator>`). `states` names the states of `system`.
 
     `system` is the closed loop. Inputs: `reference.<c>` [m, rad]; `noise.<gauge>` [m] added to a reading, `noise.<actuator>` [m] added to a
-    command; `ground.<c>`, `platform.fx` ... (held over a sample). Outputs: `platform.<c>`, `<point>.<c>`, `relative.<c>` ...; `S1` ...
-    readings with their noise; `pose.<c>` the pose estimated from them; `error.<c>` = reference - pose; `command.<actuator>` as the
-    controller gives it; `<actuator>` with its noise, as the hold gives it on.
+    command; `ground.<c>`, `platform.fx` ... (constant over a sample). Outputs: `platform.<c>`, `<point>.<c>`, `relative.<c>` ...; `S1` ...
+    readings with their noise; `pose.<c>` the estimated pose; `error.<c>` = reference - pose; `command.<actuator>` from the controller;
+    `<actuator>` with its noise, the input of the hold.
     """
 
     plant: Plant
@@ -55,11 +55,11 @@ class Loop:
 
 @check_arguments
 def loop(given: Plant, controller: System) -> Loop:
-    """Wire a controller to a plant.
+    """Connect a controller to a plant.
 
-    The controller's inputs are any of `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>` (left open here: nothing saturates
-    in a linear loop); its outputs all `command.<actuator>`. Its step must be the hardware's (continuous: none). Raises `DesignError`
-    otherwise, and for a loop without lag or delay whose equations have no solution.
+    The controller's inputs are any of `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>` (unconnected: a linear loop has no
+    saturation); its outputs all `command.<actuator>`. Its step must equal the hardware's (continuous: none). Raises `DesignError`
+    otherwise, and for an algebraic loop without solution.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.control.plant_models.plants import plant
@@ -87,9 +87,9 @@ def loop(given: Plant, controller: System) -> Loop:
 
 
 def pose_controller(controller: System, coordinates: Coordinates, sense: Array | None = None) -> System:
-    """The controller from errors that come back (pose and error inputs together), then from references, to its outputs.
+    """Return the controller from feedback errors (pose and error inputs together), then from references, to its outputs.
 
-    With the map `sense` (k, c) of loops both are those of the loops, not of the coordinates.
+    With the map `sense` (k, c) of loops both are in loop coordinates.
     """
     names, known = coordinates.names, controller.input_names
     entry = np.zeros((2, len(known), len(names)))
@@ -103,10 +103,10 @@ def pose_controller(controller: System, coordinates: Coordinates, sense: Array |
 
 
 def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
-    """The open loop L of a negative feedback: S = (I + L)^-1, from what goes into the cut to minus what comes back.
+    """Return the open loop L of a negative feedback: S = (I + L)^-1, from the input at the break to minus the returned signal.
 
-    Cut at the pose or at the commands, all channels (rows and columns named by coordinates or actuators, inputs `cut.<name>`), or one
-    `channel` alone with the others closed (loop at a time). Raises `DesignError` for a channel that the cut does not have.
+    Break at the pose or at the commands, all channels (rows and columns named by coordinates or actuators, inputs `cut.<name>`), or a
+    single `channel` with the others closed (loop at a time). Raises `DesignError` for an unknown channel.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()
@@ -124,7 +124,7 @@ def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
 
 
 def open_everywhere(closed: Loop) -> System:
-    """The loop cut open at all poses and all commands at once, in this order: for factors at both its ends together.
+    """Return the loop opened at all poses and all commands at once, in this order: for simultaneous factors at both ends.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = open_everywhere(integral_loop())
@@ -135,7 +135,7 @@ def open_everywhere(closed: Loop) -> System:
 
 
 def _loop_cut(closed: Loop, chosen: Iterable[Channel]) -> System:
-    """Open at these signals, the sign turned: what comes back is subtracted."""
+    """Loop opened at these signals, with inverted sign: the returned signal is subtracted."""
     given = closed.plant
     systems, links = _wiring(given, closed.held, closed.controller)
     entries = {each.name: replace(each, name=f"cut.{each.name.partition('.')[2]}") for each in chosen}
@@ -148,7 +148,7 @@ def _loop_cut(closed: Loop, chosen: Iterable[Channel]) -> System:
 
 
 def _wiring(given: Plant, plant: System, controller: System) -> tuple[tuple[System, ...], dict[str, dict[str, float]]]:
-    """Plant, estimate and controller with every input's terms; nothing but a pose and a command crosses between them."""
+    """Inputs of plant, estimate and controller; only poses and commands connect them."""
     entry = rename(controller, {name: f"to.{name}" for name in controller.input_names})
     entry = replace(entry, outputs=controller.outputs)
     links: dict[str, dict[str, float]] = {name: {name: 1.0} for name in plant.input_names if name not in given.actuators}
@@ -164,14 +164,14 @@ def _wiring(given: Plant, plant: System, controller: System) -> tuple[tuple[Syst
 
 
 def _estimate(given: Plant) -> System:
-    """Readings with their noise, and the pose from them; the error."""
+    """Readings with their noise, the pose from them, and the error."""
     gauges, entry = given.coordinates.readings(), given.coordinates.readings("gap.")
     gain = np.vstack([np.eye(len(gauges)), given.coordinates.pose])
     return static(gain, entry, (*gauges, *given.coordinates.motions("pose.")), given.hardware.step)
 
 
 def _sums(given: Plant) -> System:
-    """What a hold gives on, and the error."""
+    """Inputs of the hold, and the error."""
     entry = (*given.coordinates.commands("entry."), *given.coordinates.motions("difference."))
     exit_ = (*given.coordinates.commands(), *given.coordinates.motions("error."))
     return static(np.eye(len(entry)), entry, exit_, given.hardware.step)
@@ -189,7 +189,7 @@ def _entries(given: Plant) -> tuple[Channel, ...]:
 
 
 def _states(given: Plant, plant: System, controller: System) -> tuple[str, ...]:
-    """Those of the plant, strokes under way (newest first), those of the controller."""
+    """State names of the plant, the delayed strokes (newest first), and the controller."""
     late = len(plant.A) - len(given.states)
     width = len(given.actuators)
     registers = (f"held.{given.actuators[number % width]}.{number // width + 1}" for number in range(late))
@@ -201,21 +201,23 @@ def _findings(given: Plant, controller: System) -> list[Finding]:
     if controller.step is None or given.hardware.step is None:
         if controller.step is not given.hardware.step:
             kinds = ["continuous" if step is None else f"sampled every {step:g} s" for step in (controller.step, given.hardware.step)]
-            found.append(Finding("controller", f"it is {kinds[0]}, the hardware {kinds[1]}", "Give both one rate"))
+            found.append(
+                Finding("controller", f"different sampling (got {kinds[0]}, expected {kinds[1]} as the hardware)", "Use one rate for both")
+            )
     elif abs(controller.step / given.hardware.step - 1.0) > 1e-9:
-        what = f"its step is {controller.step:g} s, the hardware's {given.hardware.step:g} s"
-        found.append(Finding("controller", what, "Give both one rate"))
+        what = f"different sampling (got {controller.step:g} s, expected {given.hardware.step:g} s as the hardware)"
+        found.append(Finding("controller", what, "Use one rate for both"))
     at = given.coordinates
     known = _names((*at.motions("error."), *at.motions("reference."), *at.motions("pose."), *at.commands("applied.")))
     return [
         *found,
         *(
-            Finding(name, "a controller has no such input", suggest_nearest(name, known))
+            Finding(name, "unknown input of a controller", suggest_nearest(name, known))
             for name in controller.input_names
             if name not in known
         ),
         *(
-            Finding("controller", f"it has no output {name}", "Give a command to every actuator, zero if need be")
+            Finding("controller", f"missing output {name}", "Add a command for every actuator, possibly zero")
             for name in _names(LoopBreak.COMMAND.channels(given))
             if name not in controller.output_names
         ),

@@ -1,4 +1,4 @@
-"""Sensitivities of a loop over frequencies that resolve them, and where they cross a value."""
+"""Sensitivities of a loop over a resolving frequency grid, and their crossings of a value."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from flexstage.control.systems.system import System
 _OFFSETS = np.array([-81.0, -27.0, -9.0, -3.0, -1.0, 0.0, 1.0, 3.0, 9.0, 27.0, 81.0])
 _PER_DECADE = 12
 _TURN, _GROWTH = 0.6, 1.0
-"""Largest change of the angle of a loop [rad], and of the logarithm of its size, from one frequency to the next."""
+"""Largest change of a loop's angle [rad], and of the logarithm of its magnitude, between adjacent frequencies."""
 _ROUNDS, _MOST = 8, 20_000
 
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """The sensitivity S = (I + L)^-1 of a loop cut open at `cut`, complex (f, n, n) over `frequencies` (f,) [Hz].
+    """Sensitivity S = (I + L)^-1 of a loop opened at `cut`, complex (f, n, n) over `frequencies` (f,) [Hz].
 
-    One loop at a time, the others closed, has L_i = 1/S_ii - 1. `response` gives S anywhere.
+    A single loop, the others closed, has L_i = 1/S_ii - 1. `response` evaluates S at any frequency.
     """
 
     cut: LoopBreak
@@ -33,12 +33,12 @@ class Curves:
 
     @property
     def loops(self) -> Array:
-        """L_i of one loop at a time, complex (f, n)."""
+        """Single loops L_i, the others closed, complex (f, n)."""
         own = np.diagonal(self.sensitivity, axis1=1, axis2=2)
         return np.where(own == 0.0, np.inf, 1.0 / np.where(own == 0.0, 1.0, own) - 1.0)
 
     def crossings(self, of: Callable[[Array], Array], channel: int) -> tuple[Array, Array]:
-        """Frequencies [Hz] at which a real function `of` the channel's S_ii changes its sign, to rounding, and S_ii there."""
+        """Find frequencies [Hz] of sign changes of a real function `of` the channel's S_ii, to rounding, and S_ii there."""
         values = of(self.sensitivity[:, channel, channel])
         places = sign_changes(values)
         low, high = self.frequencies[places], self.frequencies[places + 1]
@@ -48,7 +48,7 @@ class Curves:
 
 
 def sensitivity(open_loop: System) -> System:
-    """S = (I + L)^-1 as a system with the names of L's outputs on both sides.
+    """Return S = (I + L)^-1 as a system with the names of L's outputs on both sides.
 
     >>> from flexstage.control.example import integral_loop
     >>> found, far = open_at(integral_loop(), LoopBreak.POSE), np.array([40.0])
@@ -61,9 +61,9 @@ def sensitivity(open_loop: System) -> System:
 
 
 def curves(closed: Loop, cut: LoopBreak) -> Curves:
-    """S over frequencies dense around every pole of the closed loop and of each loop opened alone, and refined until no L_i jumps.
+    """Compute S on frequencies dense around every pole of the closed loop and of each single open loop, refined until every L_i is smooth.
 
-    Up to half the sampling rate; a continuous loop up to 100 times its fastest pole.
+    Up to half the sampling rate; for a continuous loop up to 100 times its fastest pole.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = curves(integral_loop(), LoopBreak.POSE)
@@ -86,7 +86,7 @@ def curves(closed: Loop, cut: LoopBreak) -> Curves:
 
 
 def rates_of(poles: Array, step: float | None, least: float = 1e-6) -> Array:
-    """Poles as rates [1/s]: themselves, or ln z / T of a sampled system (those at 0 become fast ones).
+    """Convert poles to rates [1/s]: unchanged, or ln z / T for a sampled system (poles at 0 become fast ones).
 
     >>> rates_of(np.array([np.exp(-0.5)]), 0.1).round(9).tolist()
     [(-5+0j)]
@@ -95,7 +95,7 @@ def rates_of(poles: Array, step: float | None, least: float = 1e-6) -> Array:
 
 
 def points_around(rates: Array) -> Array:
-    """Frequencies [Hz] at multiples of each resonance's half width around it; only its own of a pole damped more than 0.5.
+    """Frequencies [Hz] at multiples of each resonance's half width; for damping above 0.5 only its own frequency.
 
     >>> points_around(np.array([-1.0 + 100.0j])).round(3)[4:7].tolist()  # 100/(2 pi), and 1/(2 pi) either side
     [15.756, 15.915, 16.075]
@@ -107,7 +107,7 @@ def points_around(rates: Array) -> Array:
 
 
 def dense_frequencies(poles: Array, step: float | None) -> Array:
-    """Frequencies [Hz] that resolve a system of these poles: some a decade, and around each resonance.
+    """Frequencies [Hz] that resolve a system of these poles: some per decade, and around each resonance.
 
     >>> found = dense_frequencies(np.array([-1.0 + 100.0j, -1.0 - 100.0j]), None)
     >>> round(float(found[0]), 4), round(float(found[-1])), len(found)
@@ -126,7 +126,7 @@ def dense_frequencies(poles: Array, step: float | None) -> Array:
 
 
 def refine(found: Curves) -> Array:
-    """Middles of the steps over which a loop turns or grows too much."""
+    """Midpoints of steps with too large a change of a loop's phase or magnitude."""
     loops = found.loops
     finite = np.where(np.isfinite(loops) & (loops != 0.0), loops, 1e-300)
     change = np.log(finite[1:] / finite[:-1])
@@ -137,7 +137,7 @@ def refine(found: Curves) -> Array:
 
 
 def sign_changes(values: Array) -> Array:
-    """Places (k,) before which a function has another sign than behind; a value of 0 counts as positive.
+    """Indices (k,) before a change of sign; a value of 0 counts as positive.
 
     >>> sign_changes(np.array([-1.0, 0.0, 2.0, -3.0])).tolist()
     [0, 2]
@@ -146,9 +146,9 @@ def sign_changes(values: Array) -> Array:
 
 
 def roots(of: Callable[[Array], Array], ends: tuple[Array, Array], values: tuple[Array, Array]) -> Array:
-    """Zeros of a function within brackets (low, high) (k,), where it has these `values` of opposite signs; all at once.
+    """Find zeros of a function within brackets (low, high) (k,) with `values` of opposite signs, all at once.
 
-    By the Illinois form of false position, to rounding.
+    Illinois variant of the false-position method, to rounding.
 
     >>> roots(lambda x: x**2 - 2.0, (np.array([0.0]), np.array([2.0])), (np.array([-2.0]), np.array([2.0]))).round(12).tolist()
     [1.414213562373]

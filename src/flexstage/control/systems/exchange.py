@@ -1,4 +1,4 @@
-"""Systems to and from python-control (the extra `control`)."""
+"""Conversion of systems to and from python-control (the extra `control`)."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from flexstage.models.linear.model import Channel
 
 @check_arguments
 def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
-    """A system as `control.StateSpace`, with the names of its inputs and outputs, points turned to underscores (`error_x`).
+    """Convert a system to `control.StateSpace`, with the names of inputs and outputs, dots replaced by underscores (`error_x`).
 
-    `states` name its states (those of a `Loop`, for instance). A continuous system has dt = 0. Raises `DesignError` where python-control
-    is not installed, and where two names become one.
+    `states` name its states (those of a `Loop`, for instance). A continuous system has dt = 0. Raises `DesignError` without python-control,
+    and for names that coincide.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = to_control(integral_loop().controller)
@@ -40,11 +40,11 @@ def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
 
 @check_arguments
 def from_control(system: Any, inputs: tuple[Channel, ...] | None = None, outputs: tuple[Channel, ...] | None = None) -> System:
-    """A `control.StateSpace`, or a transfer function of one input and one output, as a system.
+    """Convert a `control.StateSpace`, or a single-input single-output transfer function, to a system.
 
-    `inputs` and `outputs` name its channels with their units (absent: by its own labels, without unit); a controller made elsewhere takes
-    `error.x` ... and `command.B1` ... so. Raises `DesignError` for a sampled system whose step is not stated, for what is no linear
-    system, and for channels that are not as many.
+    `inputs` and `outputs` name its channels with their units (default: its own labels, without unit), for example `error.x` ... and
+    `command.B1` ... of a controller. Raises `DesignError` for a sampled system with unspecified step, for another type than a linear
+    system, and for a wrong number of channels.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop().controller
@@ -54,13 +54,15 @@ def from_control(system: Any, inputs: tuple[Channel, ...] | None = None, outputs
     """
     control = _control()
     if not isinstance(system, control.StateSpace | control.TransferFunction):
-        raise refuse("system", f"it is {type(system).__name__}, no StateSpace or TransferFunction", "Linearise or convert it first")
+        raise refuse(
+            "system", f"wrong type (got {type(system).__name__}, expected StateSpace or TransferFunction)", "Linearise or convert it first"
+        )
     if isinstance(system, control.TransferFunction) and (system.ninputs, system.noutputs) != (1, 1):
         what = f"a transfer function with {system.ninputs} inputs and {system.noutputs} outputs"
-        raise refuse("system", what, "Convert it to a StateSpace: a realisation of several channels is a choice")
+        raise refuse("system", what, "Convert it to a StateSpace: the realisation of several channels is not unique")
     found = control.ss(system)
     if found.dt is True or found.dt is None:
-        raise refuse("system", f"its dt is {found.dt}: no step is stated", "Give dt in seconds, or 0 for a continuous system")
+        raise refuse("system", f"its dt is {found.dt} (expected a number)", "Specify dt in seconds, or 0 for a continuous system")
     channels = [_channels(given, found, kind) for given, kind in ((inputs, "input"), (outputs, "output"))]
     matrices = (np.array(matrix, dtype=float) for matrix in (found.A, found.B, found.C, found.D))
     return System(*matrices, inputs=channels[0], outputs=channels[1], step=float(found.dt) or None)
@@ -82,5 +84,5 @@ def _channels(given: tuple[Channel, ...] | None, system: Any, kind: str) -> tupl
     if given is None:
         return tuple(Channel(label, "1") for label in labels)
     if len(given) != len(labels):
-        require([Finding(f"{kind}s", f"{len(given)} are named, the system has {len(labels)}", "Name each of them")])
+        require([Finding(f"{kind}s", f"wrong number of names (got {len(given)}, expected {len(labels)})", "Name each of them")])
     return given

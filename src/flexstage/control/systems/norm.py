@@ -14,27 +14,27 @@ from flexstage.base.units.quantity import FREQUENCY
 from flexstage.control.systems.system import System
 
 _NEAR_AXIS = 1e-3
-"""Real over imaginary part of an eigenvalue that may stand for one on the axis: generous, for all are looked at."""
+"""Limit of the real over imaginary part of an eigenvalue on the axis: generous, because all candidates are checked."""
 _ACCURACY = 1e-11
 _APART = 1e-6
-"""How far a level lies above the value at the end of all frequencies, where the Hamiltonian matrix has no bound."""
+"""Distance of a level above the value at the end of the frequency range, where the Hamiltonian matrix is unbounded."""
 
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest value of a response (of its largest singular value) and the frequency [Hz] where it stands."""
+    """Largest value of a response (of its largest singular value) and its frequency [Hz]."""
 
     value: float
     frequency: Annotated[float, FREQUENCY]
 
 
 def peak(system: System) -> Peak:
-    """sup over omega of the largest singular value of H, for a stable system its H-infinity norm, to 1e-9 of its value.
+    """Compute sup over omega of the largest singular value of H, for a stable system its H-infinity norm, to 1e-9 relative.
 
-    Where the value at half the sampling rate, or of a continuous system the direct one, is within 1e-6 of the largest, to 1e-6.
-    Bruinsma and Steinbuch (Systems & Control Letters 14, 1990): a singular value of H equals gamma where the Hamiltonian matrix of gamma
-    has an eigenvalue on the imaginary axis, so that no peak can hide between frequencies; sampled systems by z = (1 + s)/(1 - s), which
-    keeps the norm. Raises `DesignError` for an unstable system, whose response is not what it does.
+    To 1e-6 if the value at half the sampling rate, or the direct gain of a continuous system, is within 1e-6 of the largest. Bruinsma and
+    Steinbuch (Systems & Control Letters 14, 1990): gamma is a singular value of H if and only if the Hamiltonian matrix of gamma has an
+    eigenvalue on the imaginary axis, so that no peak between frequencies is missed. Sampled systems are mapped by z = (1 + s)/(1 - s),
+    which preserves the norm. Raises `DesignError` for an unstable system, which has no steady response.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
@@ -43,7 +43,7 @@ def peak(system: System) -> Peak:
     (5.025189076, 5.025189076)
     """
     if system.growth >= 0.0:
-        raise refuse("peak", f"the system grows by {system.growth:.3g} 1/s", "Stabilise it first")
+        raise refuse("peak", f"unstable system: it grows by {system.growth:.3g} 1/s", "Stabilise it first")
     plane = to_plane(system)
     frequencies = _first_frequencies(system)
     best = _highest_of(system, frequencies)
@@ -60,7 +60,7 @@ def peak(system: System) -> Peak:
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """A system in the plane s of a continuous one, s = j nu: nu = 2 pi f / `unit`, or tan(pi f T) of a sampled one."""
+    """System mapped to a continuous one, s = j nu: nu = 2 pi f / `unit`, or tan(pi f T) for a sampled one."""
 
     system: System
     unit: float
@@ -74,7 +74,7 @@ class Plane:
 
 
 def to_plane(system: System) -> Plane:
-    """A system with its states balanced, sampled ones by z = (1 + s)/(1 - s), continuous ones with a unit of time of their own.
+    """Map a system with balanced states: sampled ones by z = (1 + s)/(1 - s), continuous ones with a scaled time.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop().system
@@ -95,7 +95,7 @@ def to_plane(system: System) -> Plane:
 
 
 def _balance(system: System) -> System:
-    """States scaled so that rows and columns are alike in size, the inputs and outputs among them."""
+    """Scale the states so that rows and columns have similar norms, inputs and outputs included."""
     size = len(system.A)
     if not size:
         return system
@@ -107,7 +107,7 @@ def _balance(system: System) -> System:
 
 
 def level_crossings(plane: Plane, level: float) -> Array:
-    """Frequencies [Hz] ascending at which a singular value may equal `level`; those that do are among them, and more may be.
+    """Ascending frequencies [Hz] of possible crossings of `level` by a singular value: all true ones, and possibly more.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
@@ -126,7 +126,7 @@ def level_crossings(plane: Plane, level: float) -> Array:
 
 
 def _first_frequencies(system: System) -> Array:
-    """Where a peak may stand: 0, the end, and at each pole."""
+    """Candidate frequencies of a peak: 0, the end, and each pole."""
     poles = system.poles
     if system.step is None:
         return np.concatenate([[0.0, np.inf], np.abs(poles) / (2.0 * np.pi)])
@@ -144,7 +144,7 @@ def _highest_of(system: System, frequencies: Array) -> Peak:
 
 
 def _climb(system: System, start: Peak) -> Peak:
-    """The same peak, followed up by parabolas of shrinking width."""
+    """The same peak, refined by parabolas of decreasing width."""
     if not np.isfinite(start.frequency) or start.frequency == 0.0:
         return start
     best, width = start, 1e-3 * start.frequency

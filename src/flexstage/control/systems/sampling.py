@@ -1,4 +1,4 @@
-"""Sampled systems: what a continuous system is between a digital-to-analogue converter and a sampler."""
+"""Sampling of continuous systems between a digital-to-analogue converter and a sampler."""
 
 from __future__ import annotations
 
@@ -13,13 +13,12 @@ from flexstage.control.systems.system import System
 
 
 def discretise(system: System, step: float, delay: float = 0.0, early: int = 0) -> System:
-    """A continuous system whose inputs are held over each `step` [s] and arrive `delay` [s] late; exact at the samples.
+    """Discretise a continuous system by zero-order hold with `step` [s] and input `delay` [s]; exact at the samples.
 
-    With delay = (d + f) T, 0 <= f < 1, the input changes within the step: x[k+1] = e^{AT} x[k] + Gamma_1 u[k-d-1] + Gamma_0 u[k-d],
-    Gamma_0 = int_0^{(1-f)T} e^{As} ds B, Gamma_1 = e^{A(1-f)T} int_0^{fT} e^{As} ds B (Astrom and Wittenmark, Computer-Controlled
-    Systems, 1997, section 2.3). An output sampled while the input changes (f = 0) sees the new value, the
-    first `early` outputs the one before. All inputs are delayed alike. Raises
-    `DesignError` for a system that is sampled already, and for times that cannot be.
+    With delay = (d + f) T, 0 <= f < 1, the input changes within the step: x[k+1] = e^{AT} x[k] + Gamma_1 u[k-d-1] + Gamma_0 u[k-d], Gamma_0
+    = int_0^{(1-f)T} e^{As} ds B, Gamma_1 = e^{A(1-f)T} int_0^{fT} e^{As} ds B (Astrom and Wittenmark, Computer-Controlled Systems, 1997,
+    section 2.3). An output sampled at an input change (f = 0) has the new value, the first `early` outputs the previous one. All inputs
+    have the same delay. Raises `DesignError` for a sampled system, and for invalid times.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
@@ -36,7 +35,7 @@ def discretise(system: System, step: float, delay: float = 0.0, early: int = 0) 
     late, before = _hold_matrices(system, part * step)
     (size, width), seen = system.B.shape, whole + (part > 0.0)
     count = whole + 1 if np.any(system.D[:early]) else seen
-    entries, direct = np.zeros((size, count + 1, width)), np.zeros((len(system.D), count + 1, width))  # of u[k], u[k-1], ...
+    entries, direct = np.zeros((size, count + 1, width)), np.zeros((len(system.D), count + 1, width))  # blocks of u[k], u[k-1], ...
     entries[:, whole] = start
     if part > 0.0:
         entries[:, whole + 1] = after @ before
@@ -54,13 +53,13 @@ def discretise(system: System, step: float, delay: float = 0.0, early: int = 0) 
 
 
 def first_order_hold(system: System, step: float) -> System:
-    """A continuous system whose inputs go straight from sample to sample, each `step` [s]; exact at the samples.
+    """Discretise a continuous system by first-order hold (inputs linear between samples), with `step` [s]; exact at the samples.
 
-    x[k+1] = e^{AT} x[k] + (Gamma - Gamma_1) u[k] + Gamma_1 u[k+1], Gamma_1 = int_0^T e^{A(T-s)} (s/T) ds B (Franklin, Powell and
-    Workman, Digital Control of Dynamic Systems, 1998, section 6.3.2); its states are x[k] - Gamma_1 u[k], so that no input is wanted ahead
-    of its time. What is known as a series but moves smoothly, as a floor does, is met without the jumps of a hold, to (omega T)^2/12;
-    motion relative to it to (omega_0 T)^2/12, omega_0 the resonance (1e-3 for a tenth of a radian a sample). Raises `DesignError` for a
-    system that is sampled already, and for times that cannot be.
+    x[k+1] = e^{AT} x[k] + (Gamma - Gamma_1) u[k] + Gamma_1 u[k+1], Gamma_1 = int_0^T e^{A(T-s)} (s/T) ds B (Franklin, Powell and Workman,
+    Digital Control of Dynamic Systems, 1998, section 6.3.2). The states are x[k] - Gamma_1 u[k], so that no future input is required. For
+    smooth motion known as a series, such as a floor's, the relative error is (omega T)^2/12, without the jumps of a hold. For motion
+    relative to it the error is (omega_0 T)^2/12, omega_0 the resonance (1e-3 for a tenth of a radian per sample). Raises `DesignError` for
+    a sampled system, and for invalid times.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
@@ -79,7 +78,7 @@ def first_order_hold(system: System, step: float) -> System:
 
 
 def split_delay(samples: float) -> tuple[int, float]:
-    """Whole samples and the rest; what is within rounding of a whole sample is one."""
+    """Split a delay into whole samples and the remainder, with whole samples to rounding."""
     nearest_whole = round(samples)
     if abs(samples - nearest_whole) < 1e-9:
         return nearest_whole, 0.0
@@ -87,7 +86,7 @@ def split_delay(samples: float) -> tuple[int, float]:
 
 
 def _hold_matrices(system: System, time: float) -> tuple[Array, Array]:
-    """e^{At} and int_0^t e^{As} ds B."""
+    """Matrices e^{At} and int_0^t e^{As} ds B."""
     size, width = system.B.shape
     whole = np.zeros((size + width, size + width))
     whole[:size, :size], whole[:size, size:] = system.A, system.B
@@ -96,10 +95,10 @@ def _hold_matrices(system: System, time: float) -> tuple[Array, Array]:
 
 
 def bilinear(system: System, step: float, prewarp: float | None = None) -> System:
-    """A continuous controller turned digital by Tustin's rule, s = c (z - 1)/(z + 1), c = 2/T.
+    """Discretise a continuous controller by Tustin's rule (bilinear), s = c (z - 1)/(z + 1), c = 2/T.
 
-    With `prewarp` f [Hz], c = 2 pi f / tan(pi f T): the response at f is kept exactly. Poles in the left half plane stay stable. Raises
-    `DesignError` for a system that is sampled already, and for `prewarp` above half the sampling rate.
+    With `prewarp` f [Hz], c = 2 pi f / tan(pi f T): the response at f is exact. Poles in the left half plane stay stable. Raises
+    `DesignError` for a sampled system, and for `prewarp` above half the sampling rate.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("e", "m"),), (Channel("u", "m"),)

@@ -1,4 +1,4 @@
-"""Linear systems with named inputs and outputs, continuous or sampled: what a loop is made of."""
+"""Linear systems with named inputs and outputs, continuous or sampled."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from flexstage.models.linear.state_space import StateSpace
 _SINGULAR = 1e-12
 _CHUNK = 2_000_000
 _FEW = 12
-"""Points that are solved one by one: the rows of a triangle cost more than these, if each is a step of its own."""
+"""Number of points solved one by one: below it they cost less than a row-by-row solve."""
 
 
 @dataclass(frozen=True, eq=False)
 class System(CheckedFields):
-    """x' = A x + B u, y = C x + D u; with a `step` T [s]: x[k+1] = A x[k] + B u[k], y[k] = C x[k] + D u[k].
+    """Linear system x' = A x + B u, y = C x + D u; with a `step` T [s]: x[k+1] = A x[k] + B u[k], y[k] = C x[k] + D u[k].
 
-    A (n, n), B (n, m), C (p, n), D (p, m), SI; `inputs` and `outputs` carry names and units, and no name stands twice among either. Raises
-    `DesignError` where shapes and names do not fit.
+    A (n, n), B (n, m), C (p, n), D (p, m), SI; `inputs` and `outputs` have unique names and units. Raises `DesignError` for shapes and
+    names that do not match.
     """
 
     A: Annotated[Array, VIEW]
@@ -42,7 +42,6 @@ class System(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        """Refuse what does not fit together."""
         require(_findings(self))
 
     @property
@@ -57,12 +56,12 @@ class System(CheckedFields):
 
     @cached_property
     def poles(self) -> Array:
-        """Eigenvalues (n,) of A: in 1/s, or in the z plane where the system is sampled."""
+        """Eigenvalues (n,) of A: in 1/s, or in the z plane for a sampled system."""
         return np.linalg.eigvals(self.A)
 
     @property
     def growth(self) -> float:
-        """Largest rate of growth [1/s] of the free motion: max Re(p), or max ln|z| / T; negative for a stable system."""
+        """Spectral abscissa [1/s], the largest growth rate: max Re(p), or max ln|z| / T; negative for a stable system."""
         poles = self.poles
         if not len(poles):
             return -np.inf
@@ -71,7 +70,7 @@ class System(CheckedFields):
     @cached_property
     def schur_form(self) -> tuple[Array, Array, Array]:
         """Triangle T, Q^H B and C Q of the complex Schur form A = Q T Q^H, balanced."""
-        if not np.any(np.tril(self.A, -1)):  # laws of one loop are triangles as they are
+        if not np.any(np.tril(self.A, -1)):  # single-loop laws are already triangular
             return self.A.astype(complex), self.B.astype(complex), self.C.astype(complex)
         balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
         triangle, vectors = scipy.linalg.schur(balanced.astype(complex), output="complex")[:2]
@@ -82,9 +81,10 @@ class System(CheckedFields):
         return turning if self.step is None else np.exp(turning * self.step)
 
     def transfer(self, frequencies: Array) -> Array:
-        """Frequency response H = C (lambda - A)^-1 B + D, (f, p, m) at `frequencies` (f,) in Hz; lambda = j omega, or e^{j omega T}.
+        """Compute the frequency response H = C (lambda - A)^-1 B + D, (f, p, m) at `frequencies` (f,) [Hz].
 
-        States are balanced first: rates of modes are thousands of times their motions, and a solve would lose as many digits.
+        lambda = j omega, or e^{j omega T} for a sampled system. Balances the states first: rates of modes exceed their displacements a
+        thousandfold, with an equal loss of digits in a solve.
         """
         balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
         entry, points = (self.B / scale[:, None]).astype(complex), self._points(frequencies)
@@ -92,10 +92,10 @@ class System(CheckedFields):
         return (self.C * scale) @ np.linalg.solve(shifted, np.broadcast_to(entry, (len(points), *entry.shape))) + self.D
 
     def sweep(self, frequencies: Array, columns: slice = slice(None)) -> Array:
-        """The same at many frequencies, of the inputs in `columns`; infinite frequencies give D (continuous systems only).
+        """Compute the frequency response at many frequencies, for the inputs in `columns`.
 
-        One Schur form, then back substitution: n^2 operations a point, whether or not A has all eigenvectors. Elements that are zero by
-        symmetry are rounding of the largest.
+        Infinite frequencies give D (continuous systems only). One Schur form, then back substitution: n^2 operations per point, also for a
+        defective A. Elements zero by symmetry have rounding errors relative to the largest.
         """
         frequencies, direct = np.asarray(frequencies, dtype=float), self.D[:, columns]
         points = self._points(np.where(np.isfinite(frequencies), frequencies, 0.0))
@@ -124,17 +124,21 @@ def _findings(system: System) -> Iterable[Finding]:
     for name, shape in (("A", (states, states)), ("B", (states, width)), ("C", (height, states)), ("D", (height, width))):
         found = np.shape(getattr(system, name))
         if found != shape:
-            yield Finding(f"matrix {name}", f"it is {found}, where states, inputs and outputs make it {shape}", "Give matrices that fit")
+            yield Finding(
+                f"matrix {name}",
+                f"wrong shape (got {found}, expected {shape} by states, inputs and outputs)",
+                "Use matrices of matching shapes",
+            )
     for kind, names in (("input", system.input_names), ("output", system.output_names)):
         if len({*names}) < len(names):
             for name in sorted({name for name in names if names.count(name) > 1}):
-                yield Finding(name, f"{names.count(name)} {kind}s have this name", "Give each its own")
+                yield Finding(name, f"{names.count(name)} {kind}s have this name", "Rename all but one")
     if system.step is not None and not 0.0 < system.step < np.inf:
         yield Finding("step", f"it is {system.step:g} s", "Give a positive time, or none for a continuous system")
 
 
 def from_state_space(space: StateSpace) -> System:
-    """A stage's state space as a system.
+    """Convert a stage's state space to a system.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports
@@ -149,7 +153,7 @@ def from_state_space(space: StateSpace) -> System:
 
 
 def static(gain: Array, inputs: tuple[Channel, ...], outputs: tuple[Channel, ...], step: float | None = None) -> System:
-    """y = `gain` u, gain (p, m).
+    """Construct the static system y = `gain` u, gain (p, m).
 
     >>> volt, metre = (Channel("u", "V"),), (Channel("y", "m"),)
     >>> static(np.array([[3.0]]), volt, metre).transfer(np.array([1.0])).real.tolist()
@@ -159,7 +163,7 @@ def static(gain: Array, inputs: tuple[Channel, ...], outputs: tuple[Channel, ...
 
 
 def lag(channels: tuple[Channel, ...], bandwidths: Array, outputs: tuple[Channel, ...]) -> System:
-    """First-order lags y = u / (1 + s / (2 pi f)) side by side, -3 dB at `bandwidths` (m,) [Hz]; infinite ones pass all.
+    """Construct parallel first-order lags y = u / (1 + s / (2 pi f)), -3 dB at `bandwidths` (m,) [Hz]; infinite: no lag.
 
     >>> found = lag((Channel("u", "m"),), np.array([100.0]), (Channel("y", "m"),))
     >>> np.abs(found.transfer(np.array([0.0, 100.0]))).ravel().round(4).tolist()
@@ -176,7 +180,7 @@ def lag(channels: tuple[Channel, ...], bandwidths: Array, outputs: tuple[Channel
 
 
 def rename(system: System, names: Mapping[str, str]) -> System:
-    """The same system with some of its inputs and outputs called otherwise.
+    """Rename some inputs and outputs of a system.
 
     >>> one = static(np.eye(1), (Channel("u", "m"),), (Channel("y", "m"),))
     >>> rename(one, {"u": "stroke"}).input_names
@@ -206,7 +210,7 @@ def select(system: System, inputs: Iterable[str], outputs: Iterable[str]) -> Sys
 
 def _indices(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[int]:
     names = tuple(names)
-    require(Finding(name, f"there is no {kind} of this name", suggest_nearest(name, known)) for name in names if name not in known)
+    require(Finding(name, f"unknown {kind}", suggest_nearest(name, known)) for name in names if name not in known)
     return [known.index(name) for name in names]
 
 
@@ -277,7 +281,7 @@ def _link_findings(whole: System, links: Mapping[str, Terms], inputs: tuple[Chan
     sources = (*external, *whole.output_names)
     for name in links:
         if name not in whole.input_names:
-            yield Finding(name, "no system has an input of this name", suggest_nearest(name, whole.input_names))
+            yield Finding(name, "unknown input", suggest_nearest(name, whole.input_names))
         for term in links[name]:
             if term not in sources:
                 yield Finding(f"link to {name}", f"nothing is called '{term}'", suggest_nearest(term, sources))

@@ -1,1 +1,1 @@
-"""Trajectories: what the platform is asked to do."""
+"""Trajectories: reference motions of the platform."""

@@ -1,4 +1,4 @@
-"""Trajectories against what the stage can do: its strokes, and the speed of its amplifiers."""
+"""Checks of trajectories against the stage's limits: its strokes, and the speed of its amplifiers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
 def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Finding]:
-    """One finding where poses (n, f) leave the `polytope` of what strokes reach: first and worst time, and the scale that fits; or none.
+    """Check whether poses (n, f) leave the `polytope` of reachable poses; one finding with first and worst time, and the scale that fits.
 
     Columns are the polytope's coordinates; the boundary counts as reachable.
 
@@ -21,7 +21,7 @@ def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Findi
     >>> span = StrokeLimits(("B",), np.array([-1e-6]), np.array([1e-6]))
     >>> room = reachable(Matrix(np.eye(1), ("B",), ("x",), "1"), span)
     >>> print(reach_findings(np.array([[1e-6], [2e-6]]), np.array([0.0, 1.0]), room)[0].advice)
-    Shrink the trajectory to 0.5 of its size, or move it towards the middle of the strokes
+    Scale the trajectory to 0.5 of its size, or move it towards the middle of the strokes
     """
     outside = np.flatnonzero(~polytope.contains(poses))
     if not len(outside):
@@ -29,10 +29,8 @@ def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Findi
     share = np.max(poses @ polytope.normals.T / polytope.offsets, axis=-1)
     worst = int(np.argmax(share))
     pose = ", ".join(f"{name} = {_show(value, name)}" for name, value in zip(polytope.coordinates, poses[worst], strict=True) if value)
-    what = (
-        f"it leaves what the strokes reach at {times[outside[0]]:g} s; at {times[worst]:g} s {pose} takes {share[worst]:.3g} of the stroke"
-    )
-    advice = f"Shrink the trajectory to {1.0 / share[worst]:.3g} of its size, or move it towards the middle of the strokes"
+    what = f"beyond the strokes from {times[outside[0]]:g} s; at {times[worst]:g} s {pose} takes {share[worst]:.3g} of the stroke"
+    advice = f"Scale the trajectory to {1.0 / share[worst]:.3g} of its size, or move it towards the middle of the strokes"
     return [Finding("trajectory", what, advice)]
 
 
@@ -41,17 +39,17 @@ def _show(value: float, coordinate: str) -> str:
 
 
 def speed_findings(poses: Array, times: Array, mapping: Matrix, slew: Array, *, units: tuple[str, ...] = ()) -> list[Finding]:
-    """Actuators that sampled poses (n, f) ask for more speed than `slew` (m,) allows: R_a times the poses' differences.
+    """Check sampled poses (n, f) against the amplifier speed `slew` (m,): R_a times the poses' differences.
 
-    `units` are those of the actuators' inputs (absent: m).
+    `units` are the units of the actuators' inputs (default: m).
 
-    A finding, not a refusal: behind a step an amplifier runs at its limit, and the simulation shows how. Columns of `mapping` (R_a) are
-    the coordinates of the poses.
+    Findings only, because an amplifier saturates behind a step, as the simulation shows. Columns of `mapping` (R_a) are the coordinates of
+    the poses.
 
     >>> lever = Matrix(np.array([[2.0]]), ("B1",), ("x",), "1")
     >>> found = speed_findings(np.array([[0.0], [1e-6]]), np.array([0.0, 1e-3]), lever, np.array([1e-3]))
     >>> print(found[0])
-    B1: the trajectory asks for 2000 um/s at 0.001 s, the amplifier gives 1000 um/s. Slow it down to 0.5 of its speed.
+    B1: the trajectory requires 2000 um/s at 0.001 s, the amplifier's limit is 1000 um/s. Reduce its speed to 0.5.
     """
     rates = np.abs(np.diff(poses, axis=0) @ np.asarray(mapping.values).T) / np.diff(times)[:, None]
     found = []
@@ -59,6 +57,6 @@ def speed_findings(poses: Array, times: Array, mapping: Matrix, slew: Array, *, 
         worst = int(np.argmax(column))
         if column[worst] > most * (1.0 + 1e-9):
             wanted, given = (f"{1e6 * value:.4g} um/s" if unit == "m" else f"{value:.4g} {unit}/s" for value in (column[worst], most))
-            what = f"the trajectory asks for {wanted} at {times[worst + 1]:g} s, the amplifier gives {given}"
-            found.append(Finding(actuator, what, f"Slow it down to {most / column[worst]:.3g} of its speed"))
+            what = f"the trajectory requires {wanted} at {times[worst + 1]:g} s, the amplifier's limit is {given}"
+            found.append(Finding(actuator, what, f"Reduce its speed to {most / column[worst]:.3g}"))
     return found

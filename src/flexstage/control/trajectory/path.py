@@ -1,4 +1,4 @@
-"""What every trajectory is: poses over time; poses as a loop's reference."""
+"""Protocol of trajectories, poses over time, and the reference of a loop."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from flexstage.base.number import Array
 
 
 class Trajectory(Protocol):
-    """Poses over time: `at(times)` in m and rad, of the platform, in the stage's axes and counted from where the stage rests.
+    """Platform poses over time: `at(times)` in m and rad, in the stage's axes, relative to its static equilibrium.
 
-    A trajectory rests at nought before it starts. `duration` is when the last motion ends [s].
+    A trajectory starts at rest at zero. `duration` is the end of the last motion [s].
     """
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Names of the coordinates that move, of x, y, z, rx, ry, rz."""
+        """Names of the moving coordinates, of x, y, z, rx, ry, rz."""
         ...
 
     @property
     def duration(self) -> float:
-        """When the last motion ends [s]."""
+        """End of the last motion [s]."""
         ...
 
     def at(self, times: Array) -> Array:
@@ -34,16 +34,16 @@ class Trajectory(Protocol):
 
 
 def require_positive(where: str, numbers: Mapping[str, float | None]) -> None:
-    """Refuse what is stated and not above 0, or not finite."""
+    """Refuse values that are not positive and finite."""
     wrong = {name: value for name, value in numbers.items() if value is not None and not 0.0 < value < np.inf}
-    require(Finding(f"{where}{name}", f"it is {value:g}", "Give a positive number") for name, value in wrong.items())
+    require(Finding(f"{where}{name}", f"it is {value:g}", "Use a positive number") for name, value in wrong.items())
 
 
 @check_arguments
 def reference(trajectory: Trajectory, coordinates: Sequence[str], times: Array) -> Array:
-    """The reference poses (n, f) of a loop of these coordinates at `times` (n,); coordinates that do not move are 0.
+    """Evaluate the reference poses (n, f) of a loop of these coordinates at `times` (n,); coordinates without motion are 0.
 
-    Raises `DesignError` for coordinates the loop does not have.
+    Raises `DesignError` for unknown coordinates of the loop.
 
     >>> from flexstage.control.trajectory.step import Step
     >>> up = Step({"z": 2e-6}, start=1.0)
@@ -52,7 +52,7 @@ def reference(trajectory: Trajectory, coordinates: Sequence[str], times: Array) 
     """
     advice = "The loop's coordinates are " + ", ".join(coordinates)
     require(
-        Finding(f"trajectory: {name}", "the loop has no coordinate of this name", f"{suggest_nearest(name, coordinates)}. {advice}")
+        Finding(f"trajectory: {name}", "unknown coordinate", f"{suggest_nearest(name, coordinates)}. {advice}")
         for name in trajectory.coordinates
         if name not in coordinates
     )

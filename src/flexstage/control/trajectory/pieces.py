@@ -1,4 +1,4 @@
-"""Motions made of polynomials in time, one after the other."""
+"""Piecewise polynomial motions in time."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """A piecewise polynomial in time [s], columns by coordinate; at rest before its first and after its last knot.
+    """Piecewise polynomial in time [s], columns by coordinate; at rest before its first and after its last knot.
 
-    `coefficients` (k, m, c) have the highest power first, each from its own knot; `knots` (m + 1,).
+    `coefficients` (k, m, c) have the highest power first, relative to their own knot; `knots` (m + 1,).
     """
 
     coefficients: Array
@@ -27,13 +27,13 @@ class Pieces:
         return float(self.knots[-1])
 
     def at(self, times: Array, order: int = 0) -> Array:
-        """Values (n, c), or those of the derivative of an `order`."""
+        """Values (n, c), or their derivative of an `order`."""
         whole = scipy.interpolate.PPoly(self.coefficients, self.knots)
         return np.asarray(whole(np.clip(times, self.knots[0], self.knots[-1]), order))
 
 
 def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
-    """Pieces from (duration [s], coefficients (6, c)) one after the other, each given from its own start; those that last no time drop out.
+    """Concatenate pieces (duration [s], coefficients (6, c)), each relative to its own start; those of zero duration are omitted.
 
     >>> forth = np.zeros((6, 1)); forth[1] = 2.0
     >>> join([(0.5, forth), (0.5, rest(np.array([1.0])))]).at(np.array([0.25, 0.75, 9.0])).ravel().tolist()
@@ -45,7 +45,7 @@ def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
 
 
 def rest(position: Array) -> Array:
-    """Coefficients (6, c) of standing still.
+    """Return the coefficients (6, c) of a constant position.
 
     >>> rest(np.array([3.0]))[:2].tolist()
     [[3.0], [0.0]]
@@ -56,7 +56,7 @@ def rest(position: Array) -> Array:
 
 
 def smooth(start: Array, end: Array, time: float) -> Array:
-    """Coefficients (6, c) of the smooth move from rest to rest in a `time` [s]: start + (end - start)(10 s^3 - 15 s^4 + 6 s^5), s = t/time.
+    """Compute coefficients (6, c) of the quintic rest-to-rest move: start + (end - start)(10 s^3 - 15 s^4 + 6 s^5), s = t/`time` [s].
 
     Largest speed 15/8 d/time, acceleration 10/3^(1/2) d/time^2.
 
@@ -71,7 +71,7 @@ def smooth(start: Array, end: Array, time: float) -> Array:
 
 
 def smooth_time(distance: float, speed: float, acceleration: float) -> float:
-    """The least time [s] of a smooth move over a `distance` within a `speed` and an `acceleration`.
+    """Compute the minimum time [s] of a smooth move over a `distance` within a `speed` and an `acceleration`.
 
     >>> smooth_time(1.0, 15.0 / 8.0, 100.0)
     1.0

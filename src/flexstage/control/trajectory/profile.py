@@ -1,4 +1,4 @@
-"""Moves from rest to rest in the least time that speed, acceleration and jerk allow."""
+"""Time-optimal rest-to-rest motion profiles with limited speed, acceleration and jerk."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.control.trajectory.pieces import Pieces, join
 
 @dataclass(frozen=True)
 class Limits(CheckedFields):
-    """Limits of a move along its path: `speed` [m/s], `acceleration` [m/s^2], `jerk` [m/s^3]; in rad for moves that only turn."""
+    """Limits of a move along its path: `speed` [m/s], `acceleration` [m/s^2], `jerk` [m/s^3]; in rad for pure rotations."""
 
     speed: float
     acceleration: float
@@ -21,9 +21,9 @@ class Limits(CheckedFields):
 
 
 def profile(distance: float, limits: Limits) -> Pieces:
-    """The move over a `distance` [m, rad] in the least time within `limits`: jerk +j, 0, -j, then even speed, then -j, 0, +j.
+    """Compute the time-optimal move over a `distance` [m, rad] within `limits`: jerk +j, 0, -j, constant speed, then -j, 0, +j.
 
-    Times of one jerk t_j, of even acceleration t_a and of even speed t_v follow one after the other (Biagiotti and Melchiorri, Trajectory
+    Times of one jerk t_j, of constant acceleration t_a and of constant speed t_v follow in sequence (Biagiotti and Melchiorri, Trajectory
     Planning for Automatic Machines and Robots, 2008, section 3.4): t_j = min(a/j, (v/j)^(1/2), (d/2j)^(1/3)). Raises `DesignError` for
     limits that are not positive and finite.
 
@@ -44,7 +44,7 @@ def profile(distance: float, limits: Limits) -> Pieces:
 
 
 def _integrate(times: np.ndarray, jerks: np.ndarray, distance: float) -> Pieces:
-    """Cubic pieces from jerks; the last value is set to the distance, which rounding misses by some 1e-16 of it."""
+    """Cubic pieces from jerks; the last value is set to the distance, which rounding misses by about 1e-16."""
     position = speed = acceleration = 0.0
     parts = []
     for time, jerk in zip(times, jerks, strict=True):

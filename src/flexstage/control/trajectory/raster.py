@@ -1,4 +1,4 @@
-"""Rasters: lines at even speed, turned around between them."""
+"""Raster scans: lines at constant speed, with reversals between them."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _STEEPEST = 10.0 / 3.0**0.5
 
 @dataclass(frozen=True, eq=False)
 class Raster(CheckedFields):
-    """`lines` parallel lines of a `length`, `pitch` apart [m], around nought, each passed at an even `speed` [m/s].
+    """Raster of `lines` parallel lines of a `length`, `pitch` apart [m], centred at zero, at constant `speed` [m/s].
 
-    Turns are outside the lines: the fast coordinate is decelerated evenly to the opposite speed, while the slow one steps smoothly by
-    the pitch; nothing exceeds `acceleration` [m/s^2], and turns last as long as the step takes at least. It is approached from 0 and left
-    to 0 smoothly. `overshoot` is the room turns need beyond the lines.
+    Reversals are outside the lines. The fast coordinate decelerates uniformly to the opposite speed, while the slow one moves smoothly by
+    the pitch. No acceleration exceeds `acceleration` [m/s^2]; reversals last at least as long as the slow move. The approach from 0 and the
+    return to 0 are smooth. `overshoot` is the distance of reversals beyond the lines.
 
     >>> raster = Raster(length=10e-6, pitch=1e-6, lines=3, speed=1e-3, acceleration=20.0)
     >>> round(raster.overshoot * 1e9, 6)  # turns are as slow as the step: 0.54 ms
@@ -39,34 +39,33 @@ class Raster(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        """Refuse numbers that make no raster."""
         numbers = {"length": self.length, "pitch": self.pitch, "lines": self.lines, "speed": self.speed, "acceleration": self.acceleration}
         require_positive("raster: ", numbers)
 
     @property
     def overshoot(self) -> float:
-        """How far turns reach beyond the lines [m]: v^2 / 2 a."""
+        """Distance of the reversals beyond the lines [m]: v^2 / 2 a."""
         return 0.5 * self.speed**2 / self._swing
 
     @property
     def duration(self) -> float:
-        """When it is back at nought [s]."""
+        """Time of the return to zero [s]."""
         return self._pieces.duration
 
     @property
     def line_starts(self) -> Array:
-        """When each line begins [s] (lines,); it lasts length / speed."""
+        """Start time of each line [s] (lines,); it lasts length / speed."""
         entry = self._approach(self._first) + self.speed / self._swing
         return entry + np.arange(self.lines) * (self.length / self.speed + self._turn_time)
 
     @property
     def period(self) -> float:
-        """After this time [s] it does the same again, but for steps of the slow coordinate: a line to and a line fro."""
+        """Period [s], except for moves of the slow coordinate: one line forth and one back."""
         return 2.0 * (self.length / self.speed + self._turn_time)
 
     @property
     def repeats(self) -> tuple[float, float]:
-        """From when to when it does [s]: from the begin of the first line to the end of the last."""
+        """Start and end of the periodic part [s]: from the start of the first line to the end of the last."""
         starts = self.line_starts
         return float(starts[0]), float(starts[-1]) + self.length / self.speed
 
@@ -76,17 +75,17 @@ class Raster(CheckedFields):
 
     @property
     def _swing(self) -> float:
-        """Acceleration of the fast coordinate in turns: as stated, or less where the step of the slow one takes longer."""
+        """Acceleration of the fast coordinate in reversals: as specified, or lower if the slow move takes longer."""
         return min(self.acceleration, 2.0 * self.speed * (self.acceleration / (_STEEPEST * self.pitch)) ** 0.5)
 
     @property
     def _turn_time(self) -> float:
-        """From the end of a line to the start of the next [s]."""
+        """Time from the end of a line to the start of the next [s]."""
         return 2.0 * self.speed / self._swing
 
     @property
     def _first(self) -> Array:
-        """Where the run-up to the first line begins."""
+        """Start time of the first line's run-up."""
         return np.array([-0.5 * self.length - self.overshoot, -0.5 * (self.lines - 1) * self.pitch])
 
     def _approach(self, place: Array) -> float:
@@ -116,7 +115,7 @@ class Raster(CheckedFields):
 
 
 def _even_piece(place: Array, speed: float, acceleration: float, time: float) -> tuple[float, Array]:
-    """A piece of even speed and acceleration of the first coordinate."""
+    """Piece of constant acceleration of the first coordinate."""
     coefficients = np.zeros((6, len(place)))
     coefficients[0] = place
     coefficients[1, 0], coefficients[2, 0] = speed, 0.5 * acceleration

@@ -1,4 +1,4 @@
-"""A sine, on one coordinate or several."""
+"""Sinusoidal trajectories of one or several coordinates."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from flexstage.control.trajectory.pieces import join, smooth
 
 @dataclass(frozen=True, eq=False)
 class Sine(CheckedFields):
-    """a sin(2 pi f t): `amplitudes` a by coordinate [m, rad], `frequency` f [Hz].
+    """Sine a sin(2 pi f t): `amplitudes` a by coordinate [m, rad], `frequency` f [Hz].
 
-    `fade` [s] is how long the amplitude grows from 0, smoothly. Without a fade it starts with a jump of speed.
+    `fade` [s] is the duration of a smooth amplitude rise from 0. Without it the speed starts with a jump.
 
     >>> round(float(Sine({"x": 1e-6}, frequency=10.0).at(np.array([0.025]))[0, 0]), 12)
     1e-06
@@ -28,12 +28,12 @@ class Sine(CheckedFields):
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Names of the coordinates that move."""
+        """Names of the moving coordinates."""
         return tuple(self.amplitudes)
 
     @property
     def duration(self) -> float:
-        """It never ends."""
+        """Infinite duration."""
         return np.inf
 
     def at(self, times: Array) -> Array:

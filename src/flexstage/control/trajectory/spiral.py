@@ -1,4 +1,4 @@
-"""Archimedean spirals at even speed, or at an even rate of turns."""
+"""Archimedean spirals at constant path speed, or at constant angular rate."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from flexstage.control.trajectory.pieces import Pieces, join
 
 @dataclass(frozen=True, eq=False)
 class Spiral(CheckedFields):
-    """r = b theta from 0 to a `radius` [m], `pitch` = 2 pi b between turns [m], passed at an even `speed` [m/s]; there it stays.
+    """Spiral r = b theta from 0 to a final `radius` [m], `pitch` = 2 pi b between turns [m], at constant `speed` [m/s].
 
-    `ramp` [s] is how long the speed rises from 0, evenly, and falls at the end. The path's length is
-    s = b/2 (theta (1 + theta^2)^(1/2) + arsinh theta); theta follows from it by Newton's method, to rounding.
+    `ramp` [s] is the duration of the linear speed rise at the start, and fall at the end. The path's length is s = b/2 (theta (1 +
+    theta^2)^(1/2) + arsinh theta); theta follows from Newton's method, to rounding.
 
     >>> spiral = Spiral(radius=10e-6, pitch=1e-6, speed=1e-3)
     >>> np.hypot(*spiral.at(np.array([9.0])).T).round(12).tolist()
@@ -34,15 +34,14 @@ class Spiral(CheckedFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        """Refuse numbers that make no spiral, and ramps that it is too short for."""
         require_positive("spiral: ", {"radius": self.radius, "pitch": self.pitch, "speed": self.speed})
         if not 0.0 <= self.ramp <= self._whole / self.speed:
-            what = f"{self.ramp:g} s, where the spiral takes {self._whole / self.speed:g} s at its full speed"
-            raise refuse("spiral: ramp", what, "Shorten the ramp, or slow down")
+            what = f"ramp too long (got {self.ramp:g} s, expected below {self._whole / self.speed:g} s at full speed)"
+            raise refuse("spiral: ramp", what, "Shorten the ramp, or reduce the speed")
 
     @property
     def duration(self) -> float:
-        """When it has reached its radius [s]."""
+        """Time at the final radius [s]."""
         return self._progress.duration
 
     def at(self, times: Array) -> Array:
@@ -52,7 +51,7 @@ class Spiral(CheckedFields):
 
     @property
     def _growth(self) -> float:
-        """b, the growth of the radius per radian."""
+        """Increase b of the radius per radian."""
         return self.pitch / (2.0 * np.pi)
 
     @property
@@ -62,7 +61,7 @@ class Spiral(CheckedFields):
 
     @cached_property
     def _progress(self) -> Pieces:
-        """Length passed over time: speeding up, even, slowing down."""
+        """Path length over time: acceleration, constant speed, deceleration."""
         pace, ramp = self.speed, self.ramp
         even, first = self._whole / pace - ramp, 0.5 * pace * ramp
         bend = 0.5 * pace / ramp if ramp else 0.0
@@ -76,7 +75,7 @@ def _length(angle: Array) -> Array:
 
 
 def _angle(length: Array) -> Array:
-    """Angles whose paths have these lengths over b: the length is convex and rising, so Newton's method from above cannot fail."""
+    """Angles for these path lengths over b: the length is convex and increasing, so Newton's method from above converges."""
     angle = np.minimum(np.sqrt(2.0 * length), length)
     for _ in range(20):
         angle = angle - (_length(angle) - length) / np.sqrt(1.0 + angle**2)

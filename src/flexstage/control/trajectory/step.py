@@ -1,4 +1,4 @@
-"""A step, at once or within limits of speed, acceleration and jerk."""
+"""Steps, immediate or within limits of speed, acceleration and jerk."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from flexstage.control.trajectory.profile import Limits, profile
 
 @dataclass(frozen=True, eq=False)
 class Step(CheckedFields):
-    """A move `to` a pose (by coordinate [m, rad]) at `start` [s]: at once, or within `limits` along the straight path.
+    """Move `to` a pose (by coordinate [m, rad]) at `start` [s]: immediate, or within `limits` along the straight path.
 
-    The path's length is that of the translation, or the angle of a move that only turns; what else moves keeps pace with it.
+    The path length is the translation, or the angle of a pure rotation; other coordinates move in proportion.
 
     >>> step = Step({"x": 3e-6, "y": 4e-6}, limits=Limits(speed=1e-3, acceleration=1.0, jerk=32.0))
     >>> step.at(np.array([0.0, 1.0])).round(15).tolist(), step.coordinates
@@ -30,12 +30,12 @@ class Step(CheckedFields):
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Names of the coordinates that move."""
+        """Names of the moving coordinates."""
         return tuple(self.to)
 
     @property
     def duration(self) -> float:
-        """When the move ends [s]."""
+        """End time of the move [s]."""
         return self.start + (0.0 if self.limits is None else self._course(self.limits).duration)
 
     def at(self, times: Array) -> Array:
@@ -49,7 +49,7 @@ class Step(CheckedFields):
 
     @property
     def _length(self) -> float:
-        """Length of the translation, else the angle; 1 where nothing moves, so that shares of it are numbers."""
+        """Length of the translation, else the angle; 1 without motion, to keep ratios finite."""
         moved = np.sqrt(sum(value**2 for name, value in self.to.items() if not name.startswith("r")))
         turned = np.sqrt(sum(value**2 for name, value in self.to.items() if name.startswith("r")))
         return float(moved or turned or 1.0)

@@ -1,4 +1,4 @@
-"""Trajectories from tables: poses at stated times."""
+"""Trajectories from tables: poses at given times."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 if TYPE_CHECKING:
     from flexstage.experiment.formats.table import layout as layouts
     from flexstage.experiment.formats.table import values as tabled
-else:  # the formats of all records, which few trajectories come from
+else:  # slow import: all record formats
     layouts, tabled = Late("flexstage.experiment.formats.table.layout"), Late("flexstage.experiment.formats.table.values")
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Poses `values` (n, c) [m, rad] at rising `times` (n,) [s], straight lines between; at rest at the first before, at the last after.
+    """Piecewise linear poses `values` (n, c) [m, rad] at increasing `times` (n,) [s]; constant before the first and after the last.
 
-    `source` says where it is from. Raises `DesignError` for times that do not rise, values that are not finite and shapes that do not fit.
+    `source` names the origin. Raises `DesignError` for times that do not increase, values that are not finite and shapes that do not match.
 
     >>> way = Table(np.array([0.0, 1.0, 3.0]), np.array([[0.0], [2e-6], [0.0]]), ("x",))
     >>> way.at(np.array([0.5, 2.0, 5.0])).ravel().tolist()
@@ -40,12 +40,11 @@ class Table:
     source: str = "trajectory"
 
     def __post_init__(self) -> None:
-        """Refuse tables that are no trajectory."""
         require(_findings(self))
 
     @property
     def duration(self) -> float:
-        """The last time [s]."""
+        """Last time [s]."""
         return float(self.times[-1])
 
     def at(self, times: Array) -> Array:
@@ -56,21 +55,21 @@ class Table:
 def _findings(table: Table) -> list[Finding]:
     fits = table.values.shape == (len(table.times), len(table.coordinates)) and len(table.times) > 1
     if not fits:
-        what = f"{table.values.shape} values for {len(table.times)} times and {len(table.coordinates)} coordinates"
-        return [Finding(table.source, what, "Give a row a time, at least two, and a column a coordinate")]
+        what = f"wrong shape (got {table.values.shape}, expected {len(table.times)} times, {len(table.coordinates)} coordinates)"
+        return [Finding(table.source, what, "Use one row per time, at least two, and one column per coordinate")]
     found = []
     for row in np.flatnonzero(~(np.diff(table.times) > 0.0))[:1]:
-        what = f"time {table.times[row + 1]:g} s of row {row + 2} does not come after {table.times[row]:g} s"
-        found.append(Finding(table.source, what, "Sort the rows, and give each its own time"))
+        what = f"times must increase (got {table.times[row + 1]:g} s in row {row + 2} after {table.times[row]:g} s)"
+        found.append(Finding(table.source, what, "Sort the rows, with different times"))
     for row, column in np.argwhere(~np.isfinite(table.values))[:1]:
-        found.append(Finding(f"{table.source}: {table.coordinates[column]}", f"row {row + 1} is no number", "Mend the row"))
+        found.append(Finding(f"{table.source}: {table.coordinates[column]}", f"row {row + 1} is not finite", "Correct the row"))
     return found
 
 
 def from_file(path: str | os.PathLike[str]) -> Table:
-    r"""A CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; its times may lie unevenly.
+    r"""rRead a CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; uneven times are allowed.
 
-    Raises `DesignError` where the file cannot be read, has no column of times or none of coordinates.
+    Raises `DesignError` for an unreadable file, and for missing times or coordinates.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -84,7 +83,9 @@ def from_file(path: str | os.PathLike[str]) -> Table:
     samples = tabled.index_table(place, layout)
     channels = tuple(Channel(name, plain_unit(unit)) for name, unit in zip(layout.names, layout.units, strict=True))
     if channels[0].name.lower() not in ("time", "t"):
-        raise refuse(str(place), f'its first column is "{channels[0].name}"', 'Begin with times, as "time [s], x [um]"')
+        raise refuse(
+            str(place), f'wrong first column (got "{channels[0].name}", expected times)', 'Start with times, e.g. "time [s], x [um]"'
+        )
     whole = Record(channels, 1.0, samples, source=str(place))
     named = tuple(name for name in whole.names if name in COMPONENTS)
     if not named:
@@ -93,7 +94,7 @@ def from_file(path: str | os.PathLike[str]) -> Table:
     chosen = in_si(stated)
     wanted = dict(zip((whole.names[0], *COMPONENTS), ("s", *TWIST_UNITS), strict=True))
     require(
-        Finding(f"{place}: {after.name}", f'its unit is "{before.unit}"', f'Give it in a unit of {wanted[after.name]}, as "x [um]"')
+        Finding(f"{place}: {after.name}", f'its unit is "{before.unit}"', f'Use a unit of {wanted[after.name]}, e.g. "x [um]"')
         for before, after in zip(stated.channels, chosen.channels, strict=True)
         if after.unit != wanted[after.name]
     )

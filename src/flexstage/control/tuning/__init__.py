@@ -1,1 +1,1 @@
-"""Tuning: the gains that bring a loop to a wanted bandwidth, or the reason why none do."""
+"""Tuning: the gains for a requested bandwidth, or the reason of failure."""

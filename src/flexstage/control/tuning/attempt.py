@@ -1,4 +1,4 @@
-"""One attempt at a bandwidth: laws and notches chosen loop by loop, then judged together."""
+"""Design attempt at one bandwidth: laws and notches chosen loop by loop, then evaluated together."""
 
 from __future__ import annotations
 
@@ -24,38 +24,38 @@ from flexstage.control.tuning.spec import Judgement, TuningSpec
 from flexstage.control.tuning.view import View, first_alike
 
 _HIGH = 0.3
-"""Gain of a loop at a mode from which on it gets a notch: below, |S| is at most 1/(1 - 0.3) = 1.43 there."""
+"""Loop gain at a mode from which it gets a notch: below, |S| is at most 1/(1 - 0.3) = 1.43 there."""
 _AGREES = 0.005
-"""Relative difference of a crossing that counts as none: half of the 1 % within which a bandwidth is reached."""
+"""Negligible relative difference of a crossover: half of the bandwidth tolerance of 1 %."""
 _TRUST = (1.0, 30.0, 1000.0)
-"""How many times the expected noise the strokes of an observer have, tried in turn: the more, the less it trusts its model."""
+"""Factors on the stroke noise assumed by an observer, in turn: larger values rely less on its model."""
 _TRUST_OF_MASS, _MASS = (0.01, 0.3, 10.0), 0.01
-"""The same over what makes strokes and gauges equally loud at the bandwidth, where loops have so small a part of their gain at rest.
+"""Factors relative to equal stroke and gauge noise at the bandwidth, for loops with a static gain below this share. The observer then
 
-A mass then follows what drives it, and an observer is as fast as the root of these times the bandwidth, however soft the guide.
+follows a mass: its speed is the square root of the factor times the bandwidth, for any guide stiffness.
 """
 _ROUNDS = 8
 _AROUND = 4.0
-"""Rounds in which the weights of LQG follow the gain of loops at the bandwidth; by how much of it at most."""
+"""Iterations of LQG weights for the loop gain at the bandwidth, and their tolerance."""
 _FLATTEST, _STEEPEST, _SAME_WEIGHT = 0.2, 1.5, 1e-4
-"""Powers of its weight with which a loop's gain goes, 1 without dynamics, less with roll-off; weights too near to tell it by."""
+"""Exponents of the loop gain over its weight, 1 without dynamics, less with roll-off; minimum weight difference for a secant."""
 _FARTHEST = 1e4
-"""How far from the first guess weights may move, as factors: loops that do not pass 1 for them never do."""
+"""Limit of the weights relative to the first guess, as a factor."""
 _EQUAL = 1e-9
-"""Relative difference of responses below which loops are the same, as those of symmetric stages are but for rounding."""
+"""Relative difference of responses below which loops are equal, for symmetric stages with rounding."""
 _WRONG = 1e6
-"""Score of what is no loop at all, far above any peak of S."""
+"""Score of an invalid loop, far above any peak of S."""
 _WIDTHS = (0.4, 0.6, 0.9, 1.4)
-"""Dampings of notches' poles that are tried: the gain is below 0.7 over about twice that share of the frequency."""
+"""Damping ratios of the notches' poles tried: the gain is below 0.7 over about twice that share of the frequency."""
 _UNSTATED = Disturbances(1e-9, {})
-"""What an observer expects where nothing is stated."""
+"""Default noise of an observer."""
 _Options: TypeAlias = tuple[tuple[tuple[Notch, ...], ...], ...]
-"""By loop, sets of notches."""
+"""Sets of notches by loop."""
 
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """A controller, its notches by loop, and its `gains`, the `open_gains` of the plant that is `seen`."""
+    """Design attempt: a controller, its notches by loop, and its `gains`; `open_gains` of the plant `seen`."""
 
     seen: View
     controller: Decentralised | LQG
@@ -64,26 +64,26 @@ class Attempt:
 
     @cached_property
     def system(self) -> System:
-        """The controller, sampled."""
+        """Sampled controller."""
         return self.controller.system(self.seen.step)
 
     @cached_property
     def judgement(self) -> Judgement:
-        """The verdict on its loop."""
+        """Evaluation of its loop."""
         return judge_loop(self.seen, self.system, self.gains)
 
     def reaches(self, frequency: float, spec: TuningSpec) -> bool:
-        """Whether it is stable, no peak too high, and every loop passes 1 within 1 % of the frequency."""
+        """Whether it is stable, its peaks are within the limit, and every loop's crossover is within 1 % of the frequency."""
         passed = all(abs(each / frequency - 1.0) < 0.01 for each in own_bandwidths(self.seen, self.gains))
         return passed and keeps_peak(self.seen, lambda: self.system, self.gains, spec.sensitivity)
 
 
 @dataclass(frozen=True, eq=False)
 class BandwidthTrial:
-    """Controllers of a specification whose loops' gains all pass 1 at a `frequency` [Hz], as the plant that is `seen` lets them.
+    """Controllers of a specification with the crossover of all loops at a `frequency` [Hz], on the plant `seen`.
 
-    First with the stated notches only, then with more on the modes that stand out of a loop with a gain above 0.3, as wide as does best.
-    A loop's best law is the one with the lowest peak of S; of those with peaks up to `calm` the one with the highest gain at rest.
+    First with the specified notches only, then with further ones on modes with a loop gain above 0.3, of the best width. A loop's best law
+    has the lowest peak of S; among peaks up to `calm` the highest static gain.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -102,7 +102,7 @@ class BandwidthTrial:
     frequency: float
 
     def best(self) -> Attempt | None:
-        """The first attempt that reaches the frequency within the specification, or the nearest; None without a law for it."""
+        """First attempt that meets the frequency and the specification, or the nearest; None without a law."""
         tried: list[Attempt] = []
         for found in self._attempts(0.0):
             if found.reaches(self.frequency, self.spec):
@@ -111,11 +111,11 @@ class BandwidthTrial:
         return min(tried, key=lambda each: each.judgement.score, default=None)
 
     def reach(self, calm: float = 0.0) -> Attempt | None:
-        """The first attempt that reaches the frequency within the specification. Faster than to find the nearest."""
+        """First attempt that meets the frequency and the specification; faster than the nearest."""
         return next((found for found in self._attempts(calm) if found.reaches(self.frequency, self.spec)), None)
 
     def _attempts(self, calm: float) -> Iterator[Attempt]:
-        """Attempts, the simplest first."""
+        """Attempts, simplest first."""
         if self.spec.family == LQG_FAMILY:
             yield from _attempts_lqg(self.seen, self.spec, self.frequency)
             return
@@ -128,7 +128,7 @@ class BandwidthTrial:
             yield from (each for each in every if each is not None)
 
     def _decentralised(self, calm: float, options: _Options) -> Attempt | None:
-        """The best law of each loop, and all loops together."""
+        """Best law of each loop, and all loops together."""
         seen, found = self.seen, list[_Chosen]()
         for loop in range(len(options)):
             alike = next(other for other in first_alike(seen.own, loop, _EQUAL) if options[other] == options[loop])
@@ -143,9 +143,9 @@ class BandwidthTrial:
         return Attempt(seen, controller, gains, notches)
 
     def _choose(self, sets: tuple[tuple[Notch, ...], ...], loop: int, calm: float) -> _Chosen | None:
-        """Law and notches whose isolated loop is stable, passes 1 there, and has the lowest peak of S, wherever the modes may lie.
+        """Law and notches of the lowest peak of S, with a stable isolated loop and its crossover at the frequency, for all mode shifts.
 
-        Peaks up to `calm` count as equal; the highest gain at the lowest frequency, so the strongest integrator, is then the best.
+        Peaks up to `calm` count as equal; the best then has the highest low-frequency gain, the strongest integrator.
         """
         best, lowest = None, (np.inf, 0.0)
         for each in chain.from_iterable(self._candidates(loop, notches) for notches in sets):
@@ -158,7 +158,7 @@ class BandwidthTrial:
         return best
 
     def _candidates(self, loop: int, notches: tuple[Notch, ...]) -> tuple[_Chosen, ...]:
-        """All laws of the family with these notches, kept: other sets of notches and integrators choose from the same."""
+        """All laws of the family with these notches, cached for other sets of notches and integrators."""
         if (loop, notches) in self._known:
             return self._known[loop, notches]
         seen, frequency = self.seen, self.frequency
@@ -174,11 +174,11 @@ class BandwidthTrial:
         return self._known[loop, notches]
 
     def _everywhere(self, response: Array, loop: int) -> float:
-        """The score of a law wherever the modes may lie."""
+        """Worst score of a law over all mode shifts."""
         return _score(self.seen.frequencies, response * self.seen.own[:, :, loop], self.frequency)
 
     def _responses(self, place: Place) -> list[tuple[Law, Array | None]]:
-        """Laws with their responses (f,), None of those too fast for the samples; PI and PID at one frequency differ by a factor alone."""
+        """Laws with their responses (f,), None if too fast for the sampling; PI and PID at one frequency differ only by a factor."""
         laws = self.spec.family.laws(place, self.seen.step)
         if self.spec.family not in (PI_FAMILY, PID_FAMILY):
             return [(law, _sampled_response(law, self.seen)) for law in laws]
@@ -200,7 +200,7 @@ class BandwidthTrial:
 
 
 def _choices(options: _Options) -> Iterator[_Options]:
-    """Each loop's own choice of widths first; then one width for all, which couples some stages less."""
+    """Individual widths for each loop first; then one width for all, with less coupling on some stages."""
     if options:
         yield options
         for number in range(max(map(len, options))):
@@ -209,9 +209,9 @@ def _choices(options: _Options) -> Iterator[_Options]:
 
 @dataclass(frozen=True, eq=False)
 class _Chosen:
-    """A loop's law and notches, and their `response` (f,) from error to command.
+    """Law and notches of a loop, and their `response` (f,) from error to command.
 
-    `nominal` is its score with the modes as they are modelled.
+    `nominal` is its score with nominal modes.
     """
 
     law: Law
@@ -221,7 +221,7 @@ class _Chosen:
 
 
 def _sampled_notch(seen: View, notch: Notch) -> tuple[System, Array]:
-    """It and its response (f,), kept as long as the view: notches stand on the same modes at every frequency of a search."""
+    """Sampled notch and its response (f,), cached with the view: a search uses the same modes at every frequency."""
     if notch not in seen.kept:
         found = notch.system(seen.step)
         seen.kept[notch] = found, found.sweep(seen.frequencies)[:, 0, 0]
@@ -229,7 +229,7 @@ def _sampled_notch(seen: View, notch: Notch) -> tuple[System, Array]:
 
 
 def _sampled_response(law: Law, seen: View) -> Array | None:
-    """Response from error to command, the pose being what the error leaves; None for a law too fast for the samples."""
+    """Response from error to command, with the pose from the error; None for a law too fast for the sampling."""
     try:
         found = law.system(seen.step)
     except DesignError:
@@ -240,7 +240,7 @@ def _sampled_response(law: Law, seen: View) -> Array | None:
 
 
 def _score(frequencies: Array, gains: Array, frequency: float) -> float:
-    """Peak of S of a single loop (v, f), the worst wherever its modes lie; where it crosses is asked of the first alone."""
+    """Worst peak of S of a single loop (v, f) over all mode shifts; the crossover is checked only for the first."""
     if _crosses_elsewhere(frequencies, np.abs(gains[0]), frequency):
         return 2.0 * _WRONG
     return _WRONG * bool(np.any(_encircles(frequencies, gains))) + float(1.0 / np.min(np.abs(1.0 + gains)))
@@ -251,9 +251,9 @@ def _crosses_elsewhere(frequencies: Array, gains: Array, frequency: float) -> bo
 
 
 def _encircles(frequencies: Array, gains: Array) -> Array:
-    """Whether curves (..., f) of L encircle -1: the last angle of 1 + L and how often it passes the cut at half a turn, either way.
+    """Whether curves (..., f) of L encircle -1: the final angle of 1 + L and its crossings of the half turn, with sign.
 
-    L of n poles at 0 begins -n quarters of a turn: 3 of a free body under a law that integrates, 1 of any other.
+    L with n poles at 0 starts at -n quarter turns: 3 for a free body with an integrating law, 1 for others.
     """
     angles = np.angle(1.0 + gains)
     jumps = angles[..., 1:] - angles[..., :-1]
@@ -265,7 +265,7 @@ def _encircles(frequencies: Array, gains: Array) -> Array:
 
 
 def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
-    """By loop, sets of notches of several widths on the modes above the crossing that stand out of it; none where no mode does."""
+    """By loop, sets of notches of several widths on significant modes above the crossover; empty without any."""
     gains = np.abs(found.gains[0])
     result = []
     for loop, given in enumerate(found.notches):
@@ -281,7 +281,7 @@ def _place_notches(seen: View, found: Attempt, frequency: float) -> _Options:
 
 
 def _attempts_lqg(seen: View, spec: TuningSpec, frequency: float) -> Iterator[Attempt]:
-    """Weights by coordinate, changed until every loop passes 1 at the frequency; an observer that trusts its model less and less."""
+    """Iterate weights by coordinate until every loop's crossover is at the frequency, with observers of decreasing model confidence."""
     driven = driven_gains(seen, frequency)
     first = wanted = frequency / driven
     for trust in _trusts(seen, spec, frequency, driven):
@@ -293,7 +293,7 @@ def _attempts_lqg(seen: View, spec: TuningSpec, frequency: float) -> Iterator[At
 
 
 def driven_gains(seen: View, frequency: float) -> Array:
-    """Gains (k,) from all strokes together to the loops' poses at a frequency [Hz].
+    """Compute gains (k,) from all strokes together to the loops' poses at a frequency [Hz].
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -306,7 +306,7 @@ def driven_gains(seen: View, frequency: float) -> Array:
 
 
 def _trusts(seen: View, spec: TuningSpec, frequency: float, driven: Array) -> tuple[float, ...]:
-    """How many times the noise that is expected of them strokes have in turn, over decades where gauges are loud."""
+    """Factors on the assumed stroke noise in turn, over decades for noisy gauges."""
     expected = spec.expected or _UNSTATED
     heard = np.abs(seen.loops.sense @ seen.loops.coordinates.pose) @ np.array(
         [expected.gauges[name] for name in seen.loops.coordinates.gauges]
@@ -320,7 +320,7 @@ def _trusts(seen: View, spec: TuningSpec, frequency: float, driven: Array) -> tu
 
 @dataclass(frozen=True, eq=False)
 class _Designer:
-    """Regulators for an `observer`, which is the same at every bandwidth, and so are the `responses` of its states."""
+    """Regulators for an `observer`, which is independent of the bandwidth, as are the `responses` of its states."""
 
     seen: View
     spec: TuningSpec
@@ -330,17 +330,17 @@ class _Designer:
 
     @cached_property
     def estimates(self) -> Array:
-        """Responses of its states (s, f, k + n) to the loops' errors, taken from the pose, and to the strokes, where the view looks."""
+        """Responses (s, f, k + n) of its states to loop errors (subtracted from the pose) and strokes, at the view's frequencies."""
         return self.estimates_at(self.seen.frequencies)
 
     def estimates_at(self, frequencies: Array) -> Array:
-        """The same (s, f, k + n) at other frequencies [Hz]."""
+        """Responses (s, f, k + n) at other frequencies [Hz]."""
         found, count = self.estimator.sweep(frequencies), len(self.seen.loops.names)
         found[..., :count] = found[..., :count] @ np.linalg.inv(self.seen.loops.sense)
         return np.ascontiguousarray(np.moveaxis(found, 0, 1))
 
     def __call__(self, wanted: Array, frequency: float) -> LQG:
-        """The controller with these weights (k,) [Hz], whose integrators follow what was applied as fast as loops do that pass 1 there."""
+        """Controller with these weights (k,) [Hz]; its anti-windup rate equals the loops' crossover."""
         model, coordinates = self.seen.systems[0], self.seen.loops.coordinates
         found = with_observer(model, coordinates, Weights(tuple(map(float, wanted))), self.observer, self.spec.feedforward)
         return replace(found, tracking=1.0 / (2.0 * np.pi * frequency), expected=self.expected)
@@ -360,7 +360,7 @@ def _designer(seen: View, spec: TuningSpec, trust: float) -> _Designer:
 def _strokes(seen: View, control: LQG, estimates: Array, frequencies: Array) -> Array:
     """Responses (f, n, k) of the strokes to the loops' errors: u = -K x^ + K_z z, x^ the `estimates` (s, f, k + n) of e and u.
 
-    With the observer's responses known this costs no eigenvalues: (1 + K X_u) u = (K X_e + K_z Z) e.
+    With the observer's responses known, no eigenvalues are needed: (1 + K X_u) u = (K X_e + K_z Z) e.
     """
     count = len(seen.loops.names)
     states, points, width = estimates.shape
@@ -373,9 +373,9 @@ def _strokes(seen: View, control: LQG, estimates: Array, frequencies: Array) -> 
 
 
 def _balance_bandwidths(seen: View, design: _Designer, frequency: float, wanted: Array, first: Array) -> tuple[LQG | None, Array]:
-    """The design whose loops all have a gain of 1 at the frequency, or the nearest to it that a few rounds give; and its weights.
+    """Design with a gain of 1 of all loops at the frequency, or the nearest after a few iterations; and its weights.
 
-    Weights follow by the secant of the loops' gains there, in the logarithms. They are given up where they leave `first` by decades.
+    Weights follow by the secant method on the loops' gains there, in logarithms. Abandoned if they differ from `first` by decades.
     """
     found, before, slope = None, None, 1.0
     at = np.array([frequency])
@@ -385,7 +385,7 @@ def _balance_bandwidths(seen: View, design: _Designer, frequency: float, wanted:
             return None, first
         try:
             found = design(wanted, frequency)
-        except DesignError:  # weights by which the equation has no solution that rounding leaves
+        except DesignError:  # weights without a numerical solution of the equation
             return None, first
         gains = np.log(np.abs(np.einsum("fkn,fnk->k", responses, _strokes(seen, found, estimates, at))))
         if np.all(np.abs(gains) < _AGREES):

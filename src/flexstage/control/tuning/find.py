@@ -1,4 +1,4 @@
-"""Optimisation-based tuning: the best controller for a specification, judged on the whole sampled loop."""
+"""Optimisation-based tuning: the best controller for a specification, evaluated on the whole sampled loop."""
 
 from __future__ import annotations
 
@@ -18,15 +18,16 @@ from flexstage.control.tuning.judge import closed_growth, judge_loop
 from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.outcome import Outcome, outcome
 from flexstage.control.tuning.search import (
-    STABLE,
     Field,
     Found,
     advance,
     excess,
+    farthest,
     field,
     known_loops,
     last_mode,
     one_loops,
+    resume,
     search,
     tighten,
     variants,
@@ -37,26 +38,26 @@ from flexstage.control.tuning.view import View, view
 from flexstage.control.tuning.weigh import Regulated, merit, weigh, worth
 
 _TIGHTER = (1.0, 0.97, 0.93)
-"""Peaks of S that rounds aim at, above 1, as shares of the one allowed: peaks stand between frequencies too."""
+"""Target peaks of S in the rounds, above 1, as shares of the limit: peaks may occur between frequencies."""
 _LOOKS = 2
-"""How often all rounds are done, the second time with frequencies dense where peaks were missed."""
+"""Number of passes over all rounds, the second with frequencies dense around missed peaks."""
 _UNMET = 0.02
-"""What is asked for and missed by less counts as reached."""
+"""Relative violation of a requirement that still counts as met."""
 _CORNERS, _DAMPINGS, _LEADS = np.geomspace(0.3, 12.0, 14), (0.6, 0.8, 1.0, 1.4, 2.0, 3.5), (0.7, 1.2, 2.0, 4.0, np.inf)
 _CALM, _BAND = 1.03, 0.019
-"""Grid of prefilters: corners over 0.3 of what is rejected, dampings, leads over corners; overshoot of 2 %, settled within 1.9 %."""
+"""Grid of prefilters: corners over 0.3 of the rejection, damping ratios, leads over corners; overshoot of 2 %, settled within 1.9 %."""
 _EXPECTED = 1e-9
-"""Density [m/Hz^0.5] of strokes' noise that an observer expects where nothing is stated."""
+"""Default density [m/Hz^0.5] of stroke noise assumed by an observer."""
 
 
-def find(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
+def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...] = ()) -> Tuning:
     """Optimise a controller for the objective of a specification.
 
-    Law and notches of every loop are free, width and depth too, and a loop may pass 1 beyond a mode where margins hold with it moved.
-    Starts are a grid around the modes, and the controller of highest bandwidth (`tune`): alone where it passes 1 beyond the modes, and
-    where it is better than the result of the grid. The result serves the objective no worse than it (`merit`). It is judged by eigenvalues
-    and by the coupled peak of S of the sampled loop, with all modes off by the spread. Raises `DesignError` for a plant that is unstable
-    in open loop, for requirements that contradict one another, and for each requirement that is not reached.
+    Optimises law and notches of every loop, with their width and depth. A crossover beyond a mode is possible if margins hold for all mode
+    shifts. Starts are a grid around the modes, and the controller of highest bandwidth (`tune`): by itself with a crossover beyond the
+    modes, and if better than the grid's result. The result is at least as good for the objective (`merit`). It is evaluated by eigenvalues
+    and by the coupled peak of S of the sampled loop, with all modes off by the spread. `known` tunings of a plant with fewer modes are
+    tried first. Raises `DesignError` for an unstable open loop, for contradictory requirements, and for each unmet requirement.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -69,24 +70,41 @@ def find(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
     require(_findings(plant, spec))
     loops = platform_loops(loops.coordinates) if spec.family == LQG_FAMILY else loops
     between = (-0.5 * spec.spread, 0.5 * spec.spread)
-    seen = view(plant, loops, spec.spread, tuple(dict.fromkeys([*(each.offset for each in variants(spec)), *between])))
+    seen = view(plant, loops, spec.spread, tuple(sorted({*(each.offset for each in variants(spec)), *between}, key=abs)))
     require(_growth_findings(seen))
-    begun, refused = _highest(seen, spec)
+    plainly = [each for each in known if each.spec.objective is None and each.spec.spread == spec.spread]
+    begun, refused = (plainly[0], ()) if plainly else _highest(seen, spec)
     within = field(seen, spec, fast=0.0 if begun is None else begun.bandwidth)
     plain = None if begun is None else _begun(within, begun.controller)
-    known = None if begun is None else begun.controller
-    if isinstance(known, LQG):
-        others = [_weighed(within, known)]
-    else:
-        beyond = within.fast > last_mode(seen)
-        others = [None if beyond else _sought(within, lambda each: search(each, spec.family))]
-        if known is not None and not _is_beaten(within, known, others[0]):
-            others.append(_sought(within, lambda each: advance(each, known)))
-    best = _best_of(spec, plain, [each for each in (plain, *others) if each is not None])
+    found = [] if plain is None else [plain]
+    try:
+        for each in _searched(within, None if begun is None else begun.controller, known):
+            found += [] if each is None else [each]
+    except KeyboardInterrupt:
+        best = _best_of(spec, plain, found)
+        reason = "none" if begun is None else begun.reason if best is None else best.tuning.reason
+        raise KeyboardInterrupt(f"The best controller so far: {reason}.") from None
+    best = _best_of(spec, plain, found)
+    if best is None and begun is not None and not any((spec.rejection, spec.settling, spec.delay_margin)):
+        return replace(begun, reason=f"{begun.reason}; none stable with modes up to {100.0 * farthest(spec):g} % off was found")
     if best is None:
         raise DesignError([_none_found(spec, refused)])
     require(best.unmet)
     return best.tuning
+
+
+def _searched(within: Field, first: Decentralised | LQG | None, known: tuple[Tuning, ...]) -> Iterator[_Candidate | None]:
+    """Results of the searches in turn: on from a result for fewer modes, from a grid of starts, on from the `first` controller."""
+    if isinstance(first, LQG):
+        yield _weighed(within, first)
+        return
+    last, before = None, known[-1].controller if known and known[-1].spec.objective is not None else None
+    if isinstance(before, Decentralised):
+        yield (last := _sought(within, lambda each: resume(each, before)))
+    if last is None and within.fast <= last_mode(within.seen):
+        yield (last := _sought(within, lambda each: search(each, within.spec.family)))
+    if first is not None and not _is_beaten(within, first, last):
+        yield _sought(within, lambda each: advance(each, first))
 
 
 def _is_beaten(within: Field, known: Decentralised, sought: _Candidate | None) -> bool:
@@ -95,9 +113,9 @@ def _is_beaten(within: Field, known: Decentralised, sought: _Candidate | None) -
 
 
 def _best_of(spec: TuningSpec, plain: _Candidate | None, candidates: list[_Candidate]) -> _Candidate | None:
-    """The candidate of most worth, of those that meet the requirements; none with less merit than the plain one.
+    """Best candidate that meets the requirements; none with less merit than the plain one.
 
-    That it overshoots more than is usual does not rule the plain one out; that it does so more than is stated does.
+    Overshoot beyond the usual value does not exclude the plain one; overshoot beyond the specification does.
     """
     is_bound = plain is not None and not plain.unmet and (plain.overshoot <= spec.overshoot or spec.overshoot == TuningSpec.overshoot)
     least = plain.merit if plain is not None and is_bound else -np.inf
@@ -106,7 +124,7 @@ def _best_of(spec: TuningSpec, plain: _Candidate | None, candidates: list[_Candi
 
 @dataclass(frozen=True, eq=False)
 class _Candidate:
-    """A controller that keeps the peak of S, how good it is, and the requirements that it does not meet."""
+    """Controller within the limit of the peak of S, its merit, and its unmet requirements."""
 
     tuning: Tuning
     merit: float
@@ -116,20 +134,20 @@ class _Candidate:
 
 
 def _candidate(within: Field, controller: Decentralised | LQG, judged: Judgement, missed: float = 0.0, note: str = "") -> _Candidate | None:
-    """The candidate that a controller is by its verdict; None where it does not keep the peak of S, or stable with modes farther off."""
+    """Candidate for an evaluated controller; None if it violates the peak of S, or stability with larger mode shifts."""
     spec = within.spec
     if not judged.stable or judged.peak > spec.sensitivity:
         return None
     found = outcome(within, controller.system(within.seen.step))
     overshoot = float(np.max(found.overshoot))
-    high = f"; steps go {100.0 * overshoot:.0f} % too far, {100.0 * spec.overshoot:g} % allowed"
+    high = f"; steps overshoot by {100.0 * overshoot:.0f} %, {100.0 * spec.overshoot:g} % allowed"
     reason = f"{_sentence(within, found, judged)}{note}{high if overshoot > spec.overshoot + _UNMET else ''}"
     unmet = tuple(_missed(within, found, missed)) or tuple(_unmet(spec, found))
     return _Candidate(Tuning(spec, controller, judged, reason), merit(spec, found), worth(within, found), overshoot, unmet)
 
 
 def _highest(seen: View, spec: TuningSpec) -> tuple[Tuning | None, tuple[Finding, ...]]:
-    """The controller of highest bandwidth, from which a search begins; or why there is none."""
+    """Controller of highest bandwidth, the start of the search, or the reason of its failure."""
     try:
         return tune(seen.plant, seen.loops, spec), ()
     except DesignError as error:
@@ -137,14 +155,14 @@ def _highest(seen: View, spec: TuningSpec) -> tuple[Tuning | None, tuple[Finding
 
 
 def _begun(within: Field, controller: Decentralised | LQG) -> _Candidate | None:
-    """The controller that the search begins from."""
+    """Start controller of the search."""
     if within.spec.prefilter and isinstance(controller, Decentralised):
         controller = replace(controller, prefilters=prefilters(within, known_loops(within, controller)))
-    return _candidate(within, controller, _judge(within, controller), note="; the one of highest bandwidth, as no better one was found")
+    return _candidate(within, controller, _judge(within, controller), note="; the controller of highest bandwidth, without a better one")
 
 
 def _sought(within: Field, seek: Callable[[Field], Found | None]) -> _Candidate | None:
-    """The first result of a search that keeps the peak of S between frequencies too."""
+    """First search result that keeps the peak of S also between frequencies."""
     begun: Found | None = None
     places: tuple[float, ...] = ()
     for _ in range(_LOOKS):
@@ -162,13 +180,13 @@ def _sought(within: Field, seek: Callable[[Field], Found | None]) -> _Candidate 
 def _rounds(
     within: Field, places: tuple[float, ...], begun: Found | None, seek: Callable[[Field], Found | None]
 ) -> Iterator[tuple[Field, Found]]:
-    """Results within the peak of S, then within lower ones: on from the last, and where that does not do, from the beginning.
+    """Results within the peak of S, then within lower ones: continued from the last, and restarted on failure.
 
-    Frequencies lie dense around `places` [Hz], where an earlier result, `begun`, passed the peak between those looked at.
+    Frequencies are dense around `places` [Hz], where an earlier result, `begun`, exceeded the peak between frequencies.
     """
     found = begun
     for spec in _tighter(within.spec, _TIGHTER):
-        tried = field(within.seen, spec, places, within.fast)
+        tried = field(within.seen, spec, places, within.fast, within.work)
         if found is not None:
             yield tried, tighten(tried, found)
         found = seek(tried)
@@ -178,7 +196,7 @@ def _rounds(
 
 
 def _weighed(within: Field, known: LQG) -> _Candidate | None:
-    """The first linear-quadratic control that keeps the peak of S between frequencies too, searched within lower ones in turn."""
+    """First linear-quadratic control that keeps the peak of S also between frequencies, searched with decreasing limits."""
     spec = within.spec
     against = outcome(within, known.system(within.seen.step))
     for tighter in _tighter(spec, (_TIGHTER[0], _TIGHTER[-1])):
@@ -195,34 +213,34 @@ def _tighter(spec: TuningSpec, shares: tuple[float, ...]) -> Iterator[TuningSpec
 
 
 def _none_found(spec: TuningSpec, refused: tuple[Finding, ...]) -> Finding:
-    """What was tried: a search, and before it the highest bandwidth, with why that was refused."""
+    """Finding for a failed search, with the failure of the highest-bandwidth design before it."""
     wanted = [
         *([] if spec.rejection is None else [f"rejects up to {spec.rejection:g} Hz"]),
         *([] if spec.settling is None else [f"settles within {1e3 * spec.settling:g} ms"]),
-        *([f"bears a delay of {1e3 * spec.delay_margin:g} ms"] if spec.delay_margin else []),
+        *([f"has a delay margin of {1e3 * spec.delay_margin:g} ms"] if spec.delay_margin else []),
     ]
-    advice = "allow a higher peak of S or a smaller spread of the modes, or take another kind"
-    beyond = f", stable with modes up to {100.0 * STABLE * spec.spread:g} % off," if spec.spread else ""
+    advice = "allow a higher peak of S or a smaller mode spread, or use another kind"
+    beyond = f", stable with modes up to {100.0 * farthest(spec):g} % off," if spec.spread else ""
     that = f" that {' and '.join(wanted)}" if wanted else ""
     before = "".join(f"; without a search {each.what}" for each in refused)
-    what = f"no {spec.family.name} within a peak of S of {spec.sensitivity:g}{beyond}{that} was found{before}"
-    return Finding("controller.goal", what, f"Ask for less of it, {advice}" if wanted else f"{advice[0].upper()}{advice[1:]}")
+    what = f"no {spec.family.name} found within a peak of S of {spec.sensitivity:g}{beyond}{that}{before}"
+    return Finding("controller.goal", what, f"Relax the requirements, {advice}" if wanted else f"{advice[0].upper()}{advice[1:]}")
 
 
 def _missed(within: Field, found: Outcome, far: float) -> Iterator[Finding]:
-    """The requirements that are not met at once, `far` being the excess."""
+    """Finding for requirements that conflict, `far` being the excess."""
     spec = within.spec
     stated = {"rejection": spec.rejection, "settling": spec.settling, "delay margin": spec.delay_margin}
     wanted = [name for name, value in stated.items() if value]
     if far > _UNMET and wanted:
         reached = ", ".join(f"{name} {each:.4g} Hz" for name, each in zip(within.seen.loops.names, found.rejection[0], strict=True))
-        kept = f"{' and '.join(wanted)} with an overshoot of {100.0 * spec.overshoot:g} % at most are not kept at once"
-        what = f"{kept}: the nearest misses by {100.0 * far:.2g} %, and rejects to {reached}"
-        yield Finding("controller.goal", what, "Ask for less of them, allow a higher peak of S, or sample faster")
+        kept = f"{' and '.join(wanted)} with an overshoot of at most {100.0 * spec.overshoot:g} % conflict"
+        what = f"{kept}: the nearest design misses by {100.0 * far:.2g} %, with rejection up to {reached}"
+        yield Finding("controller.goal", what, "Relax one of them, allow a higher peak of S, or sample faster")
 
 
 def _unmet(spec: TuningSpec, found: Outcome) -> Iterator[Finding]:
-    """Each requirement that is not met, at the worst of the loops."""
+    """Findings for unmet requirements, at the worst of the loops."""
     reached = {
         "rejection": (spec.rejection, float(np.min(found.rejection[0])), "Hz", 1.0),
         "settling": (spec.settling, float(np.max(found.settling)), "ms", 1e3),
@@ -230,34 +248,33 @@ def _unmet(spec: TuningSpec, found: Outcome) -> Iterator[Finding]:
     }
     for name, (wanted, value, unit, factor) in reached.items():
         if wanted and (value > wanted if name == "settling" else value < wanted) and abs(value / wanted - 1.0) > _UNMET:
-            what = f"the nearest comes to {factor * value:.4g} {unit}, and {factor * wanted:.4g} {unit} is asked for"
-            yield Finding(f"controller.goal.{name}", what, "Ask for less of it, allow a higher peak of S, or sample faster")
+            what = f"the nearest design has {factor * value:.4g} {unit} (expected {factor * wanted:.4g} {unit})"
+            yield Finding(f"controller.goal.{name}", what, "Relax it, allow a higher peak of S, or sample faster")
 
 
 def _findings(plant: Plant, spec: TuningSpec) -> Iterator[Finding]:
     yield from spec_findings(spec, plant.hardware.step)
     if spec.family not in (PI_FAMILY, PID_FAMILY, LQG_FAMILY):
-        what = f"there is no search for {spec.family.name}"
-        yield Finding("controller.goal", what, "Take pi, pid or lqg, or leave the goal out: then it is tuned to the highest bandwidth")
+        what = f"no optimisation for {spec.family.name}"
+        yield Finding("controller.goal", what, "Use pi, pid or lqg, or omit the goal: then it is tuned to the highest bandwidth")
     if spec.family == LQG_FAMILY and spec.prefilter:
-        what = "linear-quadratic control shapes references itself, and takes no prefilter"
-        yield Finding("controller.goal.prefilter", what, "Leave it out, or take pi or pid")
+        what = "linear-quadratic control has its own reference shaping, without prefilter"
+        yield Finding("controller.goal.prefilter", what, "Omit it, or use pi or pid")
 
 
 def _growth_findings(seen: View) -> Iterator[Finding]:
     growth = seen.systems[0].growth
     if growth >= 0.0:
-        what = f"the stage by itself is unstable: it grows by {growth:.3g} 1/s"
-        yield Finding("plant", what, "A search begins with loops that are stable when open: support what gives way, or state the gains")
+        what = f"the stage is unstable in open loop: it grows by {growth:.3g} 1/s"
+        yield Finding("plant", what, "Stabilise the stage, or specify the gains: optimisation needs a stable open loop")
 
 
 def _judge(within: Field, controller: Decentralised | LQG) -> Judgement:
     """Peak and bandwidths within the spread; stability also beyond it."""
     seen, system = within.seen, controller.system(within.seen.step)
-    near = [place for place, offset in enumerate(seen.offsets) if abs(offset) <= 1.001 * within.spec.spread]
-    systems, offsets = (tuple(each[place] for place in near) for each in (seen.systems, seen.offsets))
-    judged = judge_loop(replace(seen, systems=systems, offsets=offsets, responses=seen.responses[near]), system)
-    far = [closed_growth(each, system) for place, each in enumerate(seen.systems) if place not in near]
+    near = len(seen.responses)
+    judged = judge_loop(replace(seen, systems=seen.systems[:near], offsets=seen.offsets[:near]), system)
+    far = [closed_growth(each, system) for each in seen.systems[near:]]
     return replace(judged, growth=max(judged.growth, *far)) if far else judged
 
 
@@ -268,7 +285,7 @@ def _controller(within: Field, found: Found) -> Decentralised:
 
 
 def prefilters(within: Field, found: Found) -> tuple[Prefilter, ...]:
-    """By loop, the prefilter of a grid whose step settles soonest at the worst of the modes' offsets, with at most 3 % of overshoot."""
+    """Select, by loop, the grid prefilter of shortest settling at the worst mode shift, with at most 3 % of overshoot."""
     loops, chosen = one_loops(within, found), dict[int, Prefilter]()
     for loop, first in enumerate(within.alike):
         chosen[loop] = chosen[first] if first in chosen else _soonest(loops[loop])
@@ -283,7 +300,7 @@ def _soonest(loop: OneLoop) -> Prefilter:
 
 
 def _settling(loop: OneLoop, tried: Prefilter) -> tuple[float, float]:
-    """How much too high steps go, and when they are settled [s]."""
+    """Overshoot of steps, and settling times [s]."""
     s = 2j * np.pi * loop.lines
     omega = 2.0 * np.pi * tried.frequency
     response = (1.0 + (0.0 if tried.lead is None else s / (2.0 * np.pi * tried.lead))) / (
@@ -297,7 +314,7 @@ def _settling(loop: OneLoop, tried: Prefilter) -> tuple[float, float]:
 def _sentence(within: Field, found: Outcome, judged: Judgement) -> str:
     spec = within.spec
     reached = ", ".join(f"{name} {value:.3g}" for name, value in zip(within.seen.loops.names, found.rejection[0], strict=True))
-    off, beyond = (f" with modes up to {100.0 * spec.spread:g} % off", f", stable up to {100.0 * STABLE * spec.spread:g} %")
+    off, beyond = (f" with modes up to {100.0 * spec.spread:g} % off", f", stable up to {100.0 * farthest(spec):g} %")
     peak = f"the peak of S{off if spec.spread else ''} is {judged.peak:.3g}{beyond if spec.spread else ''}"
     objective = "" if spec.objective is None else f" for {spec.objective.value}"
-    return f"{spec.family.name} by search{objective}: disturbances are rejected up to {reached} Hz; {peak}"
+    return f"{spec.family.name} optimised{objective}: sensitivity crossover {reached} Hz; {peak}"

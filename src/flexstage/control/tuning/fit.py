@@ -1,4 +1,4 @@
-"""Loops' numbers by least squares: margins, rejection, settling as bounds that count where they are passed."""
+"""Least-squares fit of loop parameters: margins, rejection and settling as bounds active only when violated."""
 
 from __future__ import annotations
 
@@ -14,29 +14,32 @@ from flexstage.control.tuning.judge import first_rise
 from flexstage.control.tuning.shape import Shape
 
 BAND, _BAND_OFF = 0.0172, 0.0185
-"""Within which steps are settled, of the model and of modes that are off: less than the 2 % that are shown, for rounding of gauges."""
+"""Settling band of steps, for the model and for shifted modes: below the reported 2 %, with reserve for gauge rounding."""
 STIFF, _SHARE, _STEPS = 30.0, 0.1, 1.0
-"""Weights: a bound passed by 3 % counts as much as all noise; a step outside its band by a tenth of the band as a bound passed by 1 %."""
+"""Weights: a bound violated by 3 % counts as much as all noise; a step outside its band by a tenth of the band as a bound violated by 1
+%."""
 _KEPT = 0.01
-"""What is passed by less counts as kept: frequencies that are looked at let no more be told."""
+"""Relative violation that counts as met, the resolution of the frequency grid."""
 _BELOW = 0.985
-"""What |S| is kept below where disturbances are to be rejected."""
+"""Limit of |S| in the rejection band."""
 _LESS = 0.95
-"""Share of the rejection that modes which are off have to leave."""
+"""Share of the rejection required for shifted modes."""
 _SAMPLES = 512
-"""Samples of a step of which derivatives are worked out."""
+"""Number of step samples with derivatives."""
 _LONGEST = 0.7
-"""No number changes by more than a factor of 2 in one step of the descent: the squares are no parabola farther off."""
+"""Largest change of a parameter in one descent step, a factor of 2: beyond, the quadratic model is invalid."""
 _DAMPINGS = (1e-6, 1e6)
+_TREND, _STALLED, _NEAR_ENOUGH = 10, 0.97, 10.0
+"""Tries over which the trend of a descent is taken; its ratio from which on it has stalled; how many times `enough` it has to lead to."""
 _STIFFER, _SOFTER = 4.0, 3.0
-"""Ends of Levenberg and Marquardt's damping, and how it grows and falls."""
+"""Limits of the Levenberg-Marquardt damping, and its factors of change."""
 
 
 @dataclass(frozen=True)
 class Bounds:
-    """What a loop has to keep: |S| below 1 up to `rejection` [Hz], steps within 2 % after `settling` [s], `overshoot` of them.
+    """Bounds of a loop: |S| below 1 up to `rejection` [Hz], steps within 2 % after `settling` [s], maximum `overshoot`.
 
-    `noise` is the most of its rms at rest. Of the second of `plants` that reject, 0.95 of `rejection` is enough.
+    `noise` is the maximum rms in regulation. For the second of `plants` with rejection, 0.95 of `rejection` is sufficient.
     """
 
     rejection: float
@@ -48,10 +51,10 @@ class Bounds:
 
 @dataclass(frozen=True, eq=False)
 class OneLoop:
-    """A loop with the others closed: a `point` of a shape, C times its `plants` (v, f) being its open loop at `frequencies` (v, f) [Hz].
+    """Loop with the others closed: a `point` of a shape; C times its `plants` (v, f) is the open loop at `frequencies` (v, f) [Hz].
 
-    `slow` (w, h) are plants at the even `lines` (h,) [Hz] of steps, from 0, where there is none, to half the rate; `disturbed` and `heard`
-    (f,) are the mean squares that S and T of the first plant leave of the floor and of the gauges.
+    `slow` (w, h) are plants at the evenly spaced `lines` (h,) [Hz] of steps, from 0 (excluded) to half the rate. `disturbed` and `heard`
+    (f,) are mean squares of the floor and the gauges, weighted by S and T of the first plant.
     """
 
     shape: Shape
@@ -65,12 +68,12 @@ class OneLoop:
 
     @cached_property
     def sensitivity(self) -> Array:
-        """S (v, f)."""
+        """Sensitivity S (v, f)."""
         return 1.0 / (1.0 + self.plants * self.shape.value(self.point, self.frequencies))
 
     @cached_property
     def following(self) -> Array:
-        """T (w, h), 1 at rest."""
+        """Complementary sensitivity T (w, h), 1 at zero frequency."""
         loops = self.slow * self.shape.value(self.point, self.lines[1:])
         return np.concatenate([np.ones((len(loops), 1)), loops / (1.0 + loops)], axis=-1)
 
@@ -81,17 +84,17 @@ class OneLoop:
 
     @property
     def rejection(self) -> float:
-        """The frequency [Hz] where |S| of the model first rises through 1."""
+        """First frequency [Hz] where |S| of the model rises through 1."""
         return first_rise(np.abs(self.sensitivity[0]), self.frequencies[0])
 
     @property
     def rms(self) -> float:
-        """Rms at rest."""
+        """Rms noise in regulation."""
         return self._rms(self.sensitivity[0])
 
     @property
     def settling(self) -> float:
-        """When a step of the model stays within the band [s], one sample at least."""
+        """Settling time of the model's step [s], at least one sample."""
         outside = np.flatnonzero(np.abs(_steps(self.following)[0] - 1.0) > BAND)
         return self.interval * (1.0 + (float(outside[-1]) if len(outside) else 0.0))
 
@@ -102,9 +105,9 @@ class OneLoop:
     def misfits(
         self, bounds: Bounds, quiet: float, near: tuple[Array, Array], slow: tuple[Array, Callable[[], Array]]
     ) -> Iterator[tuple[Array, Array]]:
-        """Residuals over all bounds but peaks of S, with their derivatives; `quiet` is the weight of noise.
+        """Residuals of all bounds except peaks of S, with derivatives; `quiet` is the weight of noise.
 
-        From S (n, f) of plants that reject and T (w, h); dS = -S T slopes, with their slopes (p, n, f), (p, w, h - 1).
+        For S (n, f) of plants with rejection and T (w, h); dS = -S T slopes, with their slopes (p, n, f), (p, w, h - 1).
         """
         own, slopes = near
         above = self._rejected(bounds) & (np.abs(own) > _BELOW)
@@ -113,7 +116,7 @@ class OneLoop:
         yield from self._settling(bounds, *slow)
 
     def excess(self, bounds: Bounds) -> float:
-        """The largest relative excess over a bound, but for peaks of S."""
+        """Largest relative violation of a bound, except peaks of S."""
         sizes, steps = np.abs(self.sensitivity[: bounds.plants]), _steps(self.following)
         below, late = self._rejected(bounds), self._late(bounds, steps.shape[1])
         return float(
@@ -126,7 +129,7 @@ class OneLoop:
         )
 
     def _rejected(self, bounds: Bounds) -> Array:
-        """Where (n, f) disturbances are to be rejected."""
+        """Mask (n, f) of the rejection band."""
         count = bounds.plants
         return self.frequencies[:count] <= bounds.rejection * np.array([1.0, _LESS])[:count, None]
 
@@ -134,7 +137,7 @@ class OneLoop:
         return self.interval * np.arange(count) >= bounds.settling
 
     def _noise(self, bounds: Bounds, quiet: float, own: Array, slopes: Array) -> tuple[Array, Array]:
-        """The rms at rest, and by how much it is too high: dS = -S T dlnC, dT = S T dlnC."""
+        """Rms noise in regulation, and its excess: dS = -S T dlnC, dT = S T dlnC."""
         rest, rms = 1.0 - own, self._rms(own)
         change = np.real((self.heard * np.conj(rest) - self.disturbed * np.conj(own)) * own * rest * slopes).sum(axis=-1) / rms
         over = rms / bounds.noise - 1.0
@@ -143,7 +146,7 @@ class OneLoop:
         return np.array([quiet * rms, STIFF * over]), np.stack([quiet * change, STIFF / bounds.noise * change], axis=-1)
 
     def _settling(self, bounds: Bounds, following: Array, slopes: Callable[[], Array]) -> Iterator[tuple[Array, Array]]:
-        """Of steps, what is outside its band late, and above the overshoot."""
+        """Late step samples outside the band, and samples above the overshoot."""
         steps = _steps(following)
         every = max(1, steps.shape[1] // _SAMPLES)
         late = self._late(bounds, steps.shape[1])[every - 1 :: every]
@@ -164,18 +167,18 @@ def _bands(steps: Array) -> Array:
 
 
 def _steps(following: Array) -> Array:
-    """Answers (w, n) to a step, without the slowest that a period of them does not hold."""
+    """Step responses (w, n), without the slowest part, longer than a period."""
     return np.cumsum(np.fft.irfft(following, axis=-1), axis=-1)
 
 
 Squares: TypeAlias = tuple[float, Array, Array]
-"""Half a sum of squares, its gradient (p,), and Gauss and Newton's curvature (p, p)."""
+"""Half a sum of squares, its gradient (p,), and the Gauss-Newton curvature (p, p)."""
 
 
 def descend(at: Callable[[Array], Squares | None], start: Array, within: tuple[Array, Array], tries: int, enough: float = 0.0) -> Array:
-    """The point within low and high to which Levenberg and Marquardt's rule comes, or the first whose half sum is `enough`.
+    """Minimise by the Levenberg-Marquardt method between low and high, or until half the sum is `enough`.
 
-    Where `at` gives none (unstable) it does not go.
+    Points where `at` returns none (unstable) are rejected. It ends early if the trend of the last steps does not lead to `enough`.
 
     >>> bowl = lambda point: (0.5 * float(point @ point), point, np.eye(1))
     >>> found = descend(bowl, np.array([2.0]), (np.array([-5.0]), np.array([5.0])), 20)
@@ -187,9 +190,11 @@ def descend(at: Callable[[Array], Squares | None], start: Array, within: tuple[A
     here = at(point)
     if here is None:
         return start
+    costs: list[float] = []
     for _ in range(tries):
         cost, gradient, curvature = here
-        if cost <= enough:
+        costs.append(cost)
+        if cost <= enough or not _is_promising(costs, tries, enough):
             break
         free = ~((point <= low) & (gradient > 0.0) | (point >= high) & (gradient < 0.0))
         step = np.zeros(len(point))
@@ -208,8 +213,16 @@ def descend(at: Callable[[Array], Squares | None], start: Array, within: tuple[A
     return point
 
 
+def _is_promising(costs: list[float], tries: int, enough: float) -> bool:
+    """Whether half sums fall, and fast enough to come near `enough` by the last try."""
+    if len(costs) <= _TREND:
+        return True
+    trend = costs[-1] / costs[-1 - _TREND]
+    return trend < _STALLED and (not enough or costs[-1] * trend ** ((tries - len(costs)) / _TREND) < _NEAR_ENOUGH * enough)
+
+
 def sum_squares(terms: Iterable[tuple[Array, Array]], size: int) -> Squares:
-    """Residuals (r,) with their derivatives (p, r), summed up."""
+    """Sum of squares of residuals (r,) with derivatives (p, r)."""
     cost, gradient, curvature = 0.0, np.zeros(size), np.zeros((size, size))
     for values, changes in terms:
         cost += 0.5 * float(values @ values)
@@ -219,9 +232,9 @@ def sum_squares(terms: Iterable[tuple[Array, Array]], size: int) -> Squares:
 
 
 def _summed(spectra: Array, every: int) -> Array:
-    """Sums over time (..., n) of what has spectra (..., h), nothing at rest, every so many samples, the last one among them.
+    """Cumulative sums over time (..., n) for spectra (..., h), zero at rest, at every so-many-th sample, the last included.
 
-    A sum is a division by 1 - exp(-i omega T); fewer samples are spectra folded.
+    A sum is a division by 1 - exp(-i omega T); fewer samples are folded spectra.
     """
     half = spectra.shape[-1]
     turn = np.exp(1j * np.pi * np.arange(1, half + 1) / half)
@@ -240,11 +253,11 @@ def _summed(spectra: Array, every: int) -> Array:
 
 
 def _over(own: Array, slopes: Array) -> tuple[Array, Array]:
-    """Values of |S| (r,) above their limit, and d|S| = -Re(T dlnC) |S|."""
+    """Excess of |S| (r,) above its limit, and d|S| = -Re(T dlnC) |S|."""
     size = np.abs(own) / _BELOW
     return STIFF * (size - 1.0), -STIFF * np.real((1.0 - own) * slopes) * size
 
 
 def keeps(passed: float) -> bool:
-    """Whether bounds are kept, within what a grid of frequencies lets one see."""
+    """Whether the bounds are met, within the resolution of the frequency grid."""
     return passed <= _KEPT

@@ -1,4 +1,4 @@
-"""How a loop comes out: the whole loop, all axes, sampled, with its modes where they may lie."""
+"""Evaluation of a sampled loop, all axes, over shifts of its modes."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from flexstage.control.tuning.view import View
 
 _ROUNDING = 1e-9
 _COARSE = 8
-"""Every so many-th frequency is looked at first: what passes the peak there need not be looked at further."""
+"""Stride of a first coarse check of frequencies: a peak exceeded there needs no further check."""
 
 
 def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judgement:
-    """Stability by eigenvalues, the peak of S over all frequencies of the view, and each loop's bandwidth.
+    """Evaluate stability by eigenvalues, the peak of S over all frequencies of the view, and each loop's bandwidth.
 
-    `gains` are the `open_gains` where they are known already.
+    `gains` are the `open_gains` if already known.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -44,9 +44,9 @@ def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judge
 
 
 def keeps_peak(seen: View, control: Callable[[], System], gains: Array, peak: float) -> bool:
-    """Whether `judge_loop` finds a loop stable and no `peak` of S above this one: asked first where no is told soonest.
+    """Check that `judge_loop` finds a stable loop with a peak of S below `peak`; the cheapest rejections come first.
 
-    `control` makes the controller, which many a loop can do without: its peak tells.
+    `control` constructs the controller, unnecessary for a loop with too high a peak.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -64,18 +64,18 @@ def keeps_peak(seen: View, control: Callable[[], System], gains: Array, peak: fl
 
 
 def own_bandwidths(seen: View, gains: Array) -> tuple[float, ...]:
-    """Where the gain of each loop [Hz] first falls through 1, of the plant as modelled."""
+    """First frequency [Hz] where the gain of each loop of the nominal plant falls through 1."""
     return tuple(crossing_frequency(seen.frequencies, np.abs(gains[0, :, loop, loop])) for loop in range(len(seen.loops.names)))
 
 
 def _sensitivity(seen: View, gains: Array) -> Array:
-    """S (f, k, k) of poses, rotations times the stage's length, from open loops in the loops' coordinates."""
+    """Sensitivity S (f, k, k) of poses, rotations times the stage's length, from open loops in loop coordinates."""
     poses = seen.loops.coordinates.scale[:, None] * np.linalg.inv(seen.loops.sense)
     return poses @ np.linalg.inv(np.eye(gains.shape[-1]) + gains) @ np.linalg.inv(poses)
 
 
 def open_gains(seen: View, control: System) -> Array:
-    """Open loops L (v, f, k, k) in the loops' coordinates, S = (I + L)^-1.
+    """Compute open loops L (v, f, k, k) in loop coordinates, S = (I + L)^-1.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -89,7 +89,7 @@ def open_gains(seen: View, control: System) -> Array:
 
 
 def closed_growth(plant: System, control: System) -> float:
-    """Growth [1/s] of the slowest free motion of a plant (commands to pose) under a controller.
+    """Compute the spectral abscissa [1/s] of a plant (commands to pose) under a controller.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -103,9 +103,10 @@ def closed_growth(plant: System, control: System) -> float:
 
 
 def highest_gain(matrices: Array) -> tuple[float, int]:
-    """The largest singular value of all matrices (f, k, k), and which of them has it.
+    """Find the largest singular value of all matrices (f, k, k), and its index.
 
-    One has none above the largest sum of a row of |M^H M|, and one at least as large as its longest column: most need no eigenvalues.
+    It is at most the square root of the largest row sum of |M^H M|, and at least the norm of the longest column: most matrices need no
+    eigenvalues.
 
     >>> highest_gain(np.array([[[1.0, 0.0], [0.0, 1.0]], [[0.0, 3.0], [0.0, 4.0]]]))
     (5.0, 1)
@@ -119,7 +120,7 @@ def highest_gain(matrices: Array) -> tuple[float, int]:
 
 
 def crossing_frequency(frequencies: Array, gains: Array) -> float:
-    """Where a gain first falls through 1, straight in the logarithms; 0 where it starts below, infinite where it never falls.
+    """Find the first frequency where a gain falls through 1, linear in the logarithms; 0 if it starts below, infinite if it never falls.
 
     >>> round(crossing_frequency(np.array([1.0, 10.0, 100.0]), np.array([10.0, 1.25, 0.1])), 2)
     12.26
@@ -135,7 +136,7 @@ def crossing_frequency(frequencies: Array, gains: Array) -> float:
 
 
 def first_rise(sizes: Array, frequencies: Array) -> float:
-    """Where a size first rises through 1, straight in the logarithms; an end of the frequencies where it starts above or never does.
+    """Find the first upward crossing of 1, linear in the logarithms; an end of the frequencies if there is none.
 
     >>> round(first_rise(np.array([0.1, 0.8, 10.0]), np.array([1.0, 10.0, 100.0])), 2)
     12.26

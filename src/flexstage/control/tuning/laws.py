@@ -1,4 +1,4 @@
-"""Laws whose loop's gain passes 1 at a given frequency: one family for each kind, from slow and calm to fast and bold."""
+"""Laws of single loops with a given gain crossover: one family for each kind, from slow and well damped to fast."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.resonant import IntegralResonant, resonant_law
 
 _PI_ANGLES = np.radians(np.arange(0.0, 81.0, 16.0))
-"""From integral control alone to nearly proportional control: six laws."""
+"""From integral control to nearly proportional control: six laws."""
 _PID_ANGLES = np.radians(np.arange(20.0, 161.0, 20.0))
-"""Zeros of PID from 5.7 times the crossing down to 0.18 of it."""
+"""Zeros of PID from 5.7 times the crossover down to 0.18 of it."""
 _DAMPINGS = (0.02, 0.04, 0.07, 0.12, 0.2, 0.35)
 _FEEDTHROUGHS, _CORNERS = (1.07, 1.3), (0.25, 0.5, 1.0)
-"""Of integral resonant control: dampings of the first resonance; feed-throughs over the static gain, corners over the resonance."""
+"""For integral resonant control: damping ratios of the first resonance; feed-through over static gain, corner over resonance."""
 _FILTER = 10.0
 _BELOW = 0.4
-"""A derivative is filtered at ten times the crossing, which takes 5.7 deg, at most at 0.4 of the rate, where Tustin's rule keeps it."""
+"""The derivative filter is at ten times the crossover, with a phase loss of 5.7 deg, but at most 0.4 of the rate for Tustin's rule."""
 
 
 def pi_laws(place: Place, step: float | None) -> list[PI]:
-    """PI with |C g| = 1 at the place, sampled as they will be: k_p = sin(a)/|g|, k_i = w cos(a)/|g| for angles a.
+    """Compute sampled PI laws with |C g| = 1 at the crossover: k_p = sin(a)/|g|, k_i = w cos(a)/|g| for angles a.
 
     >>> [round(found.integral, 6) for found in pi_laws(Place(1.0 / (2.0 * np.pi), -0.5j, 1.0, None), 1e-4)][:1]
     [2.0]
@@ -35,7 +35,7 @@ def pi_laws(place: Place, step: float | None) -> list[PI]:
 
 
 def pid_laws(place: Place, step: float | None) -> list[PID]:
-    """PI without a derivative, and two equal zeros at w/tan(a/2); filtered at ten times the frequency, at most 0.4 of the rate."""
+    """Compute PI laws, and PID laws with two equal zeros at w/tan(a/2), filtered at ten times the frequency, at most 0.4 of the rate."""
     corner = _FILTER * place.frequency if step is None else min(_FILTER * place.frequency, _BELOW / step)
     without = [PID(each.proportional, each.integral, 0.0, corner) for each in pi_laws(place, step)]
     return [*without, *(_pid(place, warped(place.frequency, step), float(angle), corner) for angle in _PID_ANGLES)]
@@ -50,7 +50,7 @@ def _pid(place: Place, turning: float, angle: float, corner: float) -> PID:
 
 
 def resonant_laws(place: Place, step: float | None) -> list[IntegralResonant]:
-    """Laws of most damping first, then others of several feed-throughs and corners; the tracking gain k solves |k/(j w) - Q| = 1/|g|."""
+    """Compute laws of maximum damping, then other feed-throughs and corners; the tracking gain k solves |k/(j w) - Q| = 1/|g|."""
     found: list[IntegralResonant] = []
     turning = warped(place.frequency, step)
     if place.resonance is None or not place.static > 0.0:
@@ -72,9 +72,9 @@ def resonant_laws(place: Place, step: float | None) -> list[IntegralResonant]:
 
 PI_FAMILY = Family("PI", pi_laws)
 PID_FAMILY = Family("PID", pid_laws, others="LQG", steps=(1.14, 2.0))
-"""A loop with lead may pass 1 between modes, in ranges that are narrow."""
+"""A loop with phase lead may have its crossover between modes, in narrow ranges."""
 RESONANT_FAMILY = Family("integral resonant control", resonant_laws, notched=False, others="PI with notches, or LQG")
 LQG_FAMILY = Family("LQG", lambda _, __: (), others="less noise of the gauges", steps=(1.6, 4.0))
-"""Tuned by its weights; coarser steps, as each takes longer."""
+"""Tuned by its weights, in coarser steps because of its cost."""
 FAMILIES: Mapping[str, Family] = MappingProxyType({"pi": PI_FAMILY, "pid": PID_FAMILY, "resonant": RESONANT_FAMILY, "lqg": LQG_FAMILY})
-"""Families by the word of a set-up file; `CONTROLLERS` has the others."""
+"""Families by their names in set-up files; `CONTROLLERS` has the others."""

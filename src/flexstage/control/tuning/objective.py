@@ -1,21 +1,21 @@
-"""Objectives of optimisation-based tuning. Light: the command line names the choices without loading more."""
+"""Objectives of optimisation-based tuning. A light module: the command line lists the choices without further imports."""
 
 from __future__ import annotations
 
 from enum import Enum
 
 SENSITIVITY = 2.0
-"""Highest peak of S where none is stated: 6 dB."""
+"""Default limit of the peak of S: 6 dB."""
 
 
 class TuningObjective(Enum):
     """Objective of optimisation-based tuning, within the required margins."""
 
     BALANCE = "balance"
-    """Rejection and settling together, and with what is left of freedom noise."""
+    """Rejection and settling together, and low noise with the remaining freedom."""
     REJECTION = "rejection"
-    """Disturbances are made smaller up to the highest frequency."""
+    """Highest sensitivity crossover."""
     NOISE = "noise"
-    """The least motion at rest, of what the floor and the gauges do."""
+    """Lowest positioning noise by floor and gauges."""
     SETTLING = "settling"
-    """The shortest time until steps stay within 2 %."""
+    """Shortest 2 % settling time of steps."""

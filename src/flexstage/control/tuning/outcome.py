@@ -1,4 +1,4 @@
-"""What any controller comes to, of whatever kind, read off frequency responses: fast enough for searches and for fronts."""
+"""Performance of a controller of any kind from frequency responses: fast enough for searches and trade-off curves."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ from flexstage.control.tuning.judge import first_rise, highest_gain
 from flexstage.control.tuning.search import Field
 
 _BAND = 0.02
-"""Within which steps are settled."""
+"""Settling band of steps."""
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What a controller comes to at the variants (v) of a field: its `peaks` (v,) of S over all loops, and by loop (k,) the rest.
+    """Performance of a controller at the variants (v) of a field: `peaks` (v,) of S over all loops, other values by loop (k,).
 
-    `rejection` [Hz] is where |S| first rises through 1, of the model and worst of the modes' spread (2, k); `noise` the rms at rest and
-    `floor` the floor's part [m]; `settling` [s] to 2 % and `overshoot` worst over the spread; `delay_margin` [s] the loop's own.
+    `rejection` [Hz] is the sensitivity crossover, of the model and the worst over the mode spread (2, k). `noise` is the rms in regulation,
+    `floor` the floor's part [m]. `settling` [s] (2 %) and `overshoot` are the worst over the spread; `delay_margin` [s] belongs to each
+    loop.
     """
 
     peaks: Array
@@ -34,7 +35,7 @@ class Outcome:
 
 
 def outcome(within: Field, control: System, gain: float = 1.0) -> Outcome:
-    """What a stable loop comes to, its controller's outputs times `gain`; whether it is stable is not asked here.
+    """Evaluate a stable loop with its controller output times `gain`; does not check stability.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -73,13 +74,13 @@ def outcome(within: Field, control: System, gain: float = 1.0) -> Outcome:
 
 
 def _steps(following: Array) -> Array:
-    """Answers (w, n, k) to steps of what follows (w, h, k), as far as a period of the lines holds them."""
+    """Step responses (w, n, k) for complementary sensitivities (w, h, k), within a period of the lines."""
     whole = np.concatenate([np.ones((len(following), 1, following.shape[-1])), following], axis=1)
     return np.cumsum(np.fft.irfft(whole, axis=1), axis=1)
 
 
 def _settling(steps: Array) -> Array:
-    """When steps (w, n, k) stay within 2 %, in samples, straight between them."""
+    """Settling time of steps (w, n, k) within 2 %, in samples, linearly interpolated."""
     off = np.abs(steps - 1.0)
     last = np.max(np.where(off > _BAND, np.arange(steps.shape[1])[:, None], -1), axis=1)
     ends = [np.take_along_axis(off, np.clip(last + by, 0, steps.shape[1] - 1)[:, None], axis=1)[:, 0] for by in (0, 1)]
@@ -87,7 +88,7 @@ def _settling(steps: Array) -> Array:
 
 
 def _delay_margin(opened: Array, frequencies: Array) -> float:
-    """The least delay that brings L to -1 where its gain passes 1, straight between frequencies."""
+    """Smallest delay that moves L with gain 1 to -1, linearly interpolated."""
     sizes, turn = np.log(np.abs(opened)), np.unwrap(np.angle(opened))
     places = np.flatnonzero(sizes[1:] * sizes[:-1] <= 0.0)
     share = sizes[places] / (sizes[places] - sizes[places + 1])

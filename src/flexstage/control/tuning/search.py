@@ -1,9 +1,11 @@
-"""A search for the best law and notches of every loop, robust to where the modes lie."""
+"""Search for the best law and notches of every loop, robust to mode shifts."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from dataclasses import field as record_field
 from functools import cached_property, partial
 from typing import cast
 
@@ -12,6 +14,7 @@ import scipy
 
 from flexstage.analysis.dynamics.random_response import Spectrum
 from flexstage.base.number import Array
+from flexstage.base.processes.progress import duration
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.controllers.family import Family
 from flexstage.control.controllers.notch import Notch
@@ -19,98 +22,104 @@ from flexstage.control.controllers.pi import PI
 from flexstage.control.controllers.pid import PID
 from flexstage.control.systems.system import select
 from flexstage.control.tuning.fit import STIFF, Bounds, OneLoop, Squares, descend, keeps, sum_squares
+from flexstage.control.tuning.judge import highest_gain
 from flexstage.control.tuning.laws import PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.objective import TuningObjective
 from flexstage.control.tuning.shape import Shape
 from flexstage.control.tuning.spec import TuningSpec
 from flexstage.control.tuning.view import View, first_alike, resonances
+from flexstage.experiment.progress import report
 
-STABLE = 2.5
-"""Modes may be off by so many times the spread before the loop may become unstable."""
 _INSIDE = 0.97
-"""Share of the peak allowed that a loop by itself may have: frequencies between those looked at, and what loops do to one another."""
-_LOOSER, _LATER = 1.5, 8.0
-"""Limits of |S|, times the one allowed, where modes are off so far that the loop need only be stable; and where a delay margin is used up.
+"""Share of the peak limit for a single loop: reserve for peaks between frequencies, and for coupling."""
+_FAR, _STABLE = 0.1, 2.5
+"""Least shift of all modes up to which loops remain stable; for a larger spread this multiple of it. S is limited there, too."""
+_LOOSER, _LOOSEST, _LATER = 1.5, 4.0, 8.0
+"""Limits of |S|, relative to the specified one: for shifts where the loop need only be stable; and at the delay margin.
 
-Both are finite so that the descent sees an edge before it is passed: at 8, L is an eighth from -1, at a delay 3 % above the one asked for.
+Both are finite so that the descent notices a stability limit early: at 8, L is an eighth from -1, at a delay 3 % above the required one.
 """
 _TURNS = 0.25 * np.pi * np.arange(1, 8)
-"""Turns at which delays are tried: a mode of gain 1.08 encircles -1 over 44 deg of them, one of less gain comes nearer to it than 1/8."""
+"""Phase grid of delays: a mode of gain 1.08 encircles -1 over 44 deg, one of less gain comes nearer to it than 1/8."""
 SETTLED = 6.0
-"""Settling time times the frequency up to which disturbances are rejected, of loops that are well balanced.
+"""Settling time times the sensitivity crossover, of well balanced loops.
 
-A loop that crosses at f with one time constant, 1/(2 pi f), is within 2 % after ln(50)/(2 pi f) = 0.62/f; notched modes that lie elsewhere
-ring ten times as long. Loops of the shipped stage that were found settle in 3/f to 6/f.
+A first-order loop with crossover f settles within 2 % after ln(50)/(2 pi f) = 0.62/f. Notched modes that shift ring ten times as long.
+Optimised loops of the shipped stages settle in 3/f to 6/f.
 """
 _NEAR, _MOST_NOTCHES = 4.0, 3
-"""Modes that get notches: up to so many times the first that stands out, and so many. Beyond, PI at the first mode has fallen below 1/4.
+"""Modes with notches: up to this factor of the first significant one, and at most this number. Beyond, PI at the first mode has fallen
+below 1/4.
 
-Where what stands out lies beyond so many times the platform's highest mode, as of legs that are damped, none is notched.
+If the significant modes exceed the platform's highest mode by this factor, as with damped legs, none is notched.
 """
 _ABOVE = 1.6
-"""Where a second notch begins in a loop with one mode, times the mode: another pair of zeros and poles, free to go where it serves."""
+"""Start of a second notch in a loop with one mode, relative to the mode: a free pair of zeros and poles."""
 _ZEROS, _POLE_DAMPINGS, _ZERO_DAMPINGS = (0.2, 0.8), (0.8, 2.4), (0.04, 0.12)
-"""Grid of starts: k_i/k_p over the first mode's omega; dampings of the first notch's poles (narrow, wide) and zeros (deep, shallow)."""
+"""Grid of starts: k_i/k_p over the first mode's omega; damping of the first notch's poles (narrow, wide) and zeros (deep, shallow)."""
 _LOOSE = 1.35
-"""Starts may have this much more than the peak allowed: the descent brings it down, and the next lower gain may be far below."""
+"""Allowed excess of starts over the peak limit: the descent reduces it, while the next lower gain may be far below."""
 _DRIFT = 1e-9
-"""Amplitude density [m/Hz^0.5] at 1 Hz of what is taken to disturb every loop where no floor is stated: it falls with the frequency."""
+"""Default disturbance of every loop without a specified floor: amplitude density [m/Hz^0.5] at 1 Hz, decreasing with frequency."""
 _SCALES = np.geomspace(0.01, 20.0, 40)
-"""Gains at which starts are tried: loops are in metres, of gain 1 at rest, so that 1 is a crossing near the mode; 20 % apart."""
+"""Gains of starts, 20 % apart: loops are in metres with static gain 1, so that 1 is a crossover near the mode."""
 _LEVELS, _STARTS = 6, 4
-"""How often the wanted frequency falls by the ratio before starts are given up; how many are followed, those that reject farthest."""
-_RATIO, _FINEST = 1.4, 1.08
-"""By what the wanted frequency is raised, its root where that fails, until it is finer: what is found is within 8 % of where it ends."""
-_KICKS, _KICK, _TURN = 4, 0.25, 2.4
-"""Places around: so many, moved by 0.25 in the logarithms, in directions sin(2.4 n k): 2.4 rad is near the golden angle."""
+"""Reductions of the target frequency before starts are abandoned; number of starts pursued, those of highest rejection."""
+_RATIO, _FINEST = 1.4, 1.1
+"""Factor of the target frequency, its root after a failure, down to this limit: results are within 18 % of the limit."""
+_KICKS, _KICK, _TURN = 2, 0.25, 2.4
+"""Restarts around a point: their number, distance 0.25 in the logarithms, and directions sin(2.4 n k); 2.4 rad is near the golden angle."""
+_ALLOWED, _EVALUATIONS, _AS_MANY = 1e7, 1000, 2000
+"""Limit of evaluated responses, about 8 s of CPU time at 3 GHz; limit of evaluations of all loops; responses with the CPU time of the calls
+of one evaluation."""
 _NEARLY = 0.03
-"""Excess of bounds within which a start counts as calm: noise is bounded by such starts alone."""
+"""Excess of bounds up to which a start counts as well damped: only such starts bound the noise."""
 _LEFT = 0.015
-"""Of the overshoot, what is left to rounding of gauges and to samples of steps that lie beside the top."""
+"""Share of the overshoot reserved for gauge rounding and for peaks between step samples."""
 _LEAST = 0.02
-"""Least k_p omega/k_i, where loops are known to pass 1, with which a known controller is begun from."""
+"""Lowest k_p omega/k_i at the known crossover, for starts from a known controller."""
 _FIRST_DERIVATIVE = 0.01
-"""k_d k_i / k_p^2 where PID begins, from PI: its zeros are then PI's and one a hundred times as fast, so that all bounds are still kept."""
+"""Start value k_d k_i / k_p^2 of PID from PI: zeros at PI's and at a hundred times it, so that all bounds stay met."""
 _SLOWEST, _SLOWEST_OF_FAST = 0.1, 0.01
-"""Least k_i/k_p over the first mode's omega, and over where loops are known to pass 1.
+"""Lowest k_i/k_p over the first mode's omega, and over the known crossover.
 
-Slower integrators leave a tail that the band of 2 % does not see and statics do.
+Slower integrators leave a tail below the 2 % band that is visible in statics.
 """
 _COUPLED = 0.5
-"""|g_ij g_ji / (g_ii g_jj)| above which loops are searched for together: the interaction at which a loop's own plant changes by half."""
+"""Limit of |g_ij g_ji / (g_ii g_jj)| for individual searches: at this interaction a loop's own plant changes by half."""
 _NOISIER = 1.65
-"""How much more noise a balance takes than what is quiet and already rejects far."""
+"""Noise limit of a balance relative to a quiet loop that already rejects well."""
 _LAME = 0.7
-"""Share of the farthest start's rejection that quiet ones have at least in a balance. What no floor shakes is quietest where it does least:
-such loops are made quiet again, rejecting nearly as far."""
+"""Minimum rejection of quiet loops in a balance, relative to the best start. Without floor vibration the quietest loop is the slowest: such
+loops are made quiet again with nearly the same rejection."""
 _AMBITION, _BACK = 1.0, 0.8
-"""What is wanted at first: 0.3 of the first mode's frequency, or this share of what the calm start rejects, with all bounds kept."""
+"""First target: 0.3 of the first mode's frequency, or this share of the start's rejection, with all bounds met."""
 _SHARES = (0.98, 0.93, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2)
-"""Shares of what loops reached by themselves that all together are asked for, in turn."""
+"""Shares of the individual loops' results that all together must reach, tried in turn."""
 _SAME = 1e-6
-"""Relative difference of plants below which loops are the same: models of symmetric stages are symmetric to some 1e-9."""
+"""Relative difference of plants below which loops are equal: symmetric models agree to about 1e-9."""
 _CORNER, _OF_RATE = 10.0, 0.4
-"""Corner of a PID's filter: ten times the platform's highest mode, or where loops are known to pass 1, the higher of them.
+"""Corner of a PID's filter: ten times the platform's highest mode, or the known crossover, whichever is higher.
 
-It is at most 0.4 of the sampling rate, where Tustin's rule keeps it.
+It is at most 0.4 of the sampling rate, for Tustin's rule.
 """
 _RATE = 20.0
-"""Samples of steps in a period of the loops' highest mode, or of where they are known to pass 1."""
+"""Step samples per period of the loops' highest mode, or of the known crossover."""
 _PERIODS, _LEAST_LINES, _MOST_LINES = 12.0, 9, 12
-"""Steps last so many periods of the lowest mode, 0.1 s at 100 Hz, as powers of two between 512 and 4096 samples."""
+"""Step duration in periods of the lowest mode, 0.1 s at 100 Hz; powers of two between 512 and 4096 samples."""
 _PLAIN, _PER_DECADE, _AROUND = 90, 20, np.array([-6.0, -3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0, 6.0])
-"""Frequencies: so many evenly in the logarithm, in a decade at least, and around each mode by so many half widths.
+"""Frequencies: this number logarithmically spaced, at least per decade, and around each mode by half widths.
 
-Between, |S| of a pole is straight to 3 %.
+Between them |S| of a pole is linear to 3 %.
 """
 
 _CLOSE = np.linspace(-0.06, 0.06, 25)
-"""Around a peak that was passed between frequencies, so far either side: it moves as the search goes on; half a per cent apart."""
+"""Grid around a peak exceeded between frequencies: its half width, because it moves during the search, and a spacing of half a per cent."""
 
 
 @dataclass(frozen=True)
 class Effort:
-    """How bounds are sought: the weight of noise in it, `quiet`, steps tried at most, and the half sum of squares that is `enough`."""
+    """Search parameters: weight of noise `quiet`, maximum steps, and half sum of squares that is `enough`."""
 
     quiet: float
     tries: int
@@ -118,14 +127,36 @@ class Effort:
 
 
 _CALM, _KEEP, _LAST = Effort(1.0, 60), Effort(0.05, 60, 0.005), Effort(0.3, 20)
-"""To make starts quiet; to keep bounds, with noise to tell equals apart, until nothing that counts passes them; all loops at once."""
+"""Three searches: to make starts quiet; to meet bounds, with noise to rank equals, until no bound is violated; and for all loops at
+once."""
+
+
+class Work:
+    """Counts the responses that a search evaluates, of those `allowed`, and reports how far it is."""
+
+    def __init__(self, allowed: float = _ALLOWED) -> None:
+        self.allowed, self.spent, self._begun = allowed, 0.0, time.process_time()
+
+    def affordable(self, tries: int, size: int) -> int:
+        """Tries of a descent, each of so many responses, that are left."""
+        return min(tries, int(max(self.allowed - self.spent, 0.0) / size))
+
+    def count(self, size: int) -> None:
+        """Count evaluated responses."""
+        self.spent += size
+
+    def report(self) -> None:
+        """Report the share that is done, and how long all of it may take."""
+        share = min(self.spent / self.allowed, 1.0)
+        if share:
+            report(share, f"optimising the controller, at most {duration((time.process_time() - self._begun) / share)}")
 
 
 @dataclass(frozen=True)
 class Variant:
-    """Where the plant may be: modes by `offset` off, commands `gain` times as large, `later` [s]; and the `limit` of |S| there.
+    """Variant of the plant: modes shifted by `offset`, commands times `gain`, delayed by `later` [s]; and its `limit` of |S|.
 
-    What is late turns by `turn` [rad] at most: a mode far above the crossing may be unstable with less delay than one that it bears.
+    Delays rotate by at most `turn` [rad]: a mode far above the crossover may be unstable at a smaller delay than an admissible one.
     """
 
     offset: float
@@ -135,39 +166,44 @@ class Variant:
     turn: float = np.inf
 
     def factor(self, frequencies: Array) -> Array:
-        """By what the plant's response is multiplied at frequencies [Hz]."""
+        """Factor on the plant's response at frequencies [Hz]."""
         return self.gain * np.exp(-1j * np.minimum(2.0 * np.pi * frequencies * self.later, self.turn))
 
 
 def variants(spec: TuningSpec) -> tuple[Variant, ...]:
-    """The plants at which a specification is judged, the model's first.
+    """Return the plant variants of a specification, the model's first.
 
     >>> from flexstage.control.tuning.laws import PI_FAMILY
     >>> [each.offset for each in variants(TuningSpec(PI_FAMILY, spread=0.02))]
-    [0.0, -0.02, 0.02, -0.05, 0.05]
+    [0.0, -0.02, 0.02, -0.05, 0.05, -0.1, 0.1]
     """
     limit, spread = spec.sensitivity, spec.spread
     near = (-spread, spread) if spread else ()
-    far = (-STABLE * spread, STABLE * spread) if spread else ()
+    far = {_STABLE * spread: _LOOSER, farthest(spec): _LOOSEST} if spread else {}
     gains = (1.0 - spec.gain, 1.0 + spec.gain) if spec.gain else ()
     turns = (*_TURNS, np.inf) if spec.delay_margin else ()
     return (
         *(Variant(offset, 1.0, 0.0, limit) for offset in (0.0, *near)),
-        *(Variant(offset, 1.0, 0.0, _LOOSER * limit) for offset in far),
+        *(Variant(sign * offset, 1.0, 0.0, factor * limit) for offset, factor in far.items() for sign in (-1.0, 1.0)),
         *(Variant(0.0, gain, 0.0, limit) for gain in gains),
         *(Variant(0.0, 1.0, 1.03 * (spec.delay_margin or 0.0), _LATER, turn) for turn in turns),
     )
 
 
+def farthest(spec: TuningSpec) -> float:
+    """Shift of all modes up to which a loop must be stable."""
+    return max(_FAR, _STABLE * spec.spread) if spec.spread else 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class Field:
-    """Plants (v, f, k, k) between the loops of a view at `frequencies` (v, f), and (w, h, k, k) at the even `lines` (h,) of steps.
+    """Plants (v, f, k, k) between the loops of a view at `frequencies` (v, f), and (w, h, k, k) at the evenly spaced `lines` (h,) of steps.
 
-    Each plant has its own frequencies, those of the model by its offset higher: its modes then stand at the same places.
+    Each plant has its own frequencies, the model's raised by its offset, so that the modes are at the same indices.
 
-    `disturbed` (f, k, d) is the amplitude of each loop's pose by each motion of the floor, `heard` (f, k) that of the gauges' noise,
-    weighted for sums of squares over the frequencies. `alike` gives each loop the first one that is the same, `allowed` the rms at rest
-    that each may have; none: any. `fast` [Hz] is where loops are known to pass 1: steps are as fine, and filters as fast, as that takes.
+    `disturbed` (f, k, d) is the amplitude of each loop's pose by each floor motion, `heard` (f, k) by gauge noise, weighted for sums of
+    squares over frequency. `alike` maps each loop to the first equal one. `allowed` is the rms limit in regulation of each; default: no
+    limit. `fast` [Hz] is the known crossover, for step sampling and filters.
     """
 
     seen: View
@@ -182,6 +218,7 @@ class Field:
     alike: tuple[int, ...]
     allowed: tuple[float, ...] = ()
     fast: float = 0.0
+    work: Work = record_field(default_factory=Work)
 
     @cached_property
     def strokes(self) -> Array:
@@ -191,12 +228,17 @@ class Field:
 
     @cached_property
     def slow_strokes(self) -> Array:
-        """The same (w, h, k, n) at the lines of steps but the first, at rest."""
+        """Plants (w, h, k, n) from all strokes at the step lines except the first, static one."""
         return np.stack([self.seen.driven_at(self.variants[place].offset, self.lines[1:]) for place in self.spread])
 
     @property
+    def size(self) -> int:
+        """Responses of an evaluation, of all loops at all frequencies and lines; `_AS_MANY` more stand for calls."""
+        return (self.frequencies.size + len(self.slow) * len(self.lines)) * len(self.alike) + _AS_MANY
+
+    @property
     def spread(self) -> list[int]:
-        """Variants of which only the modes are off, and no farther than the spread; the model first."""
+        """Variants with only mode shifts within the spread; the model first."""
         return _spread(self.spec, self.variants)
 
 
@@ -204,10 +246,11 @@ def _spread(spec: TuningSpec, cases: tuple[Variant, ...]) -> list[int]:
     return [place for place, each in enumerate(cases) if abs(each.offset) <= spec.spread and each.gain == 1.0 and not each.later]
 
 
-def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: float = 0.0) -> Field:
-    """What a view, taken at the offsets of `variants`, gives a search.
+def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: float = 0.0, work: Work | None = None) -> Field:
+    """Prepare the data of a search from a view at the offsets of `variants`.
 
-    Frequencies lie dense around `places` [Hz] too, those of the model: where modes are off, as much higher. `fast` is that of `Field`.
+    Frequencies are also dense around `places` [Hz] of the model, shifted with the modes. `fast` as in `Field`; `work` is that of an earlier
+    field whose search continues.
     """
     drive, cases = seen.loops.drive, variants(spec)
     own = _frequencies(seen, max(each.offset for each in cases), places)
@@ -218,7 +261,7 @@ def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: fl
     lines = _lines(seen, fast)
     slow = np.stack([seen.driven_at(cases[place].offset, lines) @ drive for place in _spread(spec, cases)])
     weights = np.sqrt(np.gradient(own))[:, None]
-    return Field(
+    found = Field(
         seen=seen,
         spec=spec,
         variants=cases,
@@ -231,10 +274,11 @@ def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: fl
         alike=tuple(next(first_alike(np.einsum("vfkk->vfk", plants), loop, _SAME)) for loop in range(len(seen.loops.names))),
         fast=fast,
     )
+    return replace(found, work=work or Work(min(_ALLOWED, _EVALUATIONS * found.size)))
 
 
 def last_mode(seen: View) -> float:
-    """The highest mode [Hz] of the lowest, as many as there are loops.
+    """Find the highest mode [Hz] of the lowest ones, as many as loops.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -247,7 +291,7 @@ def last_mode(seen: View) -> float:
 
 
 def _lines(seen: View, fast: float) -> Array:
-    """Even frequencies [Hz] from 0 to half the rate, so many that a step lasts some periods of the lowest mode."""
+    """Evenly spaced frequencies [Hz] from 0 to half the rate, for steps of some periods of the lowest mode."""
     rate = _RATE * max(last_mode(seen) * (2.0 if seen.loops.coordinates.forced else 1.0), fast)
     rate = rate if seen.step is None else min(rate, 1.0 / seen.step)
     power = int(np.clip(np.ceil(np.log2(_PERIODS * rate / float(seen.modes[0]))), _LEAST_LINES, _MOST_LINES))
@@ -255,7 +299,7 @@ def _lines(seen: View, fast: float) -> Array:
 
 
 def _frequencies(seen: View, highest: float, places: tuple[float, ...]) -> Array:
-    """Evenly in the logarithm, and densely around the modes and `places`; up to where all plants' own end below half the rate."""
+    """Frequencies spaced logarithmically, and densely around the modes and `places`, below half the rate for all plants."""
     top = 20.0 * float(seen.modes[-1]) if seen.step is None else 0.5 / seen.step
     top *= 0.999 / (1.0 + highest)
     lowest = 0.01 * float(seen.modes[0])
@@ -277,7 +321,7 @@ def _disturbed(seen: View, frequencies: Array, floor: Mapping[str, Spectrum]) ->
 
 
 def _heard(seen: View) -> Array:
-    """Amplitude density (k,) of the gauges' noise and steps in each loop."""
+    """Amplitude density (k,) of gauge noise and quantisation in each loop."""
     step, plant = seen.step or 0.0, seen.plant
     sensors = [plant.hardware.sensors.get(name) for name in plant.gauges]
     squares = [0.0 if each is None else (each.noise_density or 0.0) ** 2 + each.resolution**2 * step / 6.0 for each in sensors]
@@ -287,9 +331,9 @@ def _heard(seen: View) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What a search found, by loop: shape, point, and the frequency `reached` [Hz] to which the aim was brought, 0 where it is none.
+    """Search result by loop: shape, point, and the frequency `reached` [Hz] for the objective, 0 without one.
 
-    `noises` are the rms at rest with the loops of other blocks open, where that is known.
+    `noises` are the rms in regulation with the loops of other blocks open, if known.
     """
 
     shapes: tuple[Shape, ...]
@@ -298,7 +342,7 @@ class Found:
     noises: tuple[float, ...] = ()
 
     def responses(self, frequencies: Array) -> Array:
-        """C (..., k) of the loops at frequencies (...)."""
+        """Responses C (..., k) of the loops at frequencies (...)."""
         every = [shape.value(point, frequencies) for shape, point in zip(self.shapes, self.points, strict=True)]
         return np.stack(every, axis=-1)
 
@@ -309,15 +353,15 @@ class Found:
 
     @property
     def notches(self) -> tuple[tuple[Notch, ...], ...]:
-        """Notches by loop, without those that came to take nothing away: their depth is 1, and they would add a pole that does nothing."""
+        """Notches by loop, without those of depth 1, which have no effect."""
         every = (shape.notches(point) for shape, point in zip(self.shapes, self.points, strict=True))
         return tuple(tuple(each for each in notches if each.depth < 1.0) for notches in every)
 
 
 def search(within: Field, family: Family) -> Found | None:
-    """The best loops, those that are coupled together, then all at once; `None` where none is stable.
+    """Search the best loops: coupled ones together, then all at once; `None` if none is stable.
 
-    PID begins where PI comes to. The search is the same every time: no random numbers, starts on a grid.
+    PID starts from the PI result. The search is deterministic, with starts on a grid.
     """
     found = _by_blocks(within, PI_FAMILY, None)
     if found is not None and family == PID_FAMILY:
@@ -326,7 +370,7 @@ def search(within: Field, family: Family) -> Found | None:
 
 
 def advance(within: Field, known: Decentralised) -> Found:
-    """Loops brought on from a known controller, those that are coupled together, then all at once."""
+    """Improve the loops of a known controller: coupled ones together, then all at once."""
     begun = known_loops(within, known)
     points, reached, noises = list(begun.points), list(begun.reached), list(begun.noises)
     for block in _blocks(within):
@@ -335,7 +379,7 @@ def advance(within: Field, known: Decentralised) -> Found:
         if within.spec.objective is TuningObjective.BALANCE:
             part = replace(part, allowed=tuple(_NOISIER * each for each in _noises(part, own)))
         starts = [own, *_calmed(part, [own], _BACK)]
-        if within.spec.objective is TuningObjective.SETTLING:  # what rejects far too settles soon
+        if within.spec.objective is TuningObjective.SETTLING:  # high rejection implies fast settling
             balanced = replace(part, spec=replace(part.spec, objective=TuningObjective.BALANCE))
             starts.insert(0, _climb(balanced, starts, _frequencies_of_aim(balanced, own)))
         found = _climb(part, starts, _frequencies_of_aim(part, starts[0]))
@@ -345,8 +389,14 @@ def advance(within: Field, known: Decentralised) -> Found:
     return tighten(within, Found(begun.shapes, tuple(points), tuple(reached), tuple(noises)))
 
 
+def resume(within: Field, known: Decentralised) -> Found:
+    """All loops at once from a known controller, which has to reach what it reaches here."""
+    begun = known_loops(within, known)
+    return tighten(within, replace(begun, reached=tuple(_frequencies_of_aim(within, begun))))
+
+
 def known_loops(within: Field, known: Decentralised) -> Found:
-    """The loops of a controller as points, of those that are the same the first."""
+    """Convert the loops of a controller to points, the first of equal ones."""
     count = len(within.alike)
     notches = known.notches or ((),) * count
     every = [_known_loop(within, cast("PI | PID", known.laws[first]), notches[first]) for first in within.alike]
@@ -354,7 +404,7 @@ def known_loops(within: Field, known: Decentralised) -> Found:
 
 
 def _known_loop(within: Field, law: PI | PID, notches: tuple[Notch, ...]) -> tuple[Shape, Array]:
-    """Gains that are 0 get next to nothing: their logarithms are searched."""
+    """Shape and point of a loop; zero gains become tiny, because logarithms are searched."""
     fast = 2.0 * np.pi * within.fast
     plain = PI(max(law.proportional, _LEAST * law.integral / fast), law.integral)
     corner = law.filter if isinstance(law, PID) else None
@@ -366,12 +416,12 @@ def _known_loop(within: Field, law: PI | PID, notches: tuple[Notch, ...]) -> tup
 
 
 def tighten(within: Field, found: Found) -> Found:
-    """All loops at once, from what was found in a field, or in one that is less strict."""
+    """Optimise all loops at once, from the result in the same or a less strict field."""
     return _together(replace(within, allowed=found.noises), found)
 
 
 def _by_blocks(within: Field, family: Family, begun: Found | None) -> Found | None:
-    """The best loops, those that are coupled together, the others open: from a grid of starts, or on from where another kind came to."""
+    """Best loops by coupled blocks, the others open: from a grid of starts, or from the result of another kind."""
     seen, shapes = within.seen, tuple(_shape(within.seen, family, loop, within.fast) for loop in range(len(within.alike)))
     points: list[Array] = [np.zeros(0)] * len(shapes)
     reached, noises = [0.0] * len(shapes), [np.inf] * len(shapes)
@@ -393,14 +443,14 @@ def _by_blocks(within: Field, family: Family, begun: Found | None) -> Found | No
 
 
 def _on_from(within: Field, shapes: tuple[Shape, ...], begun: Found, block: tuple[int, ...]) -> Found:
-    """Some loops brought on from those of proportional and integral control, with next to no derivative."""
+    """Loops continued from a PI result, with a tiny derivative."""
     points = tuple(_with_derivative(shape, begun.shapes[loop], begun.points[loop]) for shape, loop in zip(shapes, block, strict=True))
     reached = [begun.reached[loop] for loop in block]
     return _climb(within, [Found(shapes, _shared(within, points), tuple(reached))], reached)
 
 
 def _shared(within: Field, points: tuple[Array, ...]) -> tuple[Array, ...]:
-    """The same array for loops that are the same: places around are counted by it."""
+    """Shared array for equal loops; restarts are counted by it."""
     return tuple(points[first] for first in within.alike)
 
 
@@ -411,13 +461,13 @@ def _with_derivative(shape: Shape, plain: Shape, point: Array) -> Array:
 
 
 def beside_one_another(grids: list[list[Array]]) -> list[tuple[Array, ...]]:
-    """Starts of loops that are searched together; one without notches has fewer, each beside several of the others."""
+    """Combine starts of loops searched together; a loop without notches has fewer, each combined with several of the others."""
     most = max(map(len, grids))
     return list(zip(*([grid[place * len(grid) // most] for place in range(most)] for grid in grids), strict=True))
 
 
 def _blocks(within: Field) -> list[tuple[int, ...]]:
-    """Loops that are coupled strongly, one set of those that are the same as others."""
+    """Strongly coupled loops, one set of each group of equal sets."""
     own = np.einsum("vfkk->vfk", within.plants)
     both = np.abs(within.plants * np.swapaxes(within.plants, -1, -2) / (own[..., :, None] * own[..., None, :]))
     count, owners = scipy.sparse.csgraph.connected_components(np.max(both, axis=(0, 1)) > _COUPLED)
@@ -427,7 +477,7 @@ def _blocks(within: Field) -> list[tuple[int, ...]]:
 
 
 def _part(within: Field, block: tuple[int, ...]) -> Field:
-    """The field of some loops, the others open."""
+    """Field of some loops, the others open."""
     chosen = list(block)
     firsts = [within.alike[loop] for loop in block]
     return replace(
@@ -441,7 +491,7 @@ def _part(within: Field, block: tuple[int, ...]) -> Field:
 
 
 def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]], least: list[float]) -> Found | None:
-    """From a grid of starts: those that reject farthest made calm, and the first that rejects as far as any brought on."""
+    """Best of a grid of starts: those of highest rejection are damped, and the first successful one is improved."""
     starts = [start for points in grid if (start := _highest_stable(within, Found(shapes, points, (0.0,) * len(points)))) is not None]
     if not starts:
         return None
@@ -455,7 +505,7 @@ def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]
 
 
 def _calmed(within: Field, starts: list[Found], share: float) -> list[Found]:
-    """Starts made quiet that still reject up to a share of what they did; first those that keep what is asked for, the farthest of them."""
+    """Quiet starts with a share of their rejection; first those that meet the bounds, by rejection."""
     calm = [
         _fit_together(within, each, _all_bounds(within, [share * far for far in rejections(within, each)]), _CALM)[0] for each in starts
     ]
@@ -463,39 +513,39 @@ def _calmed(within: Field, starts: list[Found], share: float) -> list[Found]:
 
 
 def rejections(within: Field, found: Found) -> list[float]:
-    """Sensitivity crossover of each loop [Hz]."""
+    """Compute the sensitivity crossover of each loop [Hz]."""
     return [each.rejection for each in one_loops(within, found)]
 
 
 def _frequencies_of_aim(within: Field, found: Found) -> list[float]:
-    """By loop the frequency [Hz] by which the aim is reached already: of rejection, or of which it settles in six periods."""
+    """Objective frequency [Hz] already reached by each loop: of rejection, or of settling within six periods."""
     loops, aim = one_loops(within, found), within.spec.objective
     far, soon = [each.rejection for each in loops], [SETTLED / each.settling for each in loops]
     return soon if aim is TuningObjective.SETTLING else list(map(min, far, soon)) if aim is TuningObjective.BALANCE else far
 
 
 def _is_calm(within: Field, found: Found) -> bool:
-    """Whether it nearly keeps what does not depend on the aim."""
+    """Whether the bounds independent of the objective are nearly met."""
     return excess(within, found) <= _NEARLY
 
 
 def _noises(within: Field, found: Found) -> list[float]:
-    """The rms at rest of each loop."""
+    """Rms in regulation of each loop."""
     return [each.rms for each in one_loops(within, found)]
 
 
 def _wanted(within: Field, found: Found, least: list[float]) -> list[float]:
-    """Nearly what loops reject already, or part of what they should at `least` [Hz]."""
+    """Target near the present rejection, or a part of the required one at `least` [Hz]."""
     return [max(_BACK * each, 0.3 * lowest) for each, lowest in zip(rejections(within, found), least, strict=True)]
 
 
 def _far(within: Field, found: Found) -> float:
-    """How far loops reject, the geometric mean."""
+    """Geometric mean of the loops' rejection."""
     return float(np.exp(np.mean(np.log(rejections(within, found)))))
 
 
 def _climb(within: Field, starts: list[Found], wanted: list[float]) -> Found:
-    """From the first start that keeps what frequencies ask for: all farther, then each by itself, by ever smaller ratios."""
+    """Increase the target from the first start that meets it: all loops together, then individually, by decreasing ratios."""
     within, best = loud_enough(within, starts, wanted)
     for _ in range(_LEVELS - 1):
         if best is not None:
@@ -518,9 +568,9 @@ def _climb(within: Field, starts: list[Found], wanted: list[float]) -> Found:
 
 
 def loud_enough(within: Field, starts: list[Found], wanted: list[float]) -> tuple[Field, Found | None]:
-    """The first start that keeps what frequencies ask for; where noise alone stands in the way, with as much allowed as that takes.
+    """First start that meets the frequency targets; if only noise prevents it, with a raised noise limit.
 
-    What rejects far by next to nothing is quiet and never settles: its noise is none that a balance can be held to.
+    A loop of high rejection with a tiny gain is quiet but never settles: its noise is no reference for a balance.
     """
     best = _first_kept(within, starts, wanted)
     if best is not None or not within.allowed:
@@ -535,7 +585,7 @@ def loud_enough(within: Field, starts: list[Found], wanted: list[float]) -> tupl
 
 
 def _first_kept(within: Field, starts: Iterable[Found], wanted: list[float]) -> Found | None:
-    """The first that keeps what frequencies ask for."""
+    """First start that meets the frequency targets."""
     for start in starts:
         found, passed = _fit_together(within, start, _all_bounds(within, wanted), _KEEP)
         if keeps(passed):
@@ -544,7 +594,7 @@ def _first_kept(within: Field, starts: Iterable[Found], wanted: list[float]) -> 
 
 
 def _around(found: Found) -> Iterator[Found]:
-    """A place and some around it, from where the same bounds may be kept although from it they are not."""
+    """A point and some around it, which may converge if the point does not."""
     yield found
     for number in range(1, _KICKS // len(set(map(id, found.points))) + 1):
         yield replace(found, points=tuple(point + _KICK * np.sin(_TURN * number * np.arange(1, len(point) + 1)) for point in found.points))
@@ -556,7 +606,7 @@ def _all_bounds(within: Field, frequencies: Iterable[float]) -> list[Bounds]:
 
 
 def _together(within: Field, found: Found) -> Found:
-    """All loops at once: the largest share of what was reached that all keep, and with that the least noise."""
+    """Optimise all loops at once: the largest common share of their results, and with it the least noise."""
     tried, last = found, np.inf
     for share in _SHARES:
         looser = replace(within, allowed=tuple(one / share for one in within.allowed))
@@ -567,18 +617,19 @@ def _together(within: Field, found: Found) -> Found:
 
 
 def _fit_together(within: Field, found: Found, bounds: list[Bounds], effort: Effort) -> tuple[Found, float]:
-    """All loops' numbers at once, from those that were found, and by how much bounds are passed at worst."""
+    """Fit all loops' parameters at once from the given ones, and return the worst violation of bounds."""
     joint = Joint(within, found, tuple(bounds), effort.quiet)
     start = np.concatenate([found.points[loop] for loop in joint.parts])
     limits = [found.shapes[loop].bounds(found.points[loop]) for loop in joint.parts]
     low, high = (np.concatenate([pair[side] for pair in limits]) for side in (0, 1))
-    best = joint.moved(descend(joint.at, start, (low, high), effort.tries, effort.enough))
+    within.work.report()
+    best = joint.moved(descend(joint.at, start, (low, high), within.work.affordable(effort.tries, within.size), effort.enough))
     return best, joint.passed(best)
 
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """All loops together: what passes their bounds and the coupled peak of S. Loops that are the same have the same numbers."""
+    """Joint problem of all loops: violated bounds and the coupled peak of S. Equal loops share their parameters."""
 
     within: Field
     found: Found
@@ -587,24 +638,25 @@ class Joint:
 
     @cached_property
     def parts(self) -> Mapping[int, slice]:
-        """Where the numbers of each different loop stand."""
+        """Parameter slices of each different loop."""
         different = [loop for loop, first in enumerate(self.within.alike) if first == loop]
         ends = np.cumsum([0, *(len(self.found.points[loop]) for loop in different)])
         return {loop: slice(int(ends[place]), int(ends[place + 1])) for place, loop in enumerate(different)}
 
     @cached_property
     def loops(self) -> Mapping[int, tuple[OneLoop, float]]:
-        """Each different loop with the weight of its noise, relative to that at the start."""
+        """Different loops with their noise weights, relative to the start."""
         begun = one_loops(self.within, self.found)
         return {loop: (begun[loop], self.quiet / begun[loop].rms) for loop in self.parts}
 
     def moved(self, point: Array) -> Found:
-        """The loops of a point."""
+        """Loops at a point."""
         return replace(self.found, points=tuple(point[self.parts[first]] for first in self.within.alike))
 
     def at(self, point: Array) -> Squares | None:
-        """The sum of squares; `None` where a plant is unstable."""
+        """Sum of squares; `None` for an unstable plant."""
         within, found = self.within, self.moved(point)
+        within.work.count(within.size)
         values, slopes = self._responses(found, within.frequencies)
         whole = closed_by(within.plants, values)
         if not _is_stable(whole):
@@ -621,45 +673,43 @@ class Joint:
         return sum_squares(terms, len(point))
 
     def _responses(self, found: Found, frequencies: Array) -> tuple[Array, Mapping[int, Array]]:
-        """C (v, f, k) of all loops and, of each different one, d ln C (p, v, f) by its numbers."""
+        """Responses C (v, f, k) of all loops and, for each different one, d ln C (p, v, f) by its parameters."""
         each = {loop: found.shapes[loop].response(found.points[loop], frequencies) for loop in self.parts}
         return np.stack([each[first][0] for first in self.within.alike], axis=-1), {loop: slopes for loop, (_, slopes) in each.items()}
 
     def passed(self, found: Found) -> float:
-        """The largest relative excess."""
+        """Largest relative violation."""
         within = self.within
-        if not _is_stable(coupled_sensitivities(within.plants, found, within.frequencies)):
+        whole = coupled_sensitivities(within.plants, found, within.frequencies)
+        if not _is_stable(whole):
             return np.inf
-        loops = one_loops(within, found)
-        return max(
-            *(loops[loop].excess(self.bounds[loop]) for loop in self.parts),
-            coupled_peak(within, found) / within.spec.sensitivity / _INSIDE - 1.0,
-        )
+        loops = one_loops(within, found, whole)
+        return max(*(loops[loop].excess(self.bounds[loop]) for loop in self.parts), _coupled_peak(within, whole) / _INSIDE - 1.0)
 
 
 def _by_all(whole: Array, slopes: Mapping[int, Array], loop: int, alike: tuple[int, ...]) -> Array:
-    """What stands for d ln C (p, ...) of a loop where all controllers change: dS_ii = -sum_j T_ij S_ji dlnC_j."""
+    """Equivalent of d ln C (p, ...) for a loop if all controllers change: dS_ii = -sum_j T_ij S_ji dlnC_j."""
     rest = (np.arange(whole.shape[-1]) == loop) - whole[..., loop, :]
     shares = rest * whole[..., :, loop]
     return np.concatenate([each * (_of_first(shares, first, alike) / shares[..., loop]) for first, each in slopes.items()])
 
 
 def _of_first(values: Array, first: int, alike: tuple[int, ...]) -> Array:
-    """Sum of values (..., k) over loops that are the same as the first one."""
+    """Sum of values (..., k) over loops equal to the first one."""
     same = [loop for loop, each in enumerate(alike) if each == first]
     return values[..., first] if len(same) == 1 else np.sum([values[..., loop] for loop in same], axis=0)
 
 
 def _is_stable(whole: Array) -> bool:
-    """Nyquist's criterion for all loops: det(I + L) turns by as much as integrators begin, each loop by itself at the lowest frequency."""
+    """Nyquist criterion for all loops: det(I + L) rotates by the integrators' initial phase, each loop isolated at the lowest frequency."""
     turned = np.unwrap(-np.angle(_determinant(whole)), axis=-1)
     begun = np.sum(np.angle(1.0 / np.einsum("vkk->vk", whole[:, 0])), axis=-1)
     return bool(np.all(np.abs(turned[:, -1] - turned[:, 0] + begun) < 3.0))
 
 
-def one_loops(within: Field, found: Found) -> list[OneLoop]:
-    """Each loop with the others closed: C g = 1/S_ii - 1, and S_ij/S_ii of what disturbs loop j, none of which depends on C."""
-    whole = coupled_sensitivities(within.plants, found, within.frequencies)
+def one_loops(within: Field, found: Found, whole: Array | None = None) -> list[OneLoop]:
+    """Evaluate each loop with the others closed: C g = 1/S_ii - 1, and S_ij/S_ii for disturbances of loop j, independent of C."""
+    whole = coupled_sensitivities(within.plants, found, within.frequencies) if whole is None else whole
     slow = coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])
     responses, slow_responses = found.responses(within.frequencies), found.responses(within.lines[1:])
     loops = []
@@ -681,7 +731,7 @@ def one_loops(within: Field, found: Found) -> list[OneLoop]:
 
 
 def _coupled(within: Field, whole: Array, slopes: Mapping[int, Array]) -> tuple[Array, Array]:
-    """Singular values of S above their limits: d sigma = -Re(sum_j u^H T_j S_j v dlnC_j), u and v its directions."""
+    """Excess of singular values of S: d sigma = -Re(sum_j u^H T_j S_j v dlnC_j), u and v its directions."""
     limits = np.array([each.limit for each in within.variants])[:, None] * _INSIDE * np.ones(whole.shape[:2])
     over = np.linalg.norm(whole, axis=(-2, -1)) > limits  # the sum of all squared is above the largest
     values, right = _largest_gains(whole[over])
@@ -695,14 +745,14 @@ def _coupled(within: Field, whole: Array, slopes: Mapping[int, Array]) -> tuple[
 
 
 def _largest_gains(given: Array) -> tuple[Array, Array]:
-    """The largest singular values (r,) of matrices (r, k, k), and their directions v (r, k)."""
+    """Largest singular values (r,) of matrices (r, k, k), and their directions v (r, k)."""
     if given.shape[-1] != 2:
         _, values, right = np.linalg.svd(given)
         return values[:, 0], np.conj(right[:, 0, :])
     squares = np.conj(np.swapaxes(given, -1, -2)) @ given
     first, second, across = np.real(squares[:, 0, 0]), np.real(squares[:, 1, 1]), squares[:, 0, 1]
     value = 0.5 * (first + second) + np.hypot(0.5 * (first - second), np.abs(across))
-    larger, least = first >= second, 1e-100  # any direction where both are the same
+    larger, least = first >= second, 1e-100  # any direction if both are equal
     v = np.stack([np.where(larger, value - second + least, across), np.where(larger, np.conj(across), value - first)], axis=-1)
     return np.sqrt(value), v / np.linalg.norm(v, axis=-1, keepdims=True)
 
@@ -717,7 +767,7 @@ def _shape(seen: View, family: Family, loop: int, fast: float) -> Shape:
 
 
 def _places(seen: View, loop: int) -> list[float]:
-    """Frequencies [Hz] where notches begin: the first modes that stand out of a loop; of one mode alone also a place above it."""
+    """Start frequencies [Hz] of notches: the first significant modes of a loop; for a single mode also a place above it."""
     highest = _NEAR * last_mode(seen)
     found = [each.frequency for each in resonances(seen, loop) if each.frequency < highest]
     near = [each for each in found if each < _NEAR * found[0]][:_MOST_NOTCHES]
@@ -741,15 +791,14 @@ def _grid(shape: Shape, places: list[float], first: float) -> Iterator[Array]:
 
 
 def _highest_stable(within: Field, found: Found) -> Found | None:
-    """The loops at the highest gains, all by the same factor, near the peak allowed; `None` where there are none.
+    """Loops at the highest gains with a common factor, near the peak limit; `None` without any.
 
-    From above: beyond a mode there may be gains that keep it where lower ones do not.
+    Searched from above: gains beyond a mode may be stable where lower ones are not.
     """
     for scale in _SCALES[::-1]:
         moved = replace(found, points=tuple(_louder(point, np.log(scale)) for point in found.points))
         whole = coupled_sensitivities(within.plants, moved, within.frequencies)
-        limit = _LOOSE * within.spec.sensitivity
-        if np.max(np.abs(whole[0])) <= limit and _is_stable(whole) and coupled_peak(within, moved) <= limit:
+        if np.max(np.abs(whole[0])) <= _LOOSE * within.spec.sensitivity and _is_stable(whole) and _coupled_peak(within, whole) <= _LOOSE:
             return moved
     return None
 
@@ -759,7 +808,7 @@ def _louder(point: Array, factor: float) -> Array:
 
 
 def _bounds(spec: TuningSpec, frequency: float) -> Bounds:
-    """What a loop shall keep that is as good as a frequency says, in what the aim is about, and what is asked for."""
+    """Bounds of a loop: the objective at a frequency, and the specified requirements."""
     far = frequency if spec.objective in (TuningObjective.BALANCE, TuningObjective.REJECTION) else 0.0
     soon = SETTLED / frequency if spec.objective in (TuningObjective.BALANCE, TuningObjective.SETTLING) and frequency else np.inf
     return Bounds(
@@ -768,12 +817,12 @@ def _bounds(spec: TuningSpec, frequency: float) -> Bounds:
 
 
 def coupled_sensitivities(plants: Array, found: Found, frequencies: Array) -> Array:
-    """S (v, f, k, k) of all loops together."""
+    """Compute S (v, f, k, k) of all loops together."""
     return closed_by(plants, found.responses(frequencies))
 
 
 def closed_by(plants: Array, responses: Array) -> Array:
-    """S (v, f, k, k) of plants closed by the loops' own responses (v, f, k); of one or two loops by Cramer's rule, which is faster."""
+    """Compute S (v, f, k, k) of plants closed by the loops' responses (v, f, k); for one or two loops by Cramer's rule, which is faster."""
     returned = np.eye(plants.shape[-1]) + plants * responses[..., None, :]
     if plants.shape[-1] > 2:
         return np.linalg.inv(returned)
@@ -794,13 +843,11 @@ def _determinant(given: Array) -> Array:
     return np.linalg.det(given)
 
 
-def coupled_peak(within: Field, found: Found) -> float:
-    """The highest singular value of S over all plants, over its limit, times the sensitivity allowed."""
-    whole = coupled_sensitivities(within.plants, found, within.frequencies)
-    limits = np.array([each.limit for each in within.variants])
-    return float(np.max(np.linalg.norm(whole, 2, axis=(-2, -1)) / limits[:, None]) * within.spec.sensitivity)
+def _coupled_peak(within: Field, whole: Array) -> float:
+    """Highest singular value of S over all plants, relative to its limit."""
+    return max(highest_gain(each)[0] / one.limit for each, one in zip(whole, within.variants, strict=True))
 
 
 def excess(within: Field, found: Found) -> float:
-    """Largest relative excess over the requirements."""
+    """Compute the largest relative excess over the requirements."""
     return Joint(within, found, tuple(_all_bounds(within, [0.0] * len(within.alike))), 0.0).passed(found)

@@ -1,4 +1,4 @@
-"""A loop's law and notches as a point in the space of their numbers, with the response's derivatives by all of them."""
+"""Law and notches of a loop as a parameter point, with the response's derivatives."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from flexstage.control.controllers.pid import PID
 
 _GAIN = 1e4
 _MOVED = 2.5
-"""By what factors gains and places of notches may move from a start."""
+"""Factors by which gains and notch frequencies may move from a start."""
 _DEEPEST, _NARROWEST, _WIDEST = 1e-3, 0.03, 6.0
 _BELOW = 0.45
-"""Least depth and damping of notches, largest damping, and the highest place over the sampling rate: Tustin's rule is a notch there."""
+"""Lowest depth and damping of notches, largest damping, and highest frequency over the sampling rate, for Tustin's rule."""
 
 
 @dataclass(frozen=True)
 class Shape:
     """PI, or PID filtered at `corner` [Hz], with `count` notches, sampled every `step` [s].
 
-    A point is the logarithms of k_p, k_i/k_p [1/s], of a PID k_d/k_p [s], and of each notch's frequency [Hz], depth and damping. k_i/k_p is
-    `slowest` [1/s] at least: what an integrator takes back is then taken back in the time of its zero.
+    A point contains the logarithms of k_p, k_i/k_p [1/s], of a PID k_d/k_p [s], and of each notch's frequency [Hz], depth and damping.
+    k_i/k_p is at least `slowest` [1/s], the rate of its zero and of the integrator's tail.
     """
 
     count: int
@@ -34,28 +34,28 @@ class Shape:
 
     @property
     def gains(self) -> int:
-        """How many numbers the law has."""
+        """Number of gain parameters."""
         return 2 if self.corner is None else 3
 
     def law(self, point: Array) -> PI | PID:
-        """The law of a point."""
+        """Law of a point."""
         proportional, *ratios = np.exp(point[: self.gains]).tolist()
         gains = [proportional * ratio for ratio in ratios]
         return PI(proportional, gains[0]) if self.corner is None else PID(proportional, gains[0], gains[1], self.corner)
 
     def notches(self, point: Array) -> tuple[Notch, ...]:
-        """The notches of a point."""
+        """Notches of a point."""
         return tuple(Notch(*map(float, np.exp(each))) for each in self._notch_points(point))
 
     def point(self, law: PI | PID, notches: tuple[Notch, ...]) -> Array:
-        """The point of a law and its notches."""
+        """Point of a law and its notches."""
         others = [law.integral, *([law.derivative] if isinstance(law, PID) else [])]
         gains = [law.proportional, *(each / law.proportional for each in others)]
         numbers = [number for each in notches for number in (each.frequency, each.depth, each.damping)]
         return np.log(np.maximum([*gains, *numbers], 1e-12))
 
     def bounds(self, start: Array) -> tuple[Array, Array]:
-        """Between which points lie, around a start: notches stay near where they begin, and below half the sampling rate."""
+        """Bounds of points around a start: notches stay near their start, and below half the sampling rate."""
         low, high = start - np.log(_GAIN), start + np.log(_GAIN)
         low[1] = np.log(self.slowest)
         for number in range(self.count):
@@ -66,7 +66,7 @@ class Shape:
         return low, high
 
     def response(self, point: Array, frequencies: Array) -> tuple[Array, Array]:
-        """C (f,) from error to command as it is sampled, and d ln C (p, f) by the point's numbers; infinite at rest.
+        """Sampled response C (f,) from error to command, and d ln C (p, f) by the point's parameters; infinite at zero frequency.
 
         >>> shape = Shape(1, 1e-4)
         >>> start = shape.point(PI(0.5, 100.0), (Notch(106.0, 0.1, 0.5),))
@@ -84,7 +84,7 @@ class Shape:
         return value, np.array(slopes)
 
     def value(self, point: Array, frequencies: Array) -> Array:
-        """C (f,) alone."""
+        """Response C (f,) without derivatives."""
         turned, rate = self._turned(frequencies)
         value = self._law(point, 1j * rate * turned)[0]
         for frequency, depth, damping in np.exp(self._notch_points(point)):
@@ -94,7 +94,7 @@ class Shape:
         return value
 
     def _law(self, point: Array, s: Array) -> tuple[Array, list[Array]]:
-        """The law's response, and its derivatives by the gains' logarithms."""
+        """Law response, and its derivatives by the gains' logarithms."""
         gains = np.exp(point[: self.gains])
         parts = [gains[0] * gains[1] / s]
         if self.corner is not None:
@@ -106,13 +106,13 @@ class Shape:
         return np.reshape(point[self.gains :], (self.count, 3))
 
     def _turned(self, frequencies: Array) -> tuple[Array, float]:
-        """tan(pi f T), and what makes it omega: Tustin's rule; without samples omega itself."""
+        """Value tan(pi f T), and its scale to omega for Tustin's rule; omega itself without sampling."""
         if self.step is None:
             return 2.0 * np.pi * frequencies, 1.0
         return np.tan(np.pi * frequencies * self.step), 2.0 / self.step
 
     def _warp(self, frequency: float) -> float:
-        """d ln q / d ln f of q = omega over a notch's, prewarped."""
+        """Derivative d ln q / d ln f of q = omega over a notch's, prewarped."""
         if self.step is None:
             return -1.0
         angle = 2.0 * np.pi * frequency * self.step
@@ -120,7 +120,7 @@ class Shape:
 
 
 def _notch(q: Array, depth: float, damping: float) -> tuple[Array, tuple[Array, Array, Array]]:
-    """N at q = omega/omega_n, and d ln N by ln q, ln depth and ln damping."""
+    """Notch N at q = omega/omega_n, and d ln N by ln q, ln depth and ln damping."""
     square, below = q**2, 2j * damping * q
     above, rest = depth * below, 1.0 - square
     zeros, poles = 1.0 / (rest + above), 1.0 / (rest + below)

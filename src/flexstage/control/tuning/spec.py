@@ -20,19 +20,19 @@ from flexstage.control.tuning.objective import SENSITIVITY, TuningObjective
 
 @dataclass(frozen=True, eq=False)
 class TuningSpec(CheckedFields):
-    """Tuning specification: the `family` of the controller, the requirements, and the disturbances and references that it serves.
+    """Tuning specification: `family` of the controller, requirements, disturbances and references.
 
-    Without an `objective` every loop's gain first passes 1 at `bandwidth` [Hz] (absent: the highest that the rest allows), with `notches`
-    in every loop, and more of them on modes if `automatic`. With one the controller is optimised for it: `rejection` [Hz] and `settling`
-    [s] (to 2 %) are required of every loop, absent: as good as possible; `overshoot` is the most of a step, `delay_margin` [s] the least of
-    every loop; references are shaped by a `prefilter`.
+    Without an `objective` every loop has its gain crossover at `bandwidth` [Hz] (default: the highest possible), with `notches` in every
+    loop, and more on modes if `automatic`. With an objective the controller is optimised: `rejection` [Hz] and `settling` [s] (2 %) are
+    required of every loop (default: as good as possible). `overshoot` is the maximum of a step, `delay_margin` [s] the minimum of every
+    loop; a `prefilter` shapes references.
 
-    `sensitivity` is the highest peak of S allowed (poses as lengths): 2 = 6 dB leaves gain margins of 2 and phase margins of 29 deg
-    (Skogestad & Postlethwaite, Multivariable Feedback Control, 2005, eq. 2.47). `spread` is how much all modes may lie above or below the
-    model's, relative: stability and peak hold there too; `gain` the same of all gains, with an objective only.
+    `sensitivity` is the maximum peak of S (poses as lengths): 2 = 6 dB implies gain margins of 2 and phase margins of 29 deg (Skogestad &
+    Postlethwaite, Multivariable Feedback Control, 2005, eq. 2.47). `spread` is the relative shift of all modes, both signs, for which
+    stability and peak hold; `gain` the same of all gains, with an objective only.
 
-    `expected` are the disturbances that an observer expects, `floor` spectra by input, `feedforward` (n, f) the strokes by which the
-    reference is fed forward.
+    `expected` are the disturbances assumed by an observer, `floor` spectra by input, `feedforward` (n, f) the feedforward strokes of the
+    reference.
     """
 
     family: Family
@@ -88,10 +88,10 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
 
 @dataclass(frozen=True)
 class Judgement:
-    """Verdict on a loop: `bandwidths` [Hz] by loop, the `peak` of S and its `frequency` [Hz], `growth` [1/s] of the slowest free motion.
+    """Evaluation of a loop: `bandwidths` [Hz] by loop, `peak` of S and its `frequency` [Hz], spectral abscissa `growth` [1/s].
 
-    All are the worst over the modes' spread, the bandwidths those of the model itself. `offset` is where the peak or, in an unstable
-    loop, the growth was found: modes by this much above the model's.
+    All are the worst over the mode spread, except the model's bandwidths. `offset` is the mode shift of the peak or, in an unstable loop,
+    of the growth.
     """
 
     bandwidths: tuple[float, ...]
@@ -107,13 +107,13 @@ class Judgement:
 
     @property
     def score(self) -> float:
-        """The smaller the better: the peak of S; above 1e9 for unstable loops."""
+        """Score, smaller is better: the peak of S; above 1e9 for unstable loops."""
         return self.peak if self.stable else 1e9 * (1.0 + self.growth)
 
 
 @dataclass(frozen=True, eq=False)
 class Tuning:
-    """A tuned controller: the `spec` and its `judgement`; `reason` is the sentence."""
+    """Tuned controller: the `spec` and its `judgement`; `reason` summarises it."""
 
     spec: TuningSpec
     controller: Decentralised | LQG

@@ -1,4 +1,4 @@
-"""Tuning: gains for a required bandwidth, or for the highest bandwidth, and the reason where it cannot be reached."""
+"""Tuning: gains for a required bandwidth, or for the highest bandwidth, and the reason of a failure."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ from flexstage.control.tuning.attempt import Attempt, BandwidthTrial
 from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.spec import Judgement, Tuning, TuningSpec, spec_findings
 from flexstage.control.tuning.view import View, view
+from flexstage.experiment.progress import report
 
 _SLOW = 0.1
-"""Lowest bandwidth that is tried, over that of integral control alone with a gain of 1 at the highest resonance: stable by small gain."""
+"""Lowest bandwidth tried, relative to integral control with a gain of 1 at the highest resonance, which is stable by small gain."""
 _FINE = 0.05
 """Share of the first mode above which bandwidths are tried in finer steps."""
 _WITHIN = 1.003
-"""Within which the highest bandwidth is found."""
+"""Relative accuracy of the highest bandwidth."""
 _NOTICED = 20.0
-"""Lag of hold and delay [deg] from which on faster samples are advised."""
+"""Phase lag of hold and delay [deg] above which faster sampling is advised."""
 _CALM = (0.9, 0.8, 0.7, 0.6)
-"""Shares of the peak allowed that single loops may have while integrators get stronger: loops do something to one another."""
+"""Shares of the peak limit for single loops while integrators are strengthened: reserve for coupling."""
 
 
 def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
-    """Tune a controller to a specification without objective, judged on the whole sampled loop.
+    """Tune a controller to a specification without objective, evaluated on the whole sampled loop.
 
-    At the required bandwidth (absent: the highest found, by trial from fast to slow and then by halving) every loop's gain is 1; of the
-    family's laws the one with the lowest peak of S is taken, first without notches of its own, then with them. The loop as a whole has to
-    be stable by its eigenvalues and its peak of S below that of `spec`, also with all modes off by its spread. At this bandwidth PI and
-    PID take the strongest integrators that the same peak of S leaves room for (Astrom, Panagopoulos & Hagglund, Automatica
-    34 (1998) 585). LQG is tuned by its weights, in platform coordinates. Raises `DesignError` where the bandwidth is not reached: with
-    the reason, the highest that is, and a remedy.
+    At the required bandwidth every loop's gain is 1 (default: the highest found, by trial from fast to slow and then by bisection). The
+    family's law with the lowest peak of S is selected, first without additional notches, then with them. The whole loop must be stable by
+    its eigenvalues, with a peak of S below `spec`'s, also with all modes off by its spread. PI and PID then get the strongest integrators
+    within the same peak of S (Astrom, Panagopoulos & Hagglund, Automatica 34 (1998) 585). LQG is tuned by its weights, in platform
+    coordinates. Raises `DesignError` for an unreachable bandwidth: with the reason, the highest one, and a remedy.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -62,9 +62,9 @@ def _at(seen: View, spec: TuningSpec, frequency: float) -> tuple[BandwidthTrial,
 
 
 def _stiffest(trial: BandwidthTrial, found: Attempt) -> Attempt:
-    """At the same bandwidth, within the same peak of S, more gain at rest: the lowest peak alone leaves motions that creep.
+    """Higher static gain at the same bandwidth, within the same peak of S: the lowest peak by itself leaves slow tails.
 
-    Part of the peak allowed is left to what the loops do to one another.
+    Part of the peak limit is a reserve for coupling.
     """
     if trial.spec.family not in (PI_FAMILY, PID_FAMILY):
         return found
@@ -73,12 +73,12 @@ def _stiffest(trial: BandwidthTrial, found: Attempt) -> Attempt:
 
 
 def _weakest(found: Attempt) -> float:
-    """The lowest of the loops' own gains at the lowest frequency."""
+    """Lowest of the loops' own gains at the lowest frequency."""
     return float(np.min(np.abs(np.diag(found.gains[0, 0]))))
 
 
 def trial_bandwidths(seen: View, steps: tuple[float, float]) -> list[float]:
-    """Bandwidths [Hz] that are tried in turn, descending: from what hold and delay allow to what roll-off and resonances allow any loop.
+    """List bandwidths [Hz] to try, descending: from the limit by hold and delay to the limit by roll-off and resonances.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -97,9 +97,9 @@ def trial_bandwidths(seen: View, steps: tuple[float, float]) -> list[float]:
 
 
 def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | None, Attempt | None]:
-    """The trial at the highest bandwidth found at which the specified margins are kept, within 0.3 %, and the controller; or None.
+    """Find the highest bandwidth with the specified margins, within 0.3 %, and its controller; or None.
 
-    It is the highest of `trial_bandwidths`, halved up to the next: no proof that no other controller reaches more.
+    The highest of `trial_bandwidths`, refined by bisection up to the next: other controllers may reach more.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -111,6 +111,7 @@ def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | No
     """
     places = trial_bandwidths(seen, spec.family.steps)
     for number, place in enumerate(places):
+        report(number / len(places), "tuning")
         trial = BandwidthTrial(seen, spec, place)
         found = trial.reach()
         if found is not None:
@@ -136,7 +137,7 @@ def _findings(plant: Plant, spec: TuningSpec) -> Iterator[Finding]:
     elif spec.notches:
         yield Finding("notches", f"{len(spec.notches)} are given for LQG, whose observer knows the modes", "Leave them out")
     if spec.family == LQG_FAMILY and spec.expected is None:
-        yield Finding("LQG", "the noise its observer shall expect is not stated", "State the gauges' noise and what disturbs the strokes")
+        yield Finding("LQG", "the observer's noise is missing", "State the gauges' noise and what disturbs the strokes")
 
 
 def _no_bandwidth(seen: View, spec: TuningSpec) -> Finding:
@@ -149,7 +150,7 @@ def _no_bandwidth(seen: View, spec: TuningSpec) -> Finding:
 def _unreached(seen: View, spec: TuningSpec, best: Attempt | None, wanted: float) -> Finding:
     trial, reached = highest_bandwidth(seen, spec)
     tried = _tried(trial_bandwidths(seen, spec.family.steps))
-    rest, ask = f"no other is reached either, {tried}", "Allow a higher peak of S"
+    rest, ask = f"no other bandwidth succeeds either, {tried}", "Allow a higher peak of S"
     if trial is not None and reached is not None:
         top = _three_digits(trial.frequency)
         rest = f"{top} Hz is the highest found with {_controller_name(spec, reached)}, {tried}"
@@ -163,7 +164,7 @@ def _tried(places: list[float]) -> str:
 
 
 def _reason(spec: TuningSpec, best: Attempt | None, wanted: float) -> str:
-    """What stands in the way of a bandwidth."""
+    """Reason of failure at a bandwidth."""
     if best is None:
         return f"{spec.family.name} has no law whose gain is 1 there"
     found, called = best.judgement, _controller_name(spec, best)
@@ -179,7 +180,7 @@ def _reason(spec: TuningSpec, best: Attempt | None, wanted: float) -> str:
 
 
 def _help(seen: View, spec: TuningSpec, wanted: float) -> str:
-    """Remedies: notches, another kind, faster samples; with the bandwidth that they give where it is computed."""
+    """Remedies: notches, another kind, faster sampling; with the resulting bandwidth if computed."""
     found = []
     if not spec.automatic and spec.family != LQG_FAMILY:
         trial, best = highest_bandwidth(seen, replace(spec, automatic=True))

@@ -1,4 +1,4 @@
-"""The plant as tuning sees it: between the loops' commands and poses, at many frequencies, with its modes where they may lie."""
+"""Plant for tuning: between the loops' commands and poses, at many frequencies, for several mode shifts."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ from flexstage.control.plant_models.plants import Plant
 from flexstage.control.systems.system import System
 
 _PLAIN, _PER_DECADE = 400, 60
-"""Frequencies evenly in the logarithm, and how many a decade has at least: 2 to 4 % apart."""
+"""Number of logarithmically spaced frequencies, and minimum per decade: 2 to 4 % apart."""
 _TURNED, _OF_RATE = 0.3, 0.4
-"""Highest bandwidth: hold and delay take 0.3 of a turn there, 108 deg, more than laws make up for; at most this share of the rate."""
+"""Highest bandwidth: a phase lag of hold and delay of 0.3 turns, 108 deg, beyond the lead of laws; at most this share of the rate."""
 _OF_HIGHEST = 0.25
-"""The same of a continuous loop, over the highest frequency that is looked at: 5 times the plant's last mode."""
+"""Highest bandwidth of a continuous loop, relative to the highest frequency: 5 times the plant's last mode."""
 _LOWEST, _BELOW_FASTEST = 1e-3, 0.01
-"""Lowest frequency over the first mode, and over the highest bandwidth at most; of a free body, whose mode is at 0 Hz, over both."""
+"""Lowest frequency over the first mode, at most over the highest bandwidth; for a free body with a mode at 0 Hz, over both."""
 _AROUND = 21
-"""Frequencies around each mode, at even steps of the turn of its resonance from -1.5 to 1.5 rad."""
+"""Number of frequencies around each mode, at even steps of its resonance phase from -1.5 to 1.5 rad."""
 _SAME = 0.01
 _REPEATED = 0.1
-"""Modes closer than 1 % stand out as one; those closer than a tenth of their half width need frequencies once."""
+"""Modes closer than 1 % count as one; those closer than a tenth of their half width need frequencies once."""
 _STANDS_OUT = 2.0
-"""How many times the gain eight half widths away that of a mode is which stands out."""
+"""Minimum gain of a significant mode, relative to the gain eight half widths away."""
 
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """Plants from commands to pose: as modelled (first), and with all modes by the `offsets` off.
+    """Plants from commands to pose: nominal (first), and with all modes shifted by the `offsets`.
 
-    `responses` (v, f, k, n) are those of the loops' poses to strokes, sense P, at `frequencies` (f,) [Hz]. `modes` [Hz] and `ratios` are
-    those of the plant's modes.
+    `responses` (v, f, k, n) from strokes to the loops' poses, sense P, at `frequencies` (f,) [Hz], for the offsets within the spread, which
+    are the first. `modes` [Hz] and `ratios` belong to the plant's modes.
     """
 
     plant: Plant
@@ -56,47 +56,47 @@ class View:
 
     @property
     def fastest(self) -> float:
-        """Highest bandwidth [Hz] that is worth a trial, by hold and delay; of a continuous loop by the plant's last mode."""
+        """Highest bandwidth [Hz] to try, by hold and delay; for a continuous loop by the plant's last mode."""
         return _fastest(self.plant)
 
     @property
     def static(self) -> Array:
-        """The loops' own gains (k,) at the lowest frequency."""
+        """Gains (k,) of the loops at the lowest frequency."""
         return np.real(self.own[0, 0])
 
     def at(self, frequency: float) -> Array:
-        """The loops' own responses (k,) at one frequency [Hz]."""
+        """Responses (k,) of the loops at one frequency [Hz]."""
         return np.diag(self.loops.sense @ self.systems[0].transfer(np.array([frequency]))[0] @ self.loops.drive)
 
     def driven_at(self, offset: float, frequencies: Array) -> Array:
-        """Responses (f, k, n) of the loops' poses to strokes at frequencies [Hz], with the modes by one of the offsets off."""
+        """Responses (f, k, n) from strokes to the loops' poses at frequencies [Hz], with modes shifted by one of the offsets."""
         return self.loops.sense @ self.systems[self.offsets.index(offset)].sweep(frequencies)
 
     @cached_property
     def driven(self) -> Array:
-        """Responses (v, f, k, k) of the loops' poses to the loops' commands."""
+        """Responses (v, f, k, k) from the loops' commands to the loops' poses."""
         return self.responses @ self.loops.drive
 
     @cached_property
     def own(self) -> Array:
-        """The loops' own responses (v, f, k)."""
+        """Diagonal responses (v, f, k) of the loops."""
         return np.einsum("vfkn,nk->vfk", self.responses, self.loops.drive)
 
     @cached_property
     def kept(self) -> dict[Any, Any]:
-        """What is the same at all frequencies of a search, kept by it: responses of notches, observers."""
+        """Cache of frequency-independent search data: responses of notches, observers."""
         return {}
 
     @cached_property
     def resonances(self) -> tuple[tuple[Resonance, ...], ...]:
-        """Modes that stand out, by loop."""
+        """Significant modes, by loop."""
         return tuple(resonances(self, loop) for loop in range(len(self.loops.names)))
 
 
 def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] | None = None) -> View:
-    """The plant by its loops; at other `offsets`, the first 0, where they are given.
+    """Compute the view of a plant by its loops; `offsets` are mode shifts, ascending in size; responses are up to the `spread`.
 
-    A plant whose modes all lie by s above is the same with time running faster: that of samples (1 + s) T apart, called T.
+    A relative shift s of all modes is equivalent to a time scale: the plant with samples (1 + s) T apart, labelled T.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -108,13 +108,14 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
     if offsets is None:
         offsets = (0.0, -spread, spread) if spread else (0.0,)
     systems = tuple(pose_plant(plant, offset) for offset in offsets)
-    frequencies = _frequencies(plant, offsets)
-    responses = np.stack([loops.sense @ system.sweep(frequencies) for system in systems])
+    near = [offset for offset in offsets if abs(offset) <= spread]
+    frequencies = _frequencies(plant, tuple(near))
+    responses = np.stack([loops.sense @ system.sweep(frequencies) for system, _ in zip(systems, near, strict=False)])
     return View(plant, loops, systems, offsets, frequencies, responses, plant.frequencies, plant.ratios)
 
 
 def first_alike(own: Array, loop: int, tolerance: float) -> Iterator[int]:
-    """Loops (v, f, k) before this one with the same response, and the loop itself: a symmetric stage has several."""
+    """Find loops (v, f, k) equal to an earlier one, by its index: a symmetric stage has several."""
     largest = np.max(np.abs(own[..., loop]))
     yield from (other for other in range(loop) if np.max(np.abs(own[..., other] - own[..., loop])) < tolerance * largest)
     yield loop
@@ -132,7 +133,7 @@ def _highest(plant: Plant) -> float:
 
 
 def _frequencies(plant: Plant, offsets: tuple[float, ...]) -> Array:
-    """Evenly in the logarithm, and densely around every mode wherever it may lie."""
+    """Frequencies spaced logarithmically, and densely around every mode for all shifts."""
     highest, slow = _highest(plant), _BELOW_FASTEST * _fastest(plant)
     lowest = min(slow, _LOWEST * float(plant.frequencies[0] or slow))
     plain = np.geomspace(lowest, highest, max(_PLAIN, int(_PER_DECADE * np.log10(highest / lowest))))
@@ -149,7 +150,7 @@ def _frequencies(plant: Plant, offsets: tuple[float, ...]) -> Array:
 
 @dataclass(frozen=True)
 class Resonance:
-    """A mode that stands out in a loop: its `frequency` [Hz], damping `ratio`, and the loop's `gain` there."""
+    """Significant mode of a loop: its `frequency` [Hz], damping `ratio`, and the loop's `gain` there."""
 
     frequency: float
     ratio: float
@@ -157,7 +158,7 @@ class Resonance:
 
 
 def resonances(seen: View, loop: int) -> tuple[Resonance, ...]:
-    """Modes that stand out in a loop, ascending; those closer than 1 % count as one.
+    """Find the significant modes of a loop, ascending; those closer than 1 % count as one.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -1,4 +1,4 @@
-"""A search for the weights of linear-quadratic control: what it shall be better in than the one tuned to the highest bandwidth."""
+"""Search for weights of linear-quadratic control that improve the controller of highest bandwidth."""
 
 from __future__ import annotations
 
@@ -19,31 +19,31 @@ from flexstage.control.tuning.search import SETTLED, Field, last_mode
 from flexstage.control.tuning.spec import TuningSpec
 
 _BANDWIDTHS, _TRUSTS, _POSES = (0.25, 0.5, 1.0), (1.0, 30.0, 1000.0), (0.01, 0.1, 1.0)
-"""Grid of starts: bandwidths as shares of the first mode; how many times the expected noise strokes have; weights of the pose."""
+"""Grid of starts: bandwidths as shares of the first mode; factors on the assumed stroke noise; weights of the pose."""
 _SLOWER, _SURER, _LOOSER = (0.01, 0.03, 0.1), (0.01, 1.0), (1e-4, 1e-3, 1e-2)
-"""The same of starts taken where none of the others is stable with modes off: a regulator that leaves modes alone need not know them."""
+"""Grid if no other start is stable with shifted modes: a regulator that does not act on modes is robust to them."""
 _BEGUN, _TRUSTED = (0.25, 0.5, 1.0), (0.1, 1.0, 10.0)
-"""The same of starts around a known controller: shares of its bandwidth, and times the noise that its observer expects strokes to have."""
+"""Grid around a known controller: shares of its bandwidth, and factors on the stroke noise assumed by its observer."""
 _FIRST = (0.4, 1.2, 0.8)
-"""Edges of the first simplex: factors of e of bandwidths, noise and weights of the pose. The grid's steps are twice as far."""
+"""Edges of the first simplex: factors of e for bandwidths, noise and weights of the pose. The grid's steps are twice as large."""
 _ROUNDS, _SMALLER, _EVALUATIONS = 2, 0.35, 190
-"""The simplex begins anew, smaller, where it has come to, since it gets flat at kinks; designs that it tries in each round."""
+"""Restarts of the simplex, smaller, at its result, because it degenerates at kinks; evaluations per round."""
 _SHARPNESS = 16.0
-"""Of the smooth least improvement, -ln(mean(exp(-s g)))/s: within ln(n)/s of the least of n, about 15 % of 15."""
+"""Sharpness s of the smooth minimum of improvements, -ln(mean(exp(-s g)))/s: within ln(n)/s of the minimum of n, about 15 % for 15."""
 _STEEP = 20.0
-"""Weight of what passes a bound: 1 % too much costs as much as a fifth of an improvement by e."""
+"""Weight of a violated bound: an excess of 1 % costs as much as a fifth of an improvement by e."""
 _INSIDE = 0.985
-"""Share of the peak allowed that the frequencies looked at may have, for peaks between them."""
+"""Share of the peak limit at the frequency grid, for peaks between its points."""
 _NOISIER = 1.15
-"""Times as much noise counts as no worse: where the gauges' own is most of it, as of loops that no floor shakes, rejection costs noise."""
+"""Noise factor that still counts as equal: with dominant gauge noise, as without floor vibration, rejection increases noise."""
 _UNSTABLE = 1e3
 
 
 @dataclass(frozen=True, eq=False)
 class Regulated:
-    """What is searched in: points are logarithms of the loops' bandwidths [Hz], the strokes' noise [m/Hz^0.5], the weights of the pose.
+    """Search space: points are logarithms of the loops' bandwidths [Hz], the strokes' noise [m/Hz^0.5], the weights of the pose.
 
-    Loops that are the same have the same numbers.
+    Equal loops share their parameters.
     """
 
     within: Field
@@ -52,11 +52,11 @@ class Regulated:
 
     @property
     def firsts(self) -> tuple[int, ...]:
-        """The loops that are different."""
+        """Indices of different loops."""
         return tuple(sorted(set(self.within.alike)))
 
     def controller(self, point: Array) -> LQG:
-        """The design of a point."""
+        """Controller of a point."""
         count, alike = len(self.firsts), self.within.alike
         places = [self.firsts.index(first) for first in alike]
         numbers = np.exp(point)
@@ -66,9 +66,9 @@ class Regulated:
         return with_observer(model, coordinates, weights, observer, self.feedforward)
 
     def outcome(self, point: Array) -> Outcome | None:
-        """What it comes to; `None` where there is no design, or one that is unstable at the ends of the modes' offsets.
+        """Outcome of a point; `None` without a design, or if unstable at the largest mode shifts.
 
-        For the model itself every design is stable: regulator and observer are, each by itself.
+        The nominal loop is always stable, because regulator and observer are.
         """
         seen = self.within.seen
         ends = {min(seen.offsets), max(seen.offsets)}
@@ -81,11 +81,11 @@ class Regulated:
 
 
 def weigh(searched: Regulated, against: Outcome, begun: LQG, bandwidth: float) -> LQG:
-    """The weights that are better than a known outcome in what the aim is about: in the least of all its numbers, most.
+    """Optimise the weights relative to a known outcome: maximise the smallest improvement of the objective's quantities.
 
     Downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308; its coefficients by dimension after Gao & Han, Computational
-    Optimization and Applications 51 (2012) 259) from the best of a grid around the controller `begun` with, whose loops pass 1 at
-    `bandwidth` [Hz], and of one around the first mode where that lies beyond: the same every time.
+    Optimization and Applications 51 (2012) 259). It starts from the best of a grid around the controller `begun`, with a crossover at
+    `bandwidth` [Hz], and of a grid around the first mode if that is higher. The search is deterministic.
     """
 
     def cost(point: Array) -> float:
@@ -110,7 +110,7 @@ def weigh(searched: Regulated, against: Outcome, begun: LQG, bandwidth: float) -
 
 
 def _grid_around(searched: Regulated, begun: LQG, bandwidth: float) -> Iterator[Array]:
-    """The weights of a known controller with next to none of the pose, then those of slower ones, all on the scale of the roll-off."""
+    """Weights of a known controller with a tiny pose weight, then those of slower ones, all scaled by the roll-off."""
     seen, firsts = searched.within.seen, list(searched.firsts)
     weights, expected = begun.weights or Weights(bandwidth), begun.expected or searched.expected
     stated = np.broadcast_to(weights.bandwidth, (len(seen.loops.names),))[firsts]
@@ -143,7 +143,7 @@ def _cost(searched: Regulated, against: Outcome, point: Array) -> float:
 
 
 def _improvements(spec: TuningSpec, found: Outcome, against: Outcome) -> Iterator[Array]:
-    """Logarithms by loop, of what the aim is about."""
+    """Logarithms by loop of the objective's quantities."""
     if spec.objective in (TuningObjective.BALANCE, TuningObjective.REJECTION):
         yield np.log(found.rejection[0] / against.rejection[0])
     if spec.objective in (TuningObjective.BALANCE, TuningObjective.NOISE):
@@ -154,9 +154,9 @@ def _improvements(spec: TuningSpec, found: Outcome, against: Outcome) -> Iterato
 
 
 def merit(spec: TuningSpec, found: Outcome) -> float:
-    """The mean logarithm by loop of what the aim is about.
+    """Compute the mean logarithm by loop of the objective's quantities.
 
-    A balance is about the frequency up to which a loop rejects, or that of which it settles in six periods, the lower of them.
+    For a balance the quantity is the lower of the rejection frequency and the frequency of settling in six periods.
     """
     settling = np.maximum(found.settling, 1e-300)
     merits = {
@@ -169,14 +169,14 @@ def merit(spec: TuningSpec, found: Outcome) -> float:
 
 
 def worth(within: Field, found: Outcome) -> float:
-    """The merit less what exceeds the bounds of the specification; peaks count where modes are within its spread."""
+    """Compute the merit less the excess over bounds; peaks count for mode shifts within the spread."""
     spec = within.spec
     limits = np.array([each.limit if each.limit <= spec.sensitivity else np.inf for each in within.variants])
     return merit(spec, found) - _STEEP * _excess(spec, found, limits)
 
 
 def excess_of(within: Field, found: Outcome) -> float:
-    """By how much bounds are passed, the sum of what each is; of peaks with a margin for frequencies between those looked at."""
+    """Sum the violations of all bounds; for peaks with a reserve between grid frequencies."""
     return _excess(within.spec, found, _INSIDE * np.array([each.limit for each in within.variants]))
 
 

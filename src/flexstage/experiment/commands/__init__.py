@@ -1,1 +1,1 @@
-"""Commands of the experiment wing, a module each."""
+"""Commands of the package `experiment`, one module each."""

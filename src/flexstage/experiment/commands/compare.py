@@ -1,4 +1,4 @@
-"""The command `compare`: theory, FEA and the test of a stage side by side."""
+"""The command `compare`: compare model, finite elements and test of a stage."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def compare(
 ) -> CommandResult:
     """Theory, FEA and experiment side by side.
 
-    Modes are paired by their shapes at the sensors, which bear the names of the stage's gauges; repeated modes as a subspace.
+    Modes are paired by their shapes at the sensors with the names of the stage's gauges; repeated modes as a subspace.
 
     FEA is shown where the cache holds all of it, else with --fea.
     """

@@ -1,4 +1,4 @@
-"""The command `identify`: the modes of a stage in records of a test."""
+"""The command `identify`: identify the modes of a stage from records of a test."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def identify(
 
 
 def _with_doubts(mechanism: Mechanism, seen: Identification) -> Identification:
-    """With a warning for every channel that the stage's model makes look exchanged, inverted or scaled; told, too."""
+    """Result with a printed warning for every channel that appears exchanged, inverted or scaled compared with the stage's model."""
     named = {channel.name for channel in elastic_model(mechanism, Model.LUMPED).outputs}
     if not any(channel.name in named for channel in seen.found.outputs) or not len(seen.found.frequencies):
         return seen

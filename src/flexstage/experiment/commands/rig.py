@@ -77,7 +77,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
 
     White noise in the actuators, through amplifier, stage, gauges with noise, drift and steps, anti-alias filter and sampling.
 
-    Same seed, same file. `flexstage identify` finds the modes in it as in any record.
+    Equal seeds give equal files. `flexstage identify` finds the modes in it as in any record.
     """
     mechanism = open_design(design, changes, [("--output", output)])
     values = Values()
@@ -115,8 +115,8 @@ def _drive(values: Values, drive_rms: str | None, band: tuple[str, str] | None, 
         )
     )
     if drive_rms is not None and amount is None:
-        what = f'found "{drive_rms}", which is no displacement, voltage, current, force or torque'
-        values.findings.append(Finding("--drive-rms", what, 'Write for example "1 um", "5 V" or "0.1 A"'))
+        what = f'no displacement, voltage, current, force or torque (got "{drive_rms}")'
+        values.findings.append(Finding("--drive-rms", what, 'Use e.g. "1 um", "5 V" or "0.1 A"'))
     ends = None if band is None else [values.value("--band", text, FREQUENCY) for text in band]
     return NoiseDrive(
         **dict([amount] if amount else []),

@@ -1,4 +1,4 @@
-"""The command `update`: a stage's numbers brought to agree with a test, in a design file of their own."""
+"""The command `update`: update a stage's parameters from a test, in a new design file."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def update(  # noqa: PLR0913 (its options)
     text = read_text(design)
     mechanism = loads(text, where=str(design))
     chosen = names(parameters)
-    free_numbers(mechanism, chosen, known)  # refused before the records are read
+    free_numbers(mechanism, chosen, known)  # refuse before the records are read
     model = standing(mechanism)
     seen = identify_records(record, texts, model, platform_modes(mechanism, model).highest)
     found = updating.update(mechanism, seen.found, chosen, known)
@@ -78,7 +78,7 @@ def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bo
     for text in priors:
         name, _, share = (part.strip() for part in text.rpartition("="))
         shares[name] = _share(f"--prior {name}".strip(), share)
-    gains = _share("--gain-error", gain_error)  # looked at even where it is not used: a slip is told
+    gains = _share("--gain-error", gain_error)  # checked even if unused, to report mistakes
     return Prior(
         prior=shares.pop("", DEFAULT.prior),
         priors=shares,
@@ -90,7 +90,5 @@ def _known(priors: Sequence[str], model_error: str, gain_error: str, *, gain: bo
 def _share(option: str, text: str) -> float:
     value = parse(text, RATIO, where=option)
     if not 1e-6 <= value <= 1.0:
-        raise refuse(
-            option, f"{text.strip()} is no relative standard deviation to work with", 'Give one from 0.0001 % to 100 %, e.g. "5 %"'
-        )
+        raise refuse(option, f"no relative standard deviation (got {text.strip()})", 'Use 0.0001 % to 100 %, e.g. "5 %"')
     return value

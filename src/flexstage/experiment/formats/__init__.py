@@ -1,4 +1,4 @@
-"""Files of tests, read and written: a register of their forms, which other packages can add to."""
+"""Test file formats, reading and writing: a register that other packages can extend."""
 
 from flexstage.base.register import Register
 from flexstage.experiment.formats.format import Format
@@ -18,4 +18,4 @@ FORMATS: Register[Format] = Register(
         "csv": CSV,
     },
 )
-"""Forms of record files by name."""
+"""Record file formats by name."""

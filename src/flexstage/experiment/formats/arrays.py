@@ -1,8 +1,8 @@
-"""Records and responses among the named arrays of a file: by the names of one documented form, or as the user says which array is what.
+"""Records and responses from the named arrays of a file: by the names of a documented form, or by a user's assignment.
 
-A record: `samples` (n, channels) and `time` (n,) [s], `rate` [Hz] or `step` [s]; beside them `start` [s], `name`, and lists of texts
-`names`, `units`, `roles`. Responses: `frequencies` (f,) [Hz] and complex `responses` (f, outputs, inputs); beside them `coherence` of that
-shape, `output_names`, `output_units`, `input_names`, `input_units`, `window`, `averages`, `name`.
+A record: `samples` (n, channels) and `time` (n,) [s], `rate` [Hz] or `step` [s]; optional `start` [s], `name`, and lists of texts `names`,
+`units`, `roles`. Responses: `frequencies` (f,) [Hz] and complex `responses` (f, outputs, inputs); optional `coherence` of that shape,
+`output_names`, `output_units`, `input_names`, `input_units`, `window`, `averages`, `name`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from flexstage.experiment.records.record import Channel, ComputedSamples, Record
 from flexstage.experiment.records.unit import plain_unit
 
 RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
-"""What files written here say of themselves."""
+"""Format identifiers in files written here."""
 _LISTED = 24
 _TIMED = "time = seconds({0}.Properties.RowTimes); samples = {0}.Variables; names = {0}.Properties.VariableNames"
 _SAVED = {
@@ -42,12 +42,12 @@ _PLAIN = "{0}'s numbers, time [s] and samples (one column a channel)"
 
 
 Spans: TypeAlias = tuple[tuple[int, int], ...]
-"""Part of an array: start and stop on each of its axes, or nothing for the whole."""
+"""Part of an array: start and stop on each axis, or None for the whole."""
 
 
 @dataclass(frozen=True, eq=False)
 class Variable:
-    """An array of a file: its name (a path), its shape, the function that reads a part of it, and its attributes."""
+    """Array of a file: its name (a path), its shape, the function that reads a part of it, and its attributes."""
 
     name: str
     shape: tuple[int, ...]
@@ -56,11 +56,11 @@ class Variable:
     attributes: Mapping[str, Attribute] = field(default_factory=dict[str, Attribute])
 
     def whole(self) -> Array:
-        """The array."""
+        """Whole array."""
         return self.read(())
 
     def samples(self, axis: int) -> Samples:
-        """The array as samples along an axis, left in the file, as floats; the other axes are its channels, in order."""
+        """Lazy samples along an axis, as floats; the other axes are its channels, in order."""
 
         def read(start: int, stop: int) -> Array:
             spans = [(0, length) for length in self.shape]
@@ -72,7 +72,7 @@ class Variable:
 
 
 def held_array(name: str, values: Array) -> Variable:
-    """An array that is in memory already.
+    """Wrap an array in memory.
 
     >>> held_array("u", np.arange(6.0).reshape(2, 3)).samples(1).read(1, 3).tolist()
     [[1.0, 4.0], [2.0, 5.0]]
@@ -82,9 +82,9 @@ def held_array(name: str, values: Array) -> Variable:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """What a file holds: arrays, and what it says in texts, lists of texts and numbers by name; `where` names it.
+    """Contents of a file: arrays, and texts, lists of texts and numbers by name; `where` names it.
 
-    `objects` are those that only the program that wrote them can read, by name, each with its class.
+    `objects` are readable only by the program that wrote them, by name, each with its class.
     """
 
     where: str
@@ -93,18 +93,18 @@ class Contents:
     objects: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def find(self, names: tuple[str, ...]) -> tuple[Variable, ...]:
-        """The arrays that have one of the names or fit one of the patterns, in the order of these."""
+        """Find the arrays with one of the names or matching one of the patterns, in this order."""
         fitting = (each for name in names for each in self.variables if matches(each.name, [name]))
         return tuple(dict.fromkeys(fitting))
 
     def vector(self, names: tuple[str, ...]) -> Variable | None:
-        """The first real array of these that has more than one number, all along one axis."""
+        """First real array of these with more than one number, along one axis."""
         return next(
             (each for each in self.find(names) if not each.is_complex and 1 < max(each.shape, default=0) == np.prod(each.shape)), None
         )
 
     def number(self, *names: str) -> float | None:
-        """The first number of one of these names.
+        """First number with one of these names.
 
         >>> Contents("a.mat", (held_array("data.fs", np.array([[50.0]])),)).number("data.fs")
         50.0
@@ -114,17 +114,17 @@ class Contents:
         return next((value for value in found if isinstance(value, float)), None)
 
     def texts(self, *names: str) -> tuple[str, ...]:
-        """The list of texts, or the one text, of the first of these names; empty if there is none."""
+        """List of texts, or the single text, of the first of these names; empty if there is none."""
         found = next((self.said[name] for name in names if name in self.said), ())
         return found if isinstance(found, tuple) else (str(found),)
 
     def text(self, name: str) -> str:
-        """One text; empty if there is none."""
+        """Single text; empty if there is none."""
         return " ".join(self.texts(name))
 
 
 def describe(what: Record | Responses) -> dict[str, Attribute]:
-    """What the documented form says of a record or of responses beside their arrays, by name.
+    """Build the metadata of a record or of responses in the documented form, by name.
 
     >>> describe(Record((Channel("u", "V"),), 50.0, side_by_side([])))["units"]
     ('V',)
@@ -143,13 +143,13 @@ def describe(what: Record | Responses) -> dict[str, Attribute]:
 
 
 def response_arrays(responses: Responses) -> dict[str, Array]:
-    """The arrays of responses in the documented form."""
+    """Build the arrays of responses in the documented form."""
     coherence = {} if responses.coherence is None else {"coherence": responses.coherence}
     return {"frequencies": responses.frequencies, "responses": responses.values} | coherence
 
 
 def side_by_side(sources: Sequence[Samples]) -> Samples:
-    """Samples of several sources as one: their channels one after another."""
+    """Concatenate the channels of several sources."""
     return ComputedSamples(
         min((source.length for source in sources), default=0),
         lambda start, stop: np.hstack([source.read(start, stop) for source in sources]),
@@ -157,7 +157,7 @@ def side_by_side(sources: Sequence[Samples]) -> Samples:
 
 
 def complex_of(real: Array, imaginary: Array) -> Array:
-    """The complex array of two real ones, to the bit: a sum would lose the sign of zeros.
+    """Combine real and imaginary arrays exactly: a sum would lose the sign of zeros.
 
     >>> complex_of(np.array([-0.0]), np.array([2.0])).tolist()
     [(-0+2j)]
@@ -168,9 +168,9 @@ def complex_of(real: Array, imaginary: Array) -> Array:
 
 
 def read_arrays(contents: Contents, options: Options) -> tuple[Record | Responses, ...]:
-    """The record, the responses, or both of a file's arrays, as far as `options.kind` asks for them.
+    """Read the record, the responses, or both from a file's arrays, according to `options.kind`.
 
-    Raises `DesignError` that lists the arrays where there is neither, and with what keeps those there are from being read.
+    Raises `DesignError` with a list of the arrays if neither is present, and with the faults of unreadable ones.
 
     >>> both = (held_array("u", np.zeros((1, 8))), held_array("y", np.ones((8, 2))), held_array("fs", np.array(4.0)))
     >>> (found,) = read_arrays(Contents("a.mat", both), Options(arrays=Arrays(samples=("u", "y"), rate=("fs",))))
@@ -196,7 +196,7 @@ def _unknown_names(contents: Contents, arrays: Arrays) -> Iterator[Finding]:
             continue
         held = next((each for each in contents.objects if matches(each, [name])), None)
         if held is None:
-            yield Finding(f"{contents.where}: {meaning}={name}", "it has no array of this name", suggest_nearest(name, known))
+            yield Finding(f"{contents.where}: {meaning}={name}", "unknown array", suggest_nearest(name, known))
         else:
             yield _object_finding(contents, held)
 
@@ -204,7 +204,7 @@ def _unknown_names(contents: Contents, arrays: Arrays) -> Iterator[Finding]:
 def _object_finding(contents: Contents, name: str) -> Finding:
     kind = contents.objects[name]
     what = f'it is an object of class "{kind}", which only MATLAB can read'
-    return Finding(f"{contents.where}: {name}", what, f"Save what is in it as plain arrays: {_SAVED.get(kind, _PLAIN).format(name)}")
+    return Finding(f"{contents.where}: {name}", what, f"Save its contents as plain arrays: {_SAVED.get(kind, _PLAIN).format(name)}")
 
 
 def _no_arrays(contents: Contents, kind: Kind | None) -> DesignError:
@@ -212,14 +212,14 @@ def _no_arrays(contents: Contents, kind: Kind | None) -> DesignError:
         return DesignError([_object_finding(contents, name) for name in contents.objects])
     missing = {None: '"samples" or "responses"', Kind.RECORD: '"samples"', Kind.RESPONSES: '"responses"'}[kind]
     advice = (
-        'Say which is what (array): of a record "samples=..." with "time=...", "rate=..." or "step=...", or the rate itself (rate); '
+        'Assign the arrays (array): of a record "samples=..." with "time=...", "rate=..." or "step=...", or the rate itself (rate); '
         'of responses "responses=..." with "frequencies=..."'
     )
     return refuse(contents.where, f"it has no array {missing}. {list_arrays(contents)}", advice)
 
 
 def list_arrays(contents: Contents) -> str:
-    """The arrays of a file with their shapes, single numbers with their values, for a message.
+    """Format the arrays of a file with their shapes, single numbers with their values, for a message.
 
     >>> list_arrays(Contents("a.mat", (held_array("u", np.zeros((8, 2))), held_array("dt", np.array(0.5))), {"note": "run 2"}))
     'It has u (8, 2), dt = 0.5, note "run 2"'
@@ -238,7 +238,7 @@ def list_arrays(contents: Contents) -> str:
 def _require_real(contents: Contents, chosen: Iterable[Variable]) -> None:
     advice = "Name real arrays of one or two axes"
     require(
-        Finding(f"{contents.where}: {each.name}", f"it is {'complex' if each.is_complex else f'of shape {each.shape}'}, no samples", advice)
+        Finding(f"{contents.where}: {each.name}", f"no samples (got {'complex' if each.is_complex else f'shape {each.shape}'})", advice)
         for each in chosen
         if each.is_complex or not 1 <= len(each.shape) <= 2 or 0 in each.shape
     )
@@ -259,23 +259,23 @@ def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock
     step = contents.number(*options.arrays.step)
     stated = options.rate or contents.number(*options.arrays.rate) or (1.0 / step if step else None)
     if time is None and stated is None:
-        advice = 'Say what the time is: "time=...", "rate=..." or "step=..." (array), or the rate itself (rate)'
-        raise refuse(contents.where, f"it has neither times nor a rate. {list_arrays(contents)}", advice)
+        advice = 'Assign the time: "time=...", "rate=..." or "step=..." (array), or the rate itself (rate)'
+        raise refuse(contents.where, f"no times and no rate. {list_arrays(contents)}", advice)
     if time is None or options.rate:
         return Clock(float(stated or 0.0), 0.0, ((0, 0),))
     where, unit = f"{contents.where}: {time.name}", plain_unit(" ".join(_texts(time.attributes.get("units", "s"))) or "s")
     if unit not in TIME_SCALES:
-        raise refuse(where, f'its unit is "{unit}", where a time is expected', "Write s, ms or us, or state the rate (rate)")
+        raise refuse(where, f'wrong unit (got "{unit}", expected a time)', "Use s, ms or us, or specify the rate (rate)")
     return determine_clock(time.samples(int(np.argmax(time.shape))), options, where, scale=TIME_SCALES[unit], stated=stated)
 
 
 def _axes(contents: Contents, chosen: tuple[Variable, ...], time: Variable | None, options: Options) -> list[tuple[Variable, int]]:
-    """The axis of time of each array: as long as the times; without times the first, of arrays the user names the longest."""
+    """Time axis of each array: as long as the times; without times the first, or the longest of arrays named by the user."""
     named = options.arrays.samples != Arrays().samples
     length = max(time.shape) if time is not None else max(chosen[0].shape) if named else chosen[0].shape[0]
     if not all(length in each.shape for each in chosen):
         sizes = ", ".join(f"{each.name} {each.shape}" for each in (*([time] if time is not None else []), *chosen[:_LISTED]))
-        raise refuse(contents.where, f"its arrays differ in length: {sizes}", 'Name arrays of as many samples (array "samples=...")')
+        raise refuse(contents.where, f"its arrays differ in length: {sizes}", 'Name arrays of equal length (array "samples=...")')
     return [(each, each.shape.index(length)) for each in chosen]
 
 
@@ -294,12 +294,12 @@ def _channels(contents: Contents, axes: list[tuple[Variable, int]], arrays: Arra
 def _texts_by_channel(
     contents: Contents, kind: str, names: tuple[str, ...], variables: list[Variable], widths: list[int]
 ) -> tuple[str, ...]:
-    """A text a channel: of one list in the file, or of the attributes of its array; an empty one where there is neither."""
+    """Text per channel: from a list in the file, or from the attributes of its array; empty without both."""
     own = [_texts(variable.attributes.get(kind, ())) for variable in variables]
     found = contents.texts(*names) or tuple(text for each, width in zip(own, widths, strict=True) for text in (each or ("",) * width))
     if len(found) != sum(widths):
-        what = f"its {kind} are {len(found)} ({', '.join(found[:6])}), its channels {sum(widths)}"
-        raise refuse(contents.where, what, f'Name the list that is meant (array "{kind}=...")')
+        what = f"wrong number of {kind} (got {len(found)}: {', '.join(found[:6])}; expected {sum(widths)}, the channels)"
+        raise refuse(contents.where, what, f'Name the correct list (array "{kind}=...")')
     return found
 
 
@@ -308,7 +308,7 @@ def _texts(value: Attribute) -> tuple[str, ...]:
 
 
 def _own_names(variables: list[Variable], widths: list[int]) -> tuple[str, ...]:
-    """Names of channels by those of their arrays: the last part of the path where these differ."""
+    """Channel names from array names: the last part of the path if these differ."""
     short = [re.split(r"[/.]", variable.name)[-1] for variable in variables]
     plain = short if len(set(short)) == len(short) else [variable.name for variable in variables]
     pairs = zip(plain, widths, strict=True)
@@ -316,10 +316,10 @@ def _own_names(variables: list[Variable], widths: list[int]) -> tuple[str, ...]:
 
 
 def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Options) -> Responses:
-    """Of several arrays each holds outputs to the same inputs."""
+    """Responses; each of several arrays contains outputs for the same inputs."""
     lines = contents.vector(options.arrays.frequencies)
     if lines is None:
-        raise refuse(contents.where, f"it has no frequencies. {list_arrays(contents)}", 'Say which they are (array "frequencies=...")')
+        raise refuse(contents.where, f"no frequencies. {list_arrays(contents)}", 'Assign them (array "frequencies=...")')
     frequencies = lines.whole().ravel().astype(float)
     problem = rising_problem(frequencies)
     if problem is not None:
@@ -329,7 +329,7 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
     cubes = [_cube(each, size) for each in chosen]
     if len({cube.shape[2] for cube in cubes}) > 1:
         shapes = ", ".join(f"{each.name} {each.shape}" for each in chosen)
-        raise refuse(contents.where, f"its responses are to different numbers of inputs: {shapes}", "Name those that are meant (array)")
+        raise refuse(contents.where, f"different numbers of inputs: {shapes}", "Name the correct responses (array)")
     values = np.concatenate(cubes, axis=1)
     averages = contents.number("averages")
     several = len(chosen) == values.shape[1]
@@ -354,12 +354,12 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
 def _no_responses(where: str, chosen: Iterable[Variable], size: int) -> Iterator[Finding]:
     for each in chosen:
         if not each.is_complex or size not in each.shape:
-            what = f"it is {'complex' if each.is_complex else 'real'} of shape {each.shape}, no responses at {size} frequencies"
+            what = f"no responses at {size} frequencies (got {'complex' if each.is_complex else 'real'} of shape {each.shape})"
             yield Finding(f"{where}: {each.name}", what, "Name complex arrays (frequencies, outputs, inputs)")
 
 
 def _cube(variable: Variable, size: int) -> Array:
-    """The array as (frequencies, outputs, inputs); the axis of frequencies is the first of their number."""
+    """Array as (frequencies, outputs, inputs); the frequency axis is the first of that length."""
     values = np.moveaxis(variable.whole(), variable.shape.index(size), 0)
     rest = values.shape[1:] if values.ndim <= 3 else tuple(length for length in values.shape[1:] if length > 1)
     if len(rest) > 2:
@@ -368,7 +368,7 @@ def _cube(variable: Variable, size: int) -> Array:
 
 
 def _side(contents: Contents, side: str, own: tuple[str, ...], given: tuple[str, ...]) -> tuple[Channel, ...]:
-    """Outputs or inputs as the file names them, else as the user does, else by their arrays."""
+    """Outputs or inputs named by the file, else by the user, else by their arrays."""
     names, units = (_as_many(contents.texts(f"{side}_{kind}"), own) for kind in ("names", "units"))
     plain = not any(sign in name for name in given for sign in "*?[")
     names = names or (_as_many(given, own) if plain else ()) or own
@@ -381,7 +381,7 @@ def _as_many(texts: tuple[str, ...], own: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _coherence(contents: Contents, shape: tuple[int, ...], arrays: Arrays) -> Array | None:
-    """The coherence that is stored with the responses. Raises `DesignError` where it is not of their shape."""
+    """Coherence stored with the responses. Raises `DesignError` for a wrong shape."""
     stored = contents.find(arrays.coherence)
     if not stored:
         return None
@@ -391,7 +391,7 @@ def _coherence(contents: Contents, shape: tuple[int, ...], arrays: Arrays) -> Ar
             return whole
     sizes = ", ".join(f"{each.name} {each.shape}" for each in stored)
     raise refuse(
-        contents.where, f"its coherence ({sizes}) is not of the shape of its responses, {shape}", 'Name it (array "coherence=...")'
+        contents.where, f"wrong shape of the coherence (got {sizes}, expected {shape} as the responses)", 'Name it (array "coherence=...")'
     )
 
 
@@ -400,11 +400,11 @@ def _not_finite(where: str, values: Array, outputs: tuple[Channel, ...]) -> Iter
         broken = int(np.count_nonzero(~np.isfinite(values[:, column])))
         if broken:
             what = f"{broken} of {values[:, column].size} responses are not numbers"
-            yield Finding(f"{where}: {output.name}", what, "Store the responses anew")
+            yield Finding(f"{where}: {output.name}", what, "Export the responses again")
 
 
 def _select(responses: Responses, options: Options) -> Responses:
-    """The responses with units as the user says; only the channels that count."""
+    """Responses with the user's units; only the selected channels."""
     count = len(responses.outputs)
     whole = assign((*responses.outputs, *responses.inputs), Options(units=options.units), responses.source)
     sides = (("outputs", whole[:count], options.outputs), ("inputs", whole[count:], options.inputs))

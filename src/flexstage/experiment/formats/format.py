@@ -1,4 +1,4 @@
-"""What a form of record files is: which files are of it, how they are read and written."""
+"""Record file format: recognition, reading and writing."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from flexstage.experiment.records.record import Record, Responses
 
 @dataclass(frozen=True)
 class Format:
-    """A form of record files: the endings of its files' names, and three functions.
+    """Record file format: its file name endings, and three functions.
 
-    `claims` says of a file's first 4096 bytes and of its ending whether it is of this form. `read` gives the record, the responses or both
-    that it holds, as the options say; `write` writes either, whole or not at all. All raise `DesignError`.
+    `claims` recognises a file from its first 4096 bytes and its ending. `read` returns its record, responses or both, according to the
+    options. `write` writes either, completely or not at all. All raise `DesignError`.
     """
 
     suffixes: tuple[str, ...]

@@ -22,7 +22,7 @@ _SEEN = ("actual position", "current position", "real position", "position of", 
 
 
 def is_gcs(start: bytes, _suffix: str) -> bool:
-    r"""Whether a file begins as GCS arrays do: with comments that state dimension and sampling.
+    r"""rRecognise a file with the initial comments of GCS arrays: dimension and sampling.
 
     >>> is_gcs(b"# VERSION = 1 \n# SEPARATOR = 32 \n# DIM = 2 \n# SAMPLE_TIME = 0.0002 \n", ".dat"), is_gcs(b"# time, u1\n", ".dat")
     (True, False)
@@ -31,13 +31,13 @@ def is_gcs(start: bytes, _suffix: str) -> bool:
 
 
 def read_gcs(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    r"""The record of a GCS array: columns named by NAME0, NAME1, ..., a line every SAMPLE_TIME seconds.
+    r"""rRead the record of a GCS array: columns named by NAME0, NAME1, ..., a line every SAMPLE_TIME seconds.
 
-    The header (`# KEY = value` up to `# END_HEADER`) is that of the general command set, as the maker's library reads it (PIPython,
-    `getgcsheader`): SEPARATOR is the code of the sign between columns, DIM their number, NDATA that of the lines. It states no units:
-    they are those of the axes, and the user's to say. Commanded and control values are inputs, positions and sensors outputs, others are
-    told by their names. Raises `DesignError` for a header without times (if no rate is stated), one that does not fit its columns, and a
-    file that breaks off (what it holds is used where `FaultTolerance.TRUNCATED`).
+    The header (`# KEY = value` up to `# END_HEADER`) follows the general command set, as read by the maker's library (PIPython,
+    `getgcsheader`): SEPARATOR is the code of the column separator, DIM the number of columns, NDATA the number of lines. It has no units:
+    they are the axes' units, specified by the user. Commanded and control values are inputs, positions and sensors outputs, others are
+    classified by their names. Raises `DesignError` for a header without times (if no rate is specified), a header that contradicts its
+    columns, and a truncated file (its data are used with `FaultTolerance.TRUNCATED`).
 
     >>> import tempfile
     >>> head = "# SEPARATOR = 32\n# DIM = 2\n# SAMPLE_TIME = 0.5\n# NDATA = 2\n# NAME0 = Target Position of axis 1\n"
@@ -59,7 +59,7 @@ def read_gcs(path: Path, options: Options) -> tuple[Record | Responses, ...]:
 
 
 def _header(path: Path) -> tuple[list[str], int]:
-    """The lines of the header, and the byte where numbers begin."""
+    """Lines of the header, and the byte offset of the numbers."""
     with path.open("rb") as stream:
         raw = stream.read(_HEAD).splitlines(keepends=True)
     count = next((number for number, line in enumerate(raw) if line.strip() and not line.lstrip().startswith(b"#")), len(raw))
@@ -101,7 +101,7 @@ def _rate(path: Path, said: Mapping[str, str]) -> float:
 
 
 def _role(name: str) -> Role:
-    """What a recorded quantity is by the words that controllers call it by."""
+    """Role of a recorded quantity, from the controllers' terms."""
     plain = name.lower()
     return Role.INPUT if plain.startswith(_DRIVEN) else Role.OUTPUT if plain.startswith(_SEEN) else Role.UNKNOWN
 
@@ -111,4 +111,4 @@ def _remark(lines: list[str]) -> str:
 
 
 GCS = Format((".dat",), is_gcs, read_gcs)
-"""GCS array of a data recorder; only read."""
+"""GCS array of a data recorder; read only."""

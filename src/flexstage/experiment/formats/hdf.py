@@ -1,4 +1,4 @@
-"""HDF5 files: their arrays, texts and attributes, read block by block; records and responses written."""
+"""HDF5 files: arrays, texts and attributes, read block by block; records and responses written."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from flexstage.experiment.records.record import Record, Responses
 
 BLOCK = 65_536
 NUMBERS = frozenset("fiub")
-"""Kinds of real numbers, as numpy calls them."""
+"""Kinds of real numbers in numpy."""
 _FRAME = 1_000_000
-"""Bytes of a file beside its numbers, at most: names, units, the tree of chunks."""
+"""Maximum bytes of a file in addition to its numbers: names, units, the tree of chunks."""
 
 
 def stored_array(file: Hdf, array: HdfArray, *, name: str = "", column: str = "", turned: bool = False) -> Variable:
-    """An array in an HDF5 file, or one `column` of a table; `turned` where the file keeps axes in the opposite order, as MAT files do."""
+    """Wrap an array in an HDF5 file, or one `column` of a table; `turned` for files with reversed axes, such as MAT files."""
 
     def read(spans: Spans) -> Array:
         values = file.read(array.name, tuple(reversed(spans)) if turned else spans, column)
@@ -34,15 +34,15 @@ def stored_array(file: Hdf, array: HdfArray, *, name: str = "", column: str = ""
 
 
 def is_hdf(start: bytes, _suffix: str) -> bool:
-    """Whether a file begins as HDF5 files do."""
+    """Recognise the signature of HDF5 files."""
     return start.startswith(b"\x89HDF\r\n\x1a\n")
 
 
 def read_hdf(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    """What an HDF5 file holds, by the names of its arrays, which stay in the file. Columns of tables are arrays of their own.
+    """Read the contents of an HDF5 file by array name; arrays stay in the file. Columns of tables are separate arrays.
 
-    Lists of names, units and roles are attributes of the array they belong to, or arrays themselves; single values attributes of the file.
-    Raises `DesignError` where it is none, breaks off or is damaged, and as `read_arrays` does.
+    Lists of names, units and roles are attributes of their array, or arrays themselves; single values are attributes of the file. Raises
+    `DesignError` for an invalid, truncated or damaged file, and as `read_arrays`.
 
     >>> import h5py, tempfile
     >>> from flexstage.experiment.records.options import Arrays
@@ -60,7 +60,7 @@ def read_hdf(path: Path, options: Options) -> tuple[Record | Responses, ...]:
 
 
 def _variables(file: Hdf, array: HdfArray) -> list[Variable]:
-    """The array; of a table its columns; nothing for what has no numbers."""
+    """Array, or columns of a table; empty without numbers."""
     columns = [column for column, kind in array.columns.items() if kind in NUMBERS] if array.kind == "V" else []
     whole = [stored_array(file, array)] if array.kind in (*NUMBERS, "c") else []
     return whole + [stored_array(file, array, name=f"{array.name}/{column}", column=column) for column in columns]
@@ -69,8 +69,8 @@ def _variables(file: Hdf, array: HdfArray) -> list[Variable]:
 def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
     """Write an HDF5 file: the array `samples` (n, channels), or `frequencies` and `responses` (f, outputs, inputs) with `coherence`.
 
-    Names, units and roles stand in attributes. Numbers come back to the bit; a record is written block by block. Raises `DesignError`
-    where the file cannot be written.
+    Names, units and roles are attributes. Numbers are exact to the bit; a record is written block by block. Raises `DesignError` if the
+    file cannot be written.
 
     >>> import h5py, tempfile
     >>> from flexstage.experiment.records.record import Channel, in_memory

@@ -1,4 +1,4 @@
-"""MAT files: versions 4 and 5 as scipy reads them, version 7.3 block by block; records and responses written in version 5."""
+"""MAT files: versions 4 and 5 by scipy, version 7.3 block by block; records and responses written in version 5."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _REFERENCES = "#refs#/"
 
 
 def is_mat(start: bytes, suffix: str) -> bool:
-    """Whether a file begins as MAT files of version 5 and 7.3 do; version 4 has no mark but its ending.
+    """Recognise the signature of MAT files of version 5 and 7.3; version 4 has only its file ending.
 
     >>> is_mat(b"MATLAB 5.0 MAT-file", ".dat"), is_mat(b"time,u1", ".csv")
     (True, False)
@@ -35,11 +35,10 @@ def is_mat(start: bytes, suffix: str) -> bool:
 
 
 def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    """What a MAT file holds, by the names of its arrays; those of structures by their paths (`test.u`), lists of texts are cells.
+    """Read the contents of a MAT file by array name; structure members by their paths (`test.u`), lists of texts as cells.
 
-    Objects of classes (`timeseries`, `table`, `idfrd`) cannot be read outside MATLAB: they are named with what to save instead.
-    Arrays of version 7.3 stay in the file, others are read at once. Raises `DesignError` where the file is none or breaks off, and as
-    `read_arrays` does.
+    Objects of classes (`timeseries`, `table`, `idfrd`) cannot be read outside MATLAB: they are listed, with a hint on export. Arrays of
+    version 7.3 stay in the file, others are read at once. Raises `DesignError` for an invalid or truncated file, and as `read_arrays`.
 
     >>> import scipy.io, tempfile
     >>> from flexstage.experiment.records.options import Arrays
@@ -64,7 +63,7 @@ def _version_5(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | O
 
 
 def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | Opaque]]:
-    """Arrays and texts as MATLAB stores them in HDF5: axes in the opposite order, texts as numbers, cells as references."""
+    """Arrays and texts of MATLAB's HDF5 files: reversed axes, texts as numbers, cells as references."""
     file = hdf(path)
     for array in file.arrays.values():
         name = array.name.replace("/", ".")
@@ -81,22 +80,22 @@ def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | 
 
 
 def _characters(file: Hdf, array: HdfArray) -> tuple[str, ...]:
-    """The lines of a text; nothing for an array that is none."""
+    """Lines of a text; empty for an array of another type."""
     if array.attributes.get("MATLAB_class") != "char" or array.kind not in NUMBERS or array.attributes.get("MATLAB_empty", 0):
         return ("",)
     return tuple("".join(map(_letter, line)).rstrip() for line in np.atleast_2d(file.read(array.name).T).tolist())
 
 
 def _letter(code: float) -> str:
-    """The character of a code, the sign of what is unknown for one that is none."""
+    """Character of a code, or the replacement character."""
     return chr(int(code)) if 0 <= code <= sys.maxunicode else "\ufffd"
 
 
 def write_mat(path: str | os.PathLike[str], what: Record | Responses) -> None:
-    """Write a MAT file of version 5: `samples` (n, channels), `rate`, `start`, `names`, `units` and `roles`; or the like of responses.
+    """Write a MAT file of version 5: `samples` (n, channels), `rate`, `start`, `names`, `units` and `roles`; or the same for responses.
 
-    It is made in memory and holds two gigabytes. Numbers come back to the bit. Raises `DesignError` where a record is larger and where the
-    file cannot be written.
+    Assembled in memory, at most two gigabytes. Numbers are exact to the bit. Raises `DesignError` for a larger record, and if the file
+    cannot be written.
 
     >>> import scipy.io, tempfile
     >>> from flexstage.experiment.records.record import Channel, in_memory
@@ -113,7 +112,7 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses) -> None:
     values |= {"samples": what.values} if isinstance(what, Record) else response_arrays(what)
     with atomic_write(path) as place, place.open("wb") as stream:
         scipy.io.savemat(stream, values, oned_as="column")
-        stream.seek(0)  # scipy writes the time into the head: the same record is to be the same file
+        stream.seek(0)  # scipy writes the time into the header; equal records must give equal files
         stream.write(b"MATLAB 5.0 MAT-file, Platform: any".ljust(116))
 
 

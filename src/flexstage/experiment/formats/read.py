@@ -1,4 +1,4 @@
-"""Files of tests read, whatever their form: as a record, or as the frequency responses an analyser stored."""
+"""Reading of test files of any format: as a record, or as frequency responses of an analyser."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ _OTHERS = {
 
 @check_arguments
 def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | Responses:
-    """Read a file of a test: UFF58 in ASCII or binary, MAT (v4, v5, v7.3), HDF5, CSV, GCS arrays, or a form that another package offers.
+    """Read a test file: UFF58 in ASCII or binary, MAT (v4, v5, v7.3), HDF5, CSV, GCS arrays, or a format of another package.
 
-    Which it is its content says. Samples stay in the file where its form allows (binary and regular ASCII UFF, MAT v7.3, HDF5, CSV) and are
-    read in blocks as they are needed. Units and numbers are those of the file. Raises `DesignError` with all that keeps the file from being
-    read, and where it holds a record and responses both and `options.kind` does not say which is meant.
+    The format is recognised from the content. Samples stay in the file if its format allows (binary and regular ASCII UFF, MAT v7.3, HDF5,
+    CSV), and are read in blocks on demand. Units and numbers are the file's. Raises `DesignError` with all errors, and for a file with both
+    record and responses without `options.kind`.
 
     >>> import tempfile
     >>> import numpy as np
@@ -50,12 +50,12 @@ def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | 
     wanted = [each for each in found if options.kind in (None, Kind(each.kind))]
     if not wanted:
         held = " and ".join(each.kind for each in found) or "neither a record nor responses"
-        raise refuse(str(place), f"it holds {held}, not what is asked for", "Ask for the other kind (kind)")
+        raise refuse(str(place), f"{held} instead of the requested kind", "Select the other kind (kind)")
     if len(wanted) > 1:
         listed = " and ".join(_describe(each) for each in wanted)
-        raise refuse(str(place), f"it holds {listed}", 'Say which is meant (kind): "record" or "responses"')
+        raise refuse(str(place), f"it holds {listed}", 'Select one (kind): "record" or "responses"')
     if isinstance(wanted[0], Record) and not wanted[0].length:
-        raise refuse(str(place), "one of its channels has no samples", "Export the file anew, or leave that channel out (only)")
+        raise refuse(str(place), "one of its channels has no samples", "Export the file again, or omit that channel (only)")
     return wanted[0]
 
 
@@ -66,7 +66,7 @@ def _describe(found: Record | Responses) -> str:
 
 
 def _opening(path: Path) -> bytes:
-    """The first bytes. Raises `DesignError` where there is no file, none that can be read, or an empty one."""
+    """First bytes. Raises `DesignError` for a missing, unreadable or empty file."""
     require_regular(path)
     try:
         with path.open("rb") as stream:
@@ -74,12 +74,12 @@ def _opening(path: Path) -> bytes:
     except OSError as error:
         raise refuse(str(path), f"it cannot be read ({error.strerror})", "Name a file that can be read") from None
     if not start.strip():
-        raise refuse(str(path), "it is empty", "Export it anew")
+        raise refuse(str(path), "it is empty", "Export it again")
     return start
 
 
 def _format(path: Path, start: bytes) -> Format:
-    """The form that claims the file; tables are what no other does."""
+    """Format of the file; the table format is the last resort."""
     known = FORMATS.all
     claiming = (each for each in known.values() if each is not CSV and each.claims(start, path.suffix.lower()))
     found = next(claiming, None)
@@ -90,4 +90,4 @@ def _format(path: Path, start: bytes) -> Format:
 
 
 read_record = read
-"""`read` under the name it has in `flexstage` itself."""
+"""`read` under its name in `flexstage`."""

@@ -1,4 +1,4 @@
-"""Records and responses written to a file in any of the forms that are read."""
+"""Writing of records and responses in any supported format."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from flexstage.experiment.records.record import Record, Responses
 
 @check_arguments
 def write(path: str | os.PathLike[str], what: Record | Responses, form: str = "") -> None:
-    """Write a record or responses, in the form named or that of the file's ending, whole or not at all.
+    """Write a record or responses, in the named format or by the file's ending, completely or not at all.
 
-    Forms are `uff` (binary), `mat` (version 5), `hdf5`, `csv`, and those that other packages offer. Raises `DesignError`
-    for other names and endings, for channel names or units the form cannot hold and where the file cannot be written.
+    Formats are `uff` (binary), `mat` (version 5), `hdf5`, `csv`, and those of other packages. Raises `DesignError` for unknown names and
+    endings, for channel names or units that the format does not support, and if the file cannot be written.
 
     >>> import tempfile
     >>> import numpy as np
@@ -30,13 +30,13 @@ def write(path: str | os.PathLike[str], what: Record | Responses, form: str = ""
     place = Path(path)
     known = {name: each for name, each in FORMATS.all.items() if each.write is not None}
     if form and form not in known:
-        raise refuse(os.fspath(path), f'"{form}" is no form of file', f"Name one of {', '.join(known)}")
+        raise refuse(os.fspath(path), f'unknown file format "{form}"', f"Use one of {', '.join(known)}")
     found = known.get(form) or next((each for each in known.values() if place.suffix.lower() in each.suffixes), None)
     if found is None or found.write is None:
         endings = ", ".join(suffix for each in known.values() for suffix in each.suffixes)
-        raise refuse(os.fspath(path), "its name does not say the form of file", f"Let it end in {endings}")
+        raise refuse(os.fspath(path), "unknown file ending", f"Use {endings}")
     found.write(place, what)
 
 
 write_record = write
-"""`write` under the name it has in `flexstage` itself."""
+"""`write` under its name in `flexstage`."""

@@ -1,1 +1,1 @@
-"""Modes from records, found without a hand."""
+"""Automatic modal identification from records."""

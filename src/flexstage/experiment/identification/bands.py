@@ -1,4 +1,4 @@
-"""Bands of frequency: where poles are searched for, which candidates are fitted together, and over which lines."""
+"""Frequency bands of the pole search, of joint fits, and their lines."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MOST = 12
 
 @dataclass(frozen=True)
 class Extent:
-    """Limits of a band in Hz, and the numbers of the candidates that belong to it."""
+    """Limits of a band in Hz, and the indices of its candidates."""
 
     low: float
     high: float
@@ -25,7 +25,7 @@ class Extent:
 
 @dataclass(frozen=True)
 class Sweep:
-    """A band from `low` to `high` in Hz that is searched at once, and the part of it, `first` to `last`, whose poles count."""
+    """Band from `low` to `high` in Hz of one search, and its part `first` to `last` from which poles are kept."""
 
     low: float
     high: float
@@ -34,7 +34,7 @@ class Sweep:
 
 
 def sweeps(low: float, high: float) -> list[Sweep]:
-    """Bands that cover `low` to `high` in Hz, each up to three times its lower end, each reaching a little into the next.
+    """Divide `low` to `high` in Hz into bands, each up to three times its lower end, with small overlaps.
 
     >>> [(round(band.low), round(band.first), round(band.last), round(band.high)) for band in sweeps(10.0, 200.0)]
     [(10, 10, 27, 31), (24, 27, 74, 84), (65, 74, 200, 200)]
@@ -46,10 +46,10 @@ def sweeps(low: float, high: float) -> list[Sweep]:
 
 
 def extents(poles: Array, low: float, high: float, *, resolution: Array | float = 0.0, together: float = TOGETHER) -> list[Extent]:
-    """Bands for poles (k,) in Hz, by rising frequency: those whose gap is below `together` times their half-widths form one.
+    """Divide poles (k,) in Hz, ascending, into bands: those with gaps below `together` times their half-widths form one.
 
-    Half-widths below the lines' `resolution` in Hz count as that. A band reaches 24 half-widths beyond its outer poles, within `low` and
-    `high`, and ends between groups in proportion to half-widths.
+    Half-widths are at least the lines' `resolution` in Hz. A band extends 24 half-widths beyond its outer poles, within `low` and `high`,
+    and ends between groups in proportion to half-widths.
 
     >>> found = extents(np.array([-1 + 100j, -1 + 101j, -1 + 200j]), 1.0, 300.0)
     >>> [(round(band.low), round(band.high), band.members) for band in found]
@@ -68,7 +68,7 @@ def extents(poles: Array, low: float, high: float, *, resolution: Array | float 
 
 
 def _divide(group: list[int], frequencies: Array) -> list[list[int]]:
-    """A group of more modes than are fitted at once, cut at its widest gaps."""
+    """Split a group of too many modes for one fit at its widest gaps."""
     if len(group) <= _MOST:
         return [group]
     cut = 1 + int(np.argmax(np.diff(frequencies[group])))

@@ -1,4 +1,4 @@
-"""Stabilisation: which poles recur as the order rises, and the candidates for modes that follow without a hand."""
+"""Stabilisation: recurring poles over increasing order, and automatic candidates for modes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _STABLE_FREQUENCY, _STABLE_DAMPING, _STABLE_PARTICIPATION = 0.002, 0.05, 0.98
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A pole that recurs: its value in Hz (rad/s over 2 pi), its participation (m,) and in how many orders it was found."""
+    """Recurring pole: its value in Hz (rad/s over 2 pi), its participation (m,) and its number of orders."""
 
     pole: complex
     participation: Array
@@ -28,9 +28,10 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Stabilisation:
-    """The stabilisation diagram: of every pole its order, frequency in Hz, damping ratio and how far it agrees with the order below.
+    """Stabilisation diagram: for every pole its order, frequency in Hz, damping ratio and stability relative to the order below.
 
-    `stable` counts: 0 a new pole, 1 its frequency is stable (0.2 %), 2 its damping too (5 %), 3 its participation too (MAC of 0.98).
+    `stable` is 0 for a new pole, 1 with stable frequency (0.2 %), 2 with stable damping too (5 %), 3 with stable participation too (MAC of
+    0.98).
     """
 
     orders: Array
@@ -48,11 +49,11 @@ class _Track:
 
 
 def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Stabilisation, tuple[Candidate, ...]]:
-    """The diagram of poles of rising order, and the candidates: poles that recur in two fifths of the orders or more.
+    """Build the diagram of poles of increasing order, and the candidates: poles in two fifths of the orders or more.
 
-    A pole continues the nearest track of the orders below, nearest by distance in the complex plane and by participation; each track takes
-    one pole an order, so that close pairs remain two tracks. The participations of a repeated pair are any two of their plane, others in
-    every order: candidates are taken from one order as far as they are all in it.
+    A pole continues the nearest track of the orders below, by distance in the complex plane and by participation. Each track takes one pole
+    per order, so that close pairs remain two tracks. The participations of a repeated pair are any two in their plane, different in every
+    order: candidates come from a common order where possible.
 
     >>> one = [Poles(order, np.array([-0.1 + 10j]), np.ones((1, 1))) for order in range(1, 6)]
     >>> diagram, candidates = stabilisation(tuple(one), 0.1)
@@ -80,9 +81,9 @@ def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Sta
 
 
 def merge(sweeps: Iterable[tuple[Candidate, ...]]) -> tuple[Candidate, ...]:
-    """Candidates of overlapping bands without doubles, by rising frequency; of doubles the one found in more orders stays.
+    """Merge candidates of overlapping bands by ascending frequency; of duplicates the one with more orders is kept.
 
-    Candidates of one band are never doubles of one another: a pole of each order belongs to one of them only.
+    Candidates of one band are never duplicates: a pole of each order belongs to only one.
 
     >>> twice = [(Candidate(-1 + 100j, np.array([1.0]), 3),), (Candidate(-1.1 + 100.1j, np.array([1.0]), 5),)]
     >>> [candidate.orders for candidate in merge(twice)]
@@ -97,7 +98,7 @@ def merge(sweeps: Iterable[tuple[Candidate, ...]]) -> tuple[Candidate, ...]:
 
 
 def vector_assurance(first: Array, second: Array) -> float:
-    """|a^H b|^2 / (a^H a b^H b) of two complex vectors.
+    """Compute |a^H b|^2 / (a^H a b^H b) of two complex vectors.
 
     >>> vector_assurance(np.array([1.0, 1.0j]), np.array([2.0, 2.0j]))
     1.0
@@ -145,7 +146,7 @@ def _grow(track: _Track, value: complex, participation: Array, order: int) -> No
 
 
 def _candidate(track: _Track, common: int) -> Candidate:
-    """The member of the common order; without one, that nearest to the median of the upper half of the orders."""
+    """Member of the common order; without one, that nearest to the median of the upper half of the orders."""
     if common in track.orders:
         index = track.orders.index(common)
     else:

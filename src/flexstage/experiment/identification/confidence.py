@@ -1,4 +1,4 @@
-"""What the data say of an estimate: standard deviations from Fisher's information, and whether a mode is there at all."""
+"""Confidence of an estimate: standard deviations from Fisher information, and tests for the presence of a mode."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ NORMAL_95 = 1.959964
 _DOUBTFUL = 50.0
 _LINES = 3
 _NEAR, _NEAREST, _BY_CHANCE = (1.5, 4.0), 2.0, 1e-3
-"""Near a mode: within so many half-widths, at least so many lines for each that its parameters take; how often chance may pass."""
+"""Neighbourhood of a mode: half-widths, minimum lines per parameter, and probability of a false alarm."""
 SAME = 0.1
-"""Share of the power by which inputs must differ from transients to be told from them."""
+"""Power difference, relative, by which inputs are distinguishable from transients."""
 
 
 @dataclass(frozen=True, eq=False)
 class Deviations:
     """Standard deviations of modes: `frequencies` (k,) in Hz, `damping` (k,) of the ratios.
 
-    `shapes` (p, k) are those of each part, real and imaginary, of shapes whose largest component is 1.
+    `shapes` (p, k) apply to each part, real and imaginary, of shapes with largest component 1.
     """
 
     frequencies: Array
@@ -41,11 +41,11 @@ class Deviations:
 
 
 def misfits(band: Band, modal: Modal) -> Array:
-    """How many times larger (k,) than the noise of the band is what the fit leaves near each mode; 1 where chance would leave as much.
+    """Compute the residual of the fit near each mode (k,) relative to the band's noise; 1 if not significant.
 
-    Noise alone leaves as much near a mode as elsewhere, less what the mode's own parameters take; outputs whose noise is coherent count
-    once. More than once in 1000 by chance is systematic: a mode that is none of linear, viscous and alone. Looked at is what lies within
-    1.5 half-widths, where a mode that wanders, or that other forces shake, leaves most, and what lies within 4.
+    Pure noise leaves the same residual everywhere, less the mode's degrees of freedom; outputs with coherent noise count once. A
+    probability below 1/1000 is systematic: a mode that is not linear, viscous and isolated. Tested are 1.5 half-widths, where a varying or
+    otherwise excited mode has the largest residual, and 4.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit, noise
@@ -79,7 +79,7 @@ def misfits(band: Band, modal: Modal) -> Array:
 
 
 def _shared_noise(power: Array, lines: float) -> Array:
-    """Squared coherence (p, p) of what is left of the outputs, freed of its bias by the number of lines (Bendat & Piersol, ch. 9)."""
+    """Squared coherence (p, p) of the output residuals, corrected for the bias by the number of lines (Bendat & Piersol, ch. 9)."""
     size = np.sqrt(np.maximum(np.real(np.diagonal(power)), 1e-300))
     by_chance = 1.0 / max(lines, 2.0)
     found = (np.minimum(np.abs(power) / np.outer(size, size), 1.0) ** 2 - by_chance) / (1.0 - by_chance)
@@ -87,12 +87,12 @@ def _shared_noise(power: Array, lines: float) -> Array:
 
 
 def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None) -> Deviations:
-    """Standard deviations of a fit by the Cramer-Rao bound, the inverse of Fisher's information; variances times `inflation`.
+    """Compute standard deviations of a fit by the Cramer-Rao bound, the inverse of Fisher information; variances times `inflation`.
 
-    With the gradient's covariance `scatter`, S, they are those of I^-1 S I^-1: right for noise correlated between outputs too (White 1982).
+    With the gradient's covariance `scatter`, S, they follow from I^-1 S I^-1, valid also for noise correlated between outputs (White 1982).
 
-    Parameters are complex and analytic: the covariance of real and of imaginary parts is half the inverse. The scale shared between a shape
-    and its participation is not determined and is taken out by holding the largest participation.
+    Parameters are complex and analytic: the covariance of real and of imaginary parts is half the inverse. The scale common to a shape and
+    its participation is undetermined; it is removed by fixing the largest participation.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit
@@ -115,11 +115,11 @@ def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None)
 
 
 def significance(band: Band, found: Fit, limit: float) -> Array:
-    """How strongly (k,) the data ask for each mode, as chi-square with `freedoms` degrees where that mode is not in the stage.
+    """Compute the test statistic (k,) of each mode, chi-squared with `freedoms` degrees if the mode is absent.
 
-    Wald's statistic, 2 phi^H C^-1 phi of the mode's shape; where it is below fifty times `limit`, twice the fall of the log-likelihood when
-    the mode is left out and the others are fitted anew (Wilks 1938), times the share of Wald's statistic that noise correlated between
-    outputs leaves (White 1982).
+    Wald's statistic, 2 phi^H C^-1 phi of the mode's shape. Below fifty times `limit` it is replaced by twice the decrease of the
+    log-likelihood when the mode is removed and the others are fitted again (Wilks 1938), times the correction of Wald's statistic for noise
+    correlated between outputs (White 1982).
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -143,12 +143,12 @@ def significance(band: Band, found: Fit, limit: float) -> Array:
 
 
 def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
-    """How strongly (k,) the data ask for each mode to be driven at all, over what noise would reach once in `once_in`.
+    """Compute the test statistic (k,) of each mode's excitation, relative to the level that noise reaches once in `once_in`.
 
-    Wald's statistic of its participation in the inputs, held the largest component of its shape, and the transients' participation; where
-    the inputs are near the mode what transients are, a blow at a record's begin, the transients count as inputs. Modes that only together
-    explain anything fall through: each is free to take the other's part. So are both modes of a pair, which is why responses, where there
-    is nothing but inputs, are not asked: infinite.
+    Wald's statistic of its participation in the inputs, with the largest component of its shape fixed, and the transients' participation.
+    If the inputs equal transients near the mode, as for an impact at the start of a record, the transients count as inputs. Modes that are
+    significant only jointly fail: each can replace the other. So do both modes of a pair; responses without transients are therefore not
+    tested: infinite.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit
@@ -174,7 +174,7 @@ def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
 
 
 def _is_blow(band: Band, pole: complex, inputs: int) -> bool:
-    """Whether the inputs near a pole are the same as transients, to a tenth of their power."""
+    """Whether the inputs near a pole equal transients, to a tenth of their power."""
     cells = band.cells
     if inputs == cells.width:
         return False
@@ -190,7 +190,7 @@ def _is_blow(band: Band, pole: complex, inputs: int) -> bool:
 
 
 def freedoms(modal: Modal) -> int:
-    """Real parameters a mode adds: pole, shape and participation but for a common factor.
+    """Count the real parameters of a mode: pole, shape and participation, less a common factor.
 
     >>> freedoms(Modal(np.zeros(1), np.zeros((1, 6)), np.zeros((6, 1))))
     24
@@ -199,14 +199,14 @@ def freedoms(modal: Modal) -> int:
 
 
 def _covariance(found: Fit, scatter: Array | None = None) -> Array:
-    """Inverse of the information with each mode's largest participation held; rows and columns held are nought."""
+    """Inverse of the information with each mode's largest participation fixed; its rows and columns are zero."""
     count, total = found.modal.participation.shape
     largest = np.argmax(np.abs(found.modal.participation), axis=1)
     return _inverse(found.information, count + np.arange(count) * total + largest, scatter)
 
 
 def _wald(values: Array, covariance: Array) -> float:
-    """Wald's statistic of values against zero; zero where the information does not bound one of them."""
+    """Wald's statistic of values against zero; zero if one of them is undetermined."""
     variances = np.real(np.diagonal(covariance))
     if np.any(variances <= 0.0):
         return 0.0
@@ -228,7 +228,7 @@ def _inverse(information: Array, held: Array, scatter: Array | None = None) -> A
 
 
 def _shape_deviation(shape: Array, covariance: Array) -> Array:
-    """Deviations of shape / (its largest component), by the first-order rule."""
+    """Deviations of shape / (its largest component), to first order."""
     largest = int(np.argmax(np.abs(shape)))
     turn = np.eye(len(shape), dtype=complex) / shape[largest]
     turn[:, largest] -= shape / shape[largest] ** 2

@@ -145,7 +145,7 @@ def _problems(times: Array, typical: float, jumps: int, where: str) -> Iterator[
     if count < 2:
         yield Finding(where, f"it has {count} samples", "Give a record of at least two samples")
     elif broken:
-        yield Finding(where, f"{broken} of {count} times are not numbers", "Mend them, or state the rate")
+        yield Finding(where, f"{broken} of {count} times are not numbers", "Correct them, or state the rate")
     elif not typical > 0.0:
         what = f"its times do not rise: the usual step is {typical:.4g} s, from {times[0]:.6g} s to {times[-1]:.6g} s"
         yield Finding(where, what, "Write times with enough digits to tell samples apart, or state the rate")

@@ -311,7 +311,7 @@ def _name_faults(
         for channel in channels if expected is not None else ():
             if channel.name not in known:
                 advice = f'{suggest_nearest(channel.name, known)}; rename it, or accept "names" to leave it out'
-                yield _fault(FaultTolerance.NAMES, where, channel.name, f"the stage has no {kind} of this name", advice)
+                yield _fault(FaultTolerance.NAMES, where, channel.name, f"unknown {kind}", advice)
             elif unit_problem(channel.unit) is None and not same_dimension(channel.unit, known[channel.name]):
                 what = f"its unit is {channel.unit}, that of the stage's {kind} {known[channel.name]}"
                 yield _fault(

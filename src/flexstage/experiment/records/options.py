@@ -167,7 +167,7 @@ def _unknown_names(names: list[str], options: Options, where: str) -> list[Findi
     missing = [
         (kind, pattern) for kind, patterns in asked.items() for pattern in patterns if not any(matches(name, [pattern]) for name in names)
     ]
-    return [Finding(f"{where}: {kind} {pattern}", "no channel is called so", suggest_nearest(pattern, names)) for kind, pattern in missing]
+    return [Finding(f"{where}: {kind} {pattern}", "unknown channel", suggest_nearest(pattern, names)) for kind, pattern in missing]
 
 
 def _named_twice(names: list[str], options: Options, where: str) -> list[Finding]:

@@ -163,10 +163,7 @@ class Record(InNotebook, CheckedFields):
         """Numbers of the named channels; raises `DesignError` for every name that is none's."""
         chosen, known = tuple(names), self.names
         where = self.where
-        require(
-            Finding(f"{where}: {name}", "the record has no channel of this name", suggest_nearest(name, known))
-            for name in set(chosen) - set(known)
-        )
+        require(Finding(f"{where}: {name}", "unknown channel", suggest_nearest(name, known)) for name in set(chosen) - set(known))
         return tuple(known.index(name) for name in chosen)
 
     def select(self, names: Iterable[str]) -> Record:

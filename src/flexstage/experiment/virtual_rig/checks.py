@@ -32,7 +32,7 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
     >>> from flexstage.models.mapped import mapped
     >>> stage = double_triangle()
     >>> [str(each) for each in setup_findings(stage, mapped(stage), RigSetup(seconds=0.0))]
-    ['seconds: found 0 s, which is not greater than 0 s. Write for example "0.1 s".']
+    ['seconds: must be greater than 0 s (got 0 s). Use e.g. "0.1 s".']
     """
     if model.stiffness_matrix.ndim > 2:
         yield Finding("stage", "it is a batch of designs", "Test one design at a time")
@@ -73,7 +73,7 @@ def _channel_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup)
         yield Finding("actuators", "none is to be driven", f"Name at least one: {', '.join(known)}")
     for name in dict.fromkeys(asked or ()):
         if name not in known:
-            yield Finding(f"actuator {name}", "the stage has no actuator of this name", suggest_nearest(name, known))
+            yield Finding(f"actuator {name}", "unknown actuator", suggest_nearest(name, known))
         elif asked is not None and asked.count(name) > 1:
             yield Finding(f"actuator {name}", f"it is named {asked.count(name)} times", "Name it once")
     if not expand(mechanism).gauges:

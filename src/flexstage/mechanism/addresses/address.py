@@ -1,15 +1,14 @@
 """Addresses of values: one scheme for files, `--set`, findings, studies and sensitivities.
 
-    parts.neck.thickness                     a shared part
-    bodies.platform.mass                     the tree of the description, name by name
-    units.horizontal.links.front.at.x        a link's placement in all copies of its unit; `horizontal/front.at.x` for short
-    horizontal/front.thickness               the part of one link of a unit, in all copies: an override, kept in `overrides`
-    B2/front.thickness                       in one copy: an override that goes before that of all copies
-    links.strut.thickness                    the part of a link of the stage itself: an override too
-    numbers.arm                              a named number: what formulas work out of it changes with it
-    B2.shift.x, S1.rotation.z                where a copy of a unit, or a gauge, stands against its pattern: an override, nought if not made
+    parts.neck.thickness                     a shared part bodies.platform.mass                     the tree of the description, name by
+    name units.horizontal.links.front.at.x        a link's placement in all instances of its unit; short: `horizontal/front.at.x`
+    horizontal/front.thickness               the part of one link of a unit, in all instances: an override, in `overrides`
+    B2/front.thickness                       in one instance: an override that precedes that of all instances links.strut.thickness
+    the part of a link of the stage: also an override numbers.arm                              a named number: results of formulas change
+    with it B2.shift.x, S1.rotation.z                misalignment of a unit instance or a gauge relative to its pattern: an override, zero
+    by default
 
-Levels may be skipped where that is unique: `horizontal/front.radius` for `horizontal/front.profile.radius`, `neck.thickness` for
+Levels may be omitted if the result is unique: `horizontal/front.radius` for `horizontal/front.profile.radius`, `neck.thickness` for
 `parts.neck.thickness`. An ambiguous or misspelt address is an error that lists the candidates.
 """
 
@@ -42,7 +41,7 @@ _MOST_NAMES = 8
 
 
 def get(mechanism: Mechanism, address: str) -> Any:
-    """Return the value at an address, overrides applied.
+    """Return the value at an address, with overrides.
 
     >>> from flexstage.parts.rod import Rod
     >>> get(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "parts.wire.length")
@@ -52,12 +51,12 @@ def get(mechanism: Mechanism, address: str) -> Any:
 
 
 def value_at(mechanism: Mechanism, place: Place) -> Any:
-    """Return the value at a place, overrides applied."""
+    """Return the value at an address, with overrides."""
     return follow(_holder(mechanism, place), place.path)
 
 
 def _holder(mechanism: Mechanism, place: Place) -> Any:
-    """What the path of a place is followed in, overrides applied."""
+    """Root of the path of an address, with overrides."""
     if place.misaligned:
         return misalignment_of(mechanism.overrides, place.owners[0])
     if not place.owners:
@@ -67,10 +66,10 @@ def _holder(mechanism: Mechanism, place: Place) -> Any:
 
 
 def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
-    """Return the mechanism with another value (SI number, array, or name) at an address; a tag of the old value is dropped.
+    """Return the mechanism with another value (SI number, array, or name) at an address, without the tag of the old value.
 
-    An override is written to `overrides`. An entry of a 6x6 is written with its mirror image. What formulas work out of a named
-    number is worked out anew; of a value that has a formula the formula is dropped.
+    An override is written to `overrides`, an entry of a 6x6 with its symmetric entry. Results of formulas of a named number are recomputed;
+    the formula of a replaced value is removed.
 
     >>> from flexstage.parts.rod import Rod
     >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)})
@@ -94,9 +93,9 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
 
 
 def set_text(mechanism: Mechanism, address: str, text: str) -> Mechanism:
-    """Return the mechanism with what a text means at an address: a value, a relative change of a number (`+10%`), or a formula.
+    """Return the mechanism with a text applied at an address: a value, a relative change of a number (`+10%`), or a formula.
 
-    A percentage with a sign is a relative change of every number, of ratios too; without one it is the value of a ratio.
+    A percentage with a sign is a relative change of any number. Without a sign it is the value of a ratio.
 
     >>> from flexstage.parts.rod import Rod
     >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}, numbers={"arm": NamedNumber(0.026, "mm")})
@@ -121,12 +120,12 @@ _SHARE = re.compile(r"([+-]\d+\.?\d*|[+-]\.\d+)\s*%")
 
 
 def _share_of(mechanism: Mechanism, where: str, factor: float) -> Number:
-    """What a number becomes by a factor."""
+    """A number scaled by a factor."""
     value = get(mechanism, where)
     if value is None:
-        raise refuse(where, "the description does not state it, and so no share of it", "Give it a value with its unit")
+        raise refuse(where, "not specified, and so no relative change", "Use a value with its unit")
     if np.all(np.equal(value, 0.0)):
-        raise refuse(where, "it is 0, of which every share is 0", "Give it a value with its unit")
+        raise refuse(where, "a relative change of 0 is 0", "Use a value with its unit")
     return value * factor  # type: ignore[no-any-return]
 
 
@@ -136,8 +135,8 @@ def _set_formula(mechanism: Mechanism, place: Place, where: str, text: str) -> M
         number for number in parse_expression(text).names if f"{NUMBERS}.{number}" in (place.address, *dependents(mechanism, place.number))
     }
     if place.number and circle:
-        what = f'"{text}" is worked out of {", ".join(sorted(circle))}, and so of {place.number} itself'
-        raise refuse(where, what, "Give it a number, or a formula of others")
+        what = f'circular formula: "{text}" depends on {", ".join(sorted(circle))}, and so on {place.number}'
+        raise refuse(where, what, "Use a number, or a formula without it")
     changed = set_value(mechanism, where, value)
     if place.number:
         own_unit = NamedNumber(value, shown_unit(amount_of(mechanism.numbers[place.number])))
@@ -147,13 +146,13 @@ def _set_formula(mechanism: Mechanism, place: Place, where: str, text: str) -> M
 
 
 def _without_formulas(mechanism: Mechanism, address: str) -> Mechanism:
-    """The mechanism without the formulas of a value and of what it holds."""
+    """The mechanism without the formulas of a value and of its members."""
     kept = {key: text for key, text in mechanism.formulas.items() if key != address and not key.startswith(f"{address}.")}
     return mechanism if len(kept) == len(mechanism.formulas) else replace(mechanism, formulas=Table(kept))
 
 
 def _work_out(mechanism: Mechanism, address: str) -> Mechanism:
-    """The mechanism with the value that the formula at an address gives."""
+    """The mechanism with the value of the formula at an address."""
     value = formula_value(mechanism.formulas[address], quantity_of(mechanism, address), scope_of(mechanism), address)
     return _write(mechanism, locate(mechanism, address), value)
 
@@ -168,23 +167,23 @@ def assign(mechanism: Mechanism, assignment: str) -> Mechanism:
     """
     address, equals, text = assignment.partition("=")
     if not equals:
-        raise refuse(f'"{assignment}"', "an assignment needs an equals sign", 'Write for example "parts.neck.thickness=1.4 mm"')
+        raise refuse(f'"{assignment}"', "an assignment needs an equals sign", 'Use e.g. "parts.neck.thickness=1.4 mm"')
     return set_text(mechanism, address, text)
 
 
 def _several(mechanism: Mechanism, place: Place, where: str) -> DesignError:
-    """That an assignment to what holds several values says which it means."""
+    """Error for an assignment to an object with several values."""
     inner = [name for name, _, _ in place.node.numbers(get(mechanism, where))]
     if not inner:
-        return refuse(where, "it holds no number that can be set", "Set it in the design file")
+        return refuse(where, "it has no number that can be set", "Set it in the design file")
     shown = ", ".join(inner[:_MOST_NAMES]) + (" and more" if len(inner) > _MOST_NAMES else "")
-    return refuse(where, f"it is no single value but holds {shown}", f'Set one, for example "{where}.{inner[0]}=..."')
+    return refuse(where, f"it has several values: {shown}", f'Set one of them, e.g. "{where}.{inner[0]}=..."')
 
 
 def addresses(mechanism: Mechanism) -> tuple[str, ...]:
-    """Return the address of every number of a description: shared parts, bodies, placements, and the overrides that are made.
+    """Return the address of every number of a description: shared parts, bodies, placements, and existing overrides.
 
-    Directions and absent values are left out.
+    Without directions and absent values.
 
     >>> from flexstage.parts.rod import Rod
     >>> addresses(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}))[:2]
@@ -208,15 +207,15 @@ def quantity_of(mechanism: Mechanism, address: str) -> Quantity:
 
 
 def quantity_at(place: Place, address: str) -> Quantity:
-    """Return the quantity of what is at a place. Raises `DesignError` where that is no number."""
+    """Return the quantity of a number. Raises `DesignError` for anything else."""
     quantity = place.node.measures
     if quantity is None:
-        raise refuse(address, "this is not a number", "Address one of its numbers")
+        raise refuse(address, "not a number", "Use the address of one of its numbers")
     return quantity
 
 
 def tag_of(mechanism: Mechanism, address: str) -> str:
-    """Return the tag (`stated paper 2.2`) of the value at an address, of the vector it belongs to, or of the shared part it comes from.
+    """Return the tag (`stated paper 2.2`) of the value at an address, of its vector, or of its shared part.
 
     Untagged values are `assumed`.
 
@@ -244,7 +243,7 @@ def _link_and_part(mechanism: Mechanism, place: Place) -> tuple[Link, Part]:
     try:
         return apply_overrides(mechanism, link, place.owners)
     except KeyError as error:
-        raise refuse(f"override of {place.owners[-1]}", f"there is no {error}", "Check the description") from None
+        raise refuse(f"override of {place.owners[-1]}", f"unknown name {error}", "Check the description") from None
 
 
 def _write(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
@@ -263,10 +262,10 @@ def _write(mechanism: Mechanism, place: Place, value: Any) -> Mechanism:
 
 
 def _overrides(mechanism: Mechanism, owner: str) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """The overrides made of that owner: key and full path."""
+    """Overrides of an owner: key and full path."""
     for key in mechanism.overrides:
         if not f"links.{key}".startswith((f"{owner}.", f"links.{owner}.")):
-            continue  # found without looking for the place: a batch of copies has a hundred overrides
+            continue  # avoids locating each: a batch has a hundred overrides
         place = locate(mechanism, key)
         if place.owners[-1:] == (owner,):
             yield key, place.path
@@ -277,7 +276,7 @@ def _canonical_tags(mechanism: Mechanism) -> dict[str, str]:
 
 
 def _origin(mechanism: Mechanism, place: Place) -> str:
-    """The address that a value comes from: the override that is made, or the shared part or drawn link."""
+    """Address of the source of a value: its override, or the shared part or drawn link."""
     for owner in reversed(place.owners):
         for _, path in _overrides(mechanism, owner):
             if path == place.path[: len(path)] or path[: len(place.path)] == place.path:

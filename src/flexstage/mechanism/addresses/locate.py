@@ -1,4 +1,4 @@
-"""Where an address points: the grammar of addresses, with skipped levels filled in and mistakes told with their candidates."""
+"""Resolution of addresses: grammar, completion of omitted levels, and errors with candidates."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _TOPOLOGY = ("joins", "part")
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Where an address points.
+    """Target of an address.
 
-    `path` is the full path from the description, and `owners` is empty; or an override is meant: `owners` are those whose overrides count,
-    the last one before the first (`horizontal/front`, `B2/front`), and `path` starts at the link (`at.x`, `in_link`) or at its part; or
-    `owners` is a copy or a gauge, and `path` starts at its misalignment (`shift.x`).
+    `path` is the full path from the description, with empty `owners`. For an override, `owners` are the units and instances with overrides,
+    by rising precedence (`horizontal/front`, `B2/front`). Then `path` begins at the link (`at.x`, `in_link`) or its part. For a
+    misalignment (`shift.x`), `owners` is an instance or a gauge.
     """
 
     owners: tuple[str, ...]
@@ -37,24 +37,24 @@ class Place:
 
     @property
     def misaligned(self) -> bool:
-        """Whether it says where a copy or a gauge stands."""
+        """Whether it is a misalignment of an instance or a gauge."""
         return bool(self.owners) and not self.in_link and self.path[:1] in [(name,) for name in MISALIGNED]
 
     @property
     def address(self) -> str:
-        """The address in full; the part within a restricted part is not named, `part` being the link's own."""
+        """Full address, without the name of the part within a restricted part."""
         inside = bool(self.owners) and not self.in_link and self.path[:1] == ("part",)
         path = self.path[:2] if self.number else self.path
         return ".".join((*self.owners[-1:], *path[inside:]))
 
     @property
     def number(self) -> str:
-        """The name of the number that it is; empty if it is anything else."""
+        """Name of the named number; else empty."""
         return self.path[1] if not self.owners and self.path[:1] == (NUMBERS,) and len(self.path) > 1 else ""
 
 
 def locate(mechanism: Mechanism, address: str) -> Place:
-    """Return where an address points; raises `DesignError` with the candidates if that is nowhere or ambiguous.
+    """Resolve an address; raises `DesignError` with the candidates if it is unknown or ambiguous.
 
     >>> from flexstage.parts.rod import Rod
     >>> locate(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "wire.length").address
@@ -65,33 +65,33 @@ def locate(mechanism: Mechanism, address: str) -> Place:
     if slash and not _is_whole(mechanism, steps[0]):
         return _in_unit(mechanism, address, owner.strip(), (link.strip(), *steps[1:]))
     if (first := new_name(steps[0], _DOCUMENT) or steps[0]) in _DOCUMENT:
-        raise refuse(address, f'"{first}" holds no values of the stage', "Address the value itself")
+        raise refuse(address, f'"{first}" has no values of the stage', "Use the address of the value")
     if _stands(mechanism, address, steps):
         return _descend(Misalignment(), address, Place(steps[:1], (), RecordNode(Misalignment)), steps[1:])
     return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), steps)
 
 
 def _is_whole(mechanism: Mechanism, name: str) -> bool:
-    """Whether something of a carried stage is called so (`fine/B1`), which is then no link of a unit or copy."""
+    """Whether a name (`fine/B1`) is of a mounted stage, and so not a link of a unit or instance."""
     return name in (*unit_of_copy(mechanism), *(each for key in mechanism.gauges for each in copy_names(key))) or bool(
         completions(mechanism, name)
     )
 
 
 def _stands(mechanism: Mechanism, address: str, steps: tuple[str, ...]) -> bool:
-    """Whether the steps say where a copy or a gauge stands."""
+    """Whether the steps are a misalignment of an instance or a gauge."""
     if len(steps) < 2 or (steps[1] not in MISALIGNED and has_member(mechanism, steps[0])):
         return False
     owners = [*unit_of_copy(mechanism), *(name for key in posed(mechanism.gauges) for name in copy_names(key))]
     if steps[0] not in owners or (steps[1] not in MISALIGNED and completions(mechanism, steps[0])):
         return False
     if owners.count(steps[0]) > 1:
-        raise refuse(address, f'"{steps[0]}" is a copy of a unit and a gauge', "Rename one of them")
+        raise refuse(address, f'"{steps[0]}" is both an instance of a unit and a gauge', "Rename one of them")
     return True
 
 
 def link_path(mechanism: Mechanism, owner: str) -> tuple[str, ...]:
-    """The path of the link that an owner of overrides is: one of a unit (`unit/link`), or of the stage.
+    """Return the path of the link of an owner of overrides: a link of a unit (`unit/link`), or of the stage.
 
     >>> link_path(Mechanism(""), "strut")
     ('links', 'strut')
@@ -104,13 +104,13 @@ def _in_unit(mechanism: Mechanism, address: str, owner: str, steps: tuple[str, .
     copies = unit_of_copy(mechanism)
     name = owner if owner in mechanism.units else copies.get(owner, "")
     if name not in mechanism.units:
-        raise refuse(address, f'"{owner}" is no unit and no copy of one', suggest_nearest(owner, [*mechanism.units, *copies]))
+        raise refuse(address, f'unknown unit or instance "{owner}"', suggest_nearest(owner, [*mechanism.units, *copies]))
     unit = drawn_units(mechanism)[name]
     if owner == name and steps[0] in unit.bodies:
         home = next(each for each in ancestry(mechanism, name) if steps[0] in mechanism.units[each].bodies)
         if home != name:
-            advice = f"Address {home}/{steps[0]}, or draw the body in units.{name}.bodies"
-            raise refuse(address, f'unit {name} takes its body "{steps[0]}" from {home}', advice)
+            advice = f"Use {home}/{steps[0]}, or draw the body in units.{name}.bodies"
+            raise refuse(address, f'unit {name} inherits its body "{steps[0]}" from {home}', advice)
         return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), ("units", name, "bodies", *steps))
     if steps[0] not in unit.links:
         raise refuse(address, f'unit {name} has no link "{steps[0]}"', suggest_nearest(steps[0], unit.links))
@@ -121,29 +121,31 @@ def _in_unit(mechanism: Mechanism, address: str, owner: str, steps: tuple[str, .
 
 
 def _in_link(mechanism: Mechanism, address: str, tree: tuple[str, ...], owners: tuple[str, ...], steps: tuple[str, ...]) -> Place:
-    """A place in the link at path `tree`: one of its own fields, or an override of its part."""
+    """Target in the link at path `tree`: a field, or an override of its part."""
     link = follow(mechanism, tree)
     if not steps or steps[0] in _TOPOLOGY:
-        raise refuse(address, "what a link joins and its part are no overrides", "Address a value of the link or of its part")
+        raise refuse(
+            address, "the bodies and the part of a link cannot be overridden", "Use the address of a value of the link or of its part"
+        )
     if has_member(link, steps[0]):
         departed = len(owners) > 1 or any(key.startswith(f"{drawn}.{steps[0]}") for drawn in owners for key in mechanism.overrides)
         start = Place(owners, (), RecordNode(Link), in_link=True) if departed else Place((), tree, RecordNode(Link))
         return _descend(link, address, start, steps)
     if link.part not in mechanism.parts:
-        raise refuse(address, f'there is no part "{link.part}"', suggest_nearest(link.part, mechanism.parts))
+        raise refuse(address, f'unknown part "{link.part}"', suggest_nearest(link.part, mechanism.parts))
     parts = node_of(Mechanism).fields["parts"].node
     start = Place(owners, (), parts.child(mechanism.parts, link.part))
     return _descend(mechanism.parts[link.part], address, start, steps)
 
 
 def _descend(value: Any, address: str, start: Place, steps: tuple[str, ...]) -> Place:
-    """Follow the steps from a value that stands at `start`."""
+    """Follow the steps from the value at `start`."""
     mechanism, path, node = value, start.path, start.node
     for number, step in enumerate(steps):
         if isinstance(value, Link) and not has_member(value, step):
             return _in_link(mechanism, address, path, _owners(path), steps[number:])
         if isinstance(value, NamedNumber):
-            raise refuse(address, f'there is no "{step}": {steps[number - 1]} is one number', "Address the number itself")
+            raise refuse(address, f'unknown name "{step}": {steps[number - 1]} is one number', "Address the number itself")
         for name in _complete(value, address, node, step, last=number == len(steps) - 1):
             node, value = node.child(value, name), member(value, name)
             path += (name,)
@@ -153,12 +155,12 @@ def _descend(value: Any, address: str, start: Place, steps: tuple[str, ...]) -> 
 
 
 def _owners(tree: tuple[str, ...]) -> tuple[str, ...]:
-    """whose overrides count for a link drawn at that path (those of a link of the stage may be written short)."""
+    """Owners of overrides for a link drawn at a path (a link of the stage may be abbreviated)."""
     return (tree[1], f"links.{tree[1]}") if tree[0] == "links" else (f"{tree[1]}/{tree[3]}",)
 
 
 def _complete(value: Any, address: str, node: Node, step: str, *, last: bool) -> tuple[str, ...]:
-    """The names that a step stands for; a named number holds nothing, and so is meant by a last step alone."""
+    """Candidate names of a step; a named number is valid only as the last step."""
     if isinstance(value, tuple):
         return (_component(value, address, node, step),)
     step = node.field_called(value, step)
@@ -166,19 +168,19 @@ def _complete(value: Any, address: str, node: Node, step: str, *, last: bool) ->
     if len(found) == 1:
         return found[0]
     if found:
-        raise refuse(address, f'"{step}" may be {" or ".join(".".join(path) for path in found)}', "Write the one that is meant in full")
+        raise refuse(address, f'ambiguous name "{step}" (got {" or ".join(".".join(path) for path in found)})', "Use the full address")
     if value is None:
-        raise refuse(address, f'there is no "{step}": what holds it is not given', "Give it first")
-    raise refuse(address, f'there is no "{step}"', suggest_nearest(step, _names(value)))
+        raise refuse(address, f'unknown name "{step}": what holds it is not given', "Give it first")
+    raise refuse(address, f'unknown name "{step}"', suggest_nearest(step, _names(value)))
 
 
 def _component(value: Any, address: str, node: Node, step: str) -> str:
     if isinstance(node, NumbersNode):
         if step.isdecimal() and has_member(value, step):
             return step
-        raise refuse(address, f'there is no number "{step}"', f"They are counted from 0 to {len(value) - 1}")
+        raise refuse(address, f'unknown number "{step}"', f"They are counted from 0 to {len(value) - 1}")
     if not node.components or not has_member(value, step):
-        raise refuse(address, f'there is no component "{step}"', suggest_nearest(step, COMPONENTS[: len(value)]))
+        raise refuse(address, f'unknown component "{step}"', suggest_nearest(step, COMPONENTS[: len(value)]))
     return COMPONENTS[int(step)] if step in "012345" else step
 
 
@@ -191,7 +193,7 @@ def _names(value: Any) -> list[str]:
 
 
 def canonical(mechanism: Mechanism, address: str) -> str:
-    """The address in full, or as it is if it points nowhere.
+    """Return the full address, or the same text if it is unknown.
 
     >>> canonical(Mechanism(""), "nowhere")
     'nowhere'

@@ -14,16 +14,16 @@ _INDEX = {"x": 0, "y": 1, "z": 2, "rx": 3, "ry": 4, "rz": 5}
 
 
 def _index(name: str) -> int:
-    """The place of a component, by its name or its number; -1 for what is neither."""
+    """Index of a component by its name or number; -1 if unknown."""
     return int(name) if name.isdecimal() else _INDEX.get(name, -1)
 
 
 MATRICES = ("compliance", "matrix")
-"""Fields that hold a symmetric 6x6."""
+"""Fields of symmetric 6x6 matrices."""
 
 
 def with_mirror(path: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
-    """The path, and for an entry of a symmetric 6x6 also that of its mirror image.
+    """Return the path, and for an entry of a symmetric 6x6 also the path of its symmetric entry.
 
     >>> with_mirror(("compliance", "x", "rz"))
     (('compliance', 'x', 'rz'), ('compliance', 'rz', 'x'))
@@ -47,7 +47,7 @@ def member(value: Any, name: str) -> Any:
 
 
 def follow(value: Any, path: Iterable[str]) -> Any:
-    """Return what a value holds at a full path.
+    """Return the member of a value at a full path.
 
     >>> follow({"at": (1.0, 2.0)}, ("at", "y"))
     2.0
@@ -69,19 +69,19 @@ def has_member(value: Any, name: str) -> bool:
 
 
 def _field_name(value: Any, name: str) -> str:
-    """The field that a file calls so, where its word is one of Python's own (`from`)."""
+    """Field of a file key that is a Python keyword (`from`)."""
     return _field_names(type(value)).get(name, name)
 
 
 @cache
 def _field_names(kind: type) -> Mapping[str, str]:
-    """The fields of a class, by their names and by what a file calls them; none of what is no description."""
+    """Fields of a description class, by field name and file key; none for other classes."""
     own = fields(kind) if is_dataclass(kind) else ()
     return {field.name: field.name for field in own} | {field.metadata[KEY]: field.name for field in own if KEY in field.metadata}
 
 
 def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
-    """Return the paths to every member of that name: the value's own, else those inside its nested descriptions and its tables.
+    """Return the paths to every member of that name: of the value, else of its nested descriptions and tables.
 
     >>> completions((1.0, 2.0), "y")
     (('y',),)
@@ -99,9 +99,9 @@ def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
 
 
 def complete(value: Any, path: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the full path, filling in skipped levels (`radius` for `profile.radius`) where that is unique.
+    """Return the full path with omitted levels completed (`radius` for `profile.radius`) if unique.
 
-    Raises `KeyError` with the name that was not found or that has several places.
+    Raises `KeyError` with the unknown or ambiguous name.
 
     >>> from flexstage.parts.notch import Notch
     >>> from flexstage.parts.profile import Circular

@@ -54,15 +54,15 @@ from flexstage.spatial.frame import Frame, axes, identity, reflection, turn_z
 
 _Copy: TypeAlias = tuple[str, str, Frame]
 _EXAMPLES = {"at": '["1.54 mm", "1.54 mm", "1.54 mm"]', "along": '"x"'}
-NO_IMAGE = ("the mirror image of its part is not known", "Draw the other side in a unit of its own, or mirror a unit without it")
-"""What is said of a link in a mirrored copy whose part does not say what it looks like there, and advice."""
+NO_IMAGE = ("the mirror image of its part is unknown", "Draw the other side in a separate unit, or mirror a unit without it")
+"""Error and hint for a mirrored link whose part has no known mirror image."""
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedBody:
-    """A body of the expanded stage: its frame, its reference point (..., 3) and its own mass properties, in the stage's frame.
+    """Body of the expanded stage: its frame, reference point (..., 3) and mass properties, in the stage's frame.
 
-    `drawn` is the body with those lent to it; the mass is that of all of them, made of `materials`. `links` are those of the stage.
+    `drawn` is the body with the bodies lent to it; the mass is of all of them, with `materials`. `links` are those of the stage.
     """
 
     name: str
@@ -74,12 +74,12 @@ class PlacedBody:
 
     @cached_property
     def mass(self) -> MassProperties | None:
-        """Its own mass properties, with those of the bodies lent to it; `None` without any."""
+        """Mass properties of the body and of bodies lent to it; `None` without any."""
         return _mass(self.drawn, self.materials)
 
     @cached_property
     def reference(self) -> Array:
-        """As stated, else its centre of mass, else the middle of its joints (..., 3)."""
+        """Reference point (..., 3): as specified, else the centre of mass, else the centroid of its joints."""
         if self.body.reference is not None:
             return self.frame.point(stack(self.body.reference))
         if self.mass is not None:
@@ -89,16 +89,16 @@ class PlacedBody:
 
     @cached_property
     def solids(self) -> Mapping[str, PlacedSolid]:
-        """The outlines by address, those lent to it included (`platform.plate`, `B1/pad.lug`)."""
+        """Outlines by address, including lent ones (`platform.plate`, `B1/pad.lug`)."""
         return _placed_solids(self.drawn)
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedLink:
-    """A link of the expanded stage: bodies joined by name, the part with its overrides applied, the link frame in the stage's frame.
+    """Link of the expanded stage: joined bodies by name, part with overrides, link frame in the stage's frame.
 
-    `drawn` is its address in the description (`horizontal/front`), `name` that of this copy (`B1/front`). A link that stands for a member
-    of a compound (`B1/pivot.left`) is `of` the one that the description has (`B1/pivot`).
+    `drawn` is its address in the description (`horizontal/front`), `name` the address of this instance (`B1/front`). A member of a compound
+    (`B1/pivot.left`) is `of` the link in the description (`B1/pivot`).
     """
 
     name: str
@@ -112,17 +112,17 @@ class PlacedLink:
 
     @property
     def described(self) -> PlacedLink:
-        """The link as the description has it: itself, or the one whose part it is a member of."""
+        """Name of the link in the description: of itself, or of its compound."""
         return self.of or self
 
     def joints(self, body: str) -> tuple[Array, ...]:
-        """Where it is joined to a body (..., 3): its centre."""
+        """Joints to a body (..., 3): the link's centre."""
         return (self.frame.position,) if body in self.joins else ()
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedPort:
-    """A port of a superelement: the body it is joined to, and its frame in the stage's frame."""
+    """Port of a superelement: its body, and its frame in the stage's frame."""
 
     body: str
     frame: Frame
@@ -130,7 +130,7 @@ class PlacedPort:
 
 @dataclass(frozen=True, eq=False)
 class PlacedSuperelement:
-    """A superelement of the expanded stage: its part, the frame of the part's axes in the stage's, its ports in the order of its file."""
+    """Superelement of the expanded stage: its part, the part's frame in the stage's frame, its ports in file order."""
 
     name: str
     drawn: str
@@ -141,17 +141,17 @@ class PlacedSuperelement:
 
     @property
     def joins(self) -> tuple[str, ...]:
-        """The bodies it joins, a port each."""
+        """Bodies joined, one per port."""
         return tuple(port.body for port in self.ports.values())
 
     def joints(self, body: str) -> tuple[Array, ...]:
-        """Where it is joined to a body (..., 3): its ports there."""
+        """Joints to a body (..., 3): its ports there."""
         return tuple(port.frame.position for port in self.ports.values() if port.body == body)
 
     def welds(self) -> Iterator[PlacedLink]:
-        """Joints between its first port's body and that of each other port, rigid but for the freedoms that its link states of two.
+        """Joints between the bodies of the first and of each other port, rigid except for the free degrees of freedom of a link of two.
 
-        So does the ideal model take it. Ports on the body of the first one need none.
+        For the ideal model. Ports on the body of the first port have no joint.
         """
         first, *others = self.ports
         free = self.link.free or ()
@@ -165,13 +165,13 @@ class PlacedSuperelement:
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
-    """The expanded stage: every body that moves, every link and gauge by name. `actuators` maps input names to link names.
+    """Expanded stage: all moving bodies, links and gauges by name. `actuators` maps input names to link names.
 
     `circuits` maps the links of actuators to their input and their sign in it; `actuators` has the first link of each input.
 
-    `strokes` are those of them that impose a stroke, `thrusts` those that exert a force. Links of parts with ports are no `links` here but
-    `superelements`: they join any number of bodies. Bodies that are `of` another one are no bodies here: their solids are their owner's, or
-    among `ground`, the outlines of the ground.
+    `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in `superelements` instead of `links`:
+    they join any number of bodies. Bodies `of` another one are not listed: their solids belong to their owner, or to `ground`, the outlines
+    of the ground.
     """
 
     bodies: Mapping[str, PlacedBody]
@@ -186,12 +186,12 @@ class Assembly:
 
     @property
     def welded(self) -> Assembly:
-        """The stage with its superelements as rigid bodies that join those at their ports (see `PlacedSuperelement.welds`)."""
+        """The stage with rigid joints instead of superelements (see `PlacedSuperelement.welds`)."""
         welds = {weld.name: weld for item in self.superelements.values() for weld in item.welds()}
         return replace(self, links={**self.links, **welds}, superelements=Table({})) if self.superelements else self
 
     def actuator(self, name: str) -> Actuator:
-        """The part of an input, by the input's name; of a circuit all its parts in series."""
+        """Part of an input, by the input's name; of a circuit its parts in series."""
         part = actuator_of(self.links[self.actuators[name]].part)
         count = sum(owner == name for owner, _ in self.circuits.values())
         return part.in_series(count) if count > 1 and isinstance(part, ThrustActuator) else part
@@ -214,7 +214,7 @@ class Assembly:
 
 
 def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
-    """The frames of a pattern's copies in the stage's frame.
+    """Compute the frames of a pattern's instances in the stage's frame.
 
     >>> tangent = Polar(radius=0.1, first=0.0, facing=InstanceOrientation.TANGENT)
     >>> copy_frames(tangent, 1)[0].direction(np.array([1.0, 0, 0])).round(9).tolist()
@@ -230,7 +230,7 @@ def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
 
 
 def patterned(entries: Mapping[str, Any]) -> Iterator[tuple[str, Any, Frame]]:
-    """Yield name, entry and frame of every copy that entries with patterns place.
+    """Yield name, entry and frame of every instance placed by patterns.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [name for name, _, _ in patterned(double_triangle().gauges)][:3]
@@ -243,13 +243,13 @@ def patterned(entries: Mapping[str, Any]) -> Iterator[tuple[str, Any, Frame]]:
 
 
 def _upright(pose: Pose) -> Vector | None:
-    """The direction of a pose's z axis; none is meant where the usual one, z, lies along x: then a gauge is roundly alike."""
+    """Direction of a pose's z axis; any if the default, z, is along x: the gauge is axisymmetric."""
     x, y, z = (np.max(np.abs(np.real(component))) for component in pose.direction)
     return None if pose.up == Pose().up and max(x, y) <= 1e-3 * z else pose.up
 
 
 def _reflect(frame: Frame, mirror: Normal | None) -> Frame:
-    """The frame, or its image in the stage's plane of that normal."""
+    """The frame, or its mirror image in the stage's plane with that normal."""
     return frame if mirror is None else frame.within(reflection("xyz".index(mirror.value)))
 
 
@@ -265,9 +265,9 @@ def _polar_frame(pattern: Polar, angle: Number) -> Frame:
 
 
 def expand(mechanism: Mechanism) -> Assembly:
-    """Expand a description: units copied by pattern, overrides applied, frames in the stage's frame.
+    """Expand a description into bodies and links: units placed by pattern, overrides applied, frames in the stage's frame.
 
-    The description must have passed its checks. Without platform reference the platform's twist is given at its own centre of mass.
+    The description must have passed its checks. Without a platform reference, the platform's twist is at its centre of mass.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(expand(double_triangle()).links)
@@ -275,12 +275,12 @@ def expand(mechanism: Mechanism) -> Assembly:
     """
     assembly = lay_out(mechanism)
     for body in assembly.bodies.values():
-        _ = [item.own for item in body.drawn], body.reference, body.mass  # what cannot be weighed is refused here
+        _ = [item.own for item in body.drawn], body.reference, body.mass  # refuses unknown masses
     return assembly
 
 
 def lay_out(mechanism: Mechanism) -> Assembly:
-    """As `expand`, each body weighed when its mass or reference is first asked for.
+    """Expand as `expand`, with mass properties computed on first use.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lay_out(double_triangle()).bodies)
@@ -290,7 +290,7 @@ def lay_out(mechanism: Mechanism) -> Assembly:
 
 
 class Same:
-    """A description as a key of what is kept: equal only to itself, which is cheaper to tell than a digest."""
+    """Cache key of a description by identity, cheaper than a digest."""
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism = mechanism
@@ -304,7 +304,7 @@ class Same:
 
 @SESSION.keep(2)
 def _assembly(key: Same) -> Assembly:
-    """The assembly, kept for the next model or analysis of the same description: each of them asks for it."""
+    """The assembly, cached by description."""
     mechanism = key.mechanism
     require([*place_findings(mechanism), *unknown_names(mechanism), *compound_findings(mechanism)])
     placed = tuple(copies(mechanism))
@@ -324,7 +324,7 @@ def _assembly(key: Same) -> Assembly:
     require(_unknown_bodies(bodies, joined, {f"gauges.{name}": probe for name, probe in posed(mechanism.gauges).items()}))
     require(_unknown_bodies(bodies, (), {f"stops.{name}": stop for name, stop in mechanism.stops.items()}))
     resting = lent.get(GROUND, ())
-    _ = [item.own for item in resting]  # nobody asks for their mass; what cannot be weighed is refused all the same
+    _ = [item.own for item in resting]  # their mass is unused, but an unknown one is refused
     ground = _placed_solids(resting)
     circuits = _circuits(links, {copy for copy, _, _ in placed})
     drives: dict[str, str] = {}
@@ -344,28 +344,28 @@ def _assembly(key: Same) -> Assembly:
 
 
 def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Links that do not say where they are, or say it twice.
+    """Return errors for links without a position, or with two.
 
     >>> print(*place_findings(Mechanism("", links={"strut": Link(("ground", "platform"), "wire", end=(0.0, 0.0, 0.1))})))
-    links.strut: it has no from. Give both from and to, or at and along.
+    links.strut: from missing. Give both from and to, or at and along.
     """
     for where, link in every_link(mechanism):
         ends, place = {"from": link.start, "to": link.end}, {"at": link.at, "along": link.along}
         stated = [name for name, value in {**place, **ends}.items() if value is not None]
         if {"from", "to"} & set(stated) and {"at", "along"} & set(stated):
-            yield Finding(where, f"it has both {' and '.join(stated)}", "Give its ends, from and to, or its place, at and along")
+            yield Finding(where, f"both {' and '.join(stated)} specified", "Specify its ends, from and to, or its position, at and along")
             continue
         wanted = place if link.start is None and link.end is None else ends
         for name in [name for name, value in wanted.items() if value is None]:
-            advice = "Give both from and to, or at and along" if wanted is ends else f"Write for example {name} = {_EXAMPLES[name]}"
-            yield Finding(where, f"it has no {name}", advice)
+            advice = "Give both from and to, or at and along" if wanted is ends else f"Use e.g. {name} = {_EXAMPLES[name]}"
+            yield Finding(where, f"{name} missing", advice)
 
 
 def unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
-    """Parts, materials, units and sensors that a description names and does not hold, and ports that links join otherwise.
+    """Return errors for unknown parts, materials, units and sensors, and for wrong ports of links.
 
     >>> print(*unknown_names(Mechanism("", links={"strut": Link(("ground", "platform"), "wire")})))
-    links.strut.part: there is no part "wire". There are none.
+    links.strut.part: unknown part "wire". None is defined.
     """
     parts = mechanism.parts
     yield from unknown_entries({section: getattr(mechanism, section) for section in NAMED})
@@ -377,32 +377,32 @@ def unknown_entries(sections: Mapping[str, Any]) -> Iterator[Finding]:
     """Materials, parts, units and sensors that the entries of sections, of a description or of a file's tree, name and do not have.
 
     >>> print(*unknown_entries({"parts": {"leaf": {"material": "stel"}}, "materials": {"steel": {}}}))
-    parts.leaf.material: there is no material "stel". The nearest name is steel.
+    parts.leaf.material: unknown material "stel". Use steel.
     """
     for section in ("parts", "bodies", "links", "units", "placements", "gauges"):
         for where, home, name in references(sections.get(section, {}), section):
             known = sections.get(home, {})
             if name not in known:
-                yield Finding(where, f'there is no {home.removesuffix("s")} "{name}"', suggest_nearest(name, known))
+                yield Finding(where, f'unknown {home.removesuffix("s")} "{name}"', suggest_nearest(name, known))
 
 
 def _port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterator[Finding]:
-    """A link joins a body at each port of its part by the port's name, or two bodies where the part has none."""
+    """Errors in the bodies of a link: one per port of its part, or two without ports."""
     ports, known = ports_of(parts[link.part]), isinstance(link.joins, Mapping)
     example = ", ".join(f'{name} = "{body}"' for name, body in zip(ports, itertools.cycle((GROUND, PLATFORM)), strict=False))
     if known and not ports:
-        yield Finding(f"{where}.joins", f'part "{link.part}" has no ports', f'Name its two bodies: joins = ["{GROUND}", "{PLATFORM}"]')
+        yield Finding(f"{where}.joins", f'part "{link.part}" has no ports', f'Use its two bodies: joins = ["{GROUND}", "{PLATFORM}"]')
     elif ports and (not known or set(link.joins) != set(ports)):
-        found = f"it joins {', '.join(link.joins)}" if known else "it names no ports"
+        found = f"got {', '.join(link.joins)}" if known else "got no ports"
         yield Finding(
-            f"{where}.joins", f'part "{link.part}" has the ports {", ".join(ports)}, and {found}', f"Write joins = {{ {example} }}"
+            f"{where}.joins", f'wrong ports ({found}, expected {", ".join(ports)} of part "{link.part}")', f"Use joins = {{ {example} }}"
         )
     if ports and isinstance(parts[link.part], Restricted):
-        what = f'part "{link.part}" restricts a part with ports to some freedoms, of which it has six a port'
-        yield Finding(f"{where}.part", what, "Link the part itself")
+        what = f'part "{link.part}" restricts a part with ports (six degrees of freedom per port)'
+        yield Finding(f"{where}.part", what, "Use the part directly")
     if ports and link.free and len(ports) > 2:
-        what = f'part "{link.part}" has {len(ports)} ports, and free states the freedoms between two'
-        yield Finding(f"{where}.free", what, "Leave it out: the ideal model takes the part as rigid")
+        what = f'free requires two ports (part "{link.part}" has {len(ports)})'
+        yield Finding(f"{where}.free", what, "Remove it: the part is rigid in the ideal model")
 
 
 def _unknown_bodies(
@@ -411,11 +411,11 @@ def _unknown_bodies(
     known = dict.fromkeys((*bodies, GROUND))
     ends = [(f"{link.name}.joins", body) for link in links for body in link.joins]
     ends += [(where, body) for where, item in looking.items() for body in (item.body, item.base or GROUND)]
-    yield from (Finding(where, f'there is no body "{body}"', suggest_nearest(body, known)) for where, body in ends if body not in known)
+    yield from (Finding(where, f'unknown body "{body}"', suggest_nearest(body, known)) for where, body in ends if body not in known)
 
 
 def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
-    """Yield (copy name, unit name, frame) of every placed unit.
+    """Yield (instance name, unit name, frame) of every placed unit.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [name for name, _, _ in copies(double_triangle())]
@@ -426,7 +426,7 @@ def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
 
 
 def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:
-    """Return the unit's name by name of each placed copy.
+    """Return the unit's name by instance name.
 
     >>> unit_of_copy(Mechanism(""))
     {}
@@ -435,7 +435,7 @@ def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:
 
 
 def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
-    """Every body by the name that links, gauges and loads call it by: those of the stage, and `copy/body` of placed units.
+    """Return every body by name as in links, gauges and loads: bodies of the stage, and `instance/body` of placed units.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(placed_bodies(double_triangle()))[:3]
@@ -447,7 +447,7 @@ def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
 
 
 def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable[str] = ()) -> tuple[str, ...]:
-    """The bodies that move at a link's ends or ports, owners in the places of bodies that are `of` them; `own` are those of its unit.
+    """Return the moving bodies at a link's ends or ports, with owners instead of bodies `of` them; `own` are those of its unit.
 
     >>> strut = Link(("pad", "W/slide"), "wire", at=(0.0, 0.0, 0.0), along=(1.0, 0.0, 0.0))
     >>> joined(strut, {"pad": Body(of="ground"), "W/slide": Body()})
@@ -458,7 +458,7 @@ def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable
 
 @dataclass(frozen=True, eq=False)
 class _DrawnBody:
-    """A body, drawn under the name `source`, in the frame of this copy; `aligned` is that frame as it is meant."""
+    """Body drawn under the name `source`, in the frame of this instance; `aligned` is that frame without misalignment."""
 
     name: str
     body: Body
@@ -469,28 +469,28 @@ class _DrawnBody:
 
     @property
     def own(self) -> MassProperties | None:
-        """Mass properties in the frame it is drawn in, known for all its copies; `None` without any."""
+        """Mass properties in the drawing frame, shared by all instances; `None` without any."""
         return mass_properties(self.body, self.materials, self.source)
 
     def mass(self) -> MassProperties | None:
-        """The mass properties in the stage's frame."""
+        """Mass properties in the stage's frame."""
         return None if self.own is None else within(self.own, self.frame)
 
     def solids(self) -> Iterator[tuple[str, PlacedSolid]]:
-        """The outlines by address, in the stage's frame."""
+        """Outlines by address, in the stage's frame."""
         for name, solid in self.body.solids.items():
             frame = solid.frame.within(self.frame)
             yield f"{self.name}.{name}", PlacedSolid(solid.mirrored if frame.mirrored else solid, frame.right_handed)
 
 
 def _placed_solids(drawn: Iterable[_DrawnBody]) -> dict[str, PlacedSolid]:
-    """The outlines of a body, without those that are holes in the others."""
+    """Outlines of a body, without holes."""
     return pierce(dict(solid for item in drawn for solid in item.solids()))
 
 
 @dataclass(frozen=True, eq=False)
 class _DrawnLink:
-    """A link with its frame in the frame it is drawn in; `owners` are the addresses whose overrides count, its own the last."""
+    """Link with its frame in the drawing frame; `owners` are the addresses of overrides by rising precedence."""
 
     owners: tuple[str, ...]
     link: Link
@@ -508,7 +508,7 @@ def _bodies(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[_DrawnB
 
 
 def _by_owner(drawn: tuple[_DrawnBody, ...]) -> dict[str, list[_DrawnBody]]:
-    """The bodies that are of another one, by its name."""
+    """Bodies of another one, by owner."""
     lent: dict[str, list[_DrawnBody]] = {}
     for item in drawn:
         if item.body.of is not None:
@@ -517,7 +517,7 @@ def _by_owner(drawn: tuple[_DrawnBody, ...]) -> dict[str, list[_DrawnBody]]:
 
 
 def _points(drawn: tuple[_DrawnBody, ...]) -> Iterator[tuple[str, tuple[str, Array]]]:
-    """Named points with the bodies they move with; those of the ground stand still and are none."""
+    """Named points with their moving bodies, without those of the ground."""
     for item in drawn:
         owner = item.body.of or item.name
         for point, at in item.body.points.items():
@@ -538,32 +538,32 @@ def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLi
 
 
 def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Restrictions of compounds, and links that state the freedoms of one, or two ends: their members are what has these.
+    """Return errors for restricted compounds, and for links that specify degrees of freedom or ends of one: members have these.
 
     >>> list(compound_findings(Mechanism("")))
     []
     """
-    advice = "State it of the members: draw them as links of their own"
+    advice = "Specify it for the members: draw them as separate links"
     compounds = {name for name, part in mechanism.parts.items() if isinstance(inner(part), Compound)}
     for name in sorted(compounds):
         if isinstance(mechanism.parts[name], Restricted):
-            yield Finding(f"parts.{name}", "it restricts a part that consists of several", advice)
+            yield Finding(f"parts.{name}", "it restricts a compound part", advice)
     for where, link in every_link(mechanism):
         if link.free is not None and link.part in compounds:
-            yield Finding(f"{where}.free", f"part {link.part} consists of several, each with freedoms of its own", advice)
+            yield Finding(f"{where}.free", f"part {link.part} is a compound; its members have degrees of freedom", advice)
         if (link.start is not None or link.end is not None) and link.part in compounds:
-            place = "Give its origin, at, and its direction, along"
-            yield Finding(f"{where}.from", f"part {link.part} consists of several, each with ends of its own", place)
+            place = "Specify its origin, at, and its direction, along"
+            yield Finding(f"{where}.from", f"part {link.part} is a compound; its members have ends", place)
 
 
 def _compositions(links: Iterable[PlacedLink | PlacedSuperelement]) -> dict[int, Composition]:
-    """What the compounds among the parts of links consist of, by their identity: copies of one part share its members."""
+    """Members of compounds by identity of the part, shared by instances."""
     parts = {id(link.part): link.part for link in links}
     return {key: part.composition for key, part in parts.items() if isinstance(part, Compound)}
 
 
 def _members(mechanism: Mechanism, whole: PlacedLink, composition: Composition | None) -> Iterator[PlacedLink]:
-    """The links that stand for one of the description: its members, else itself."""
+    """Expanded links of one in the description: its members, else itself."""
     if composition is None:
         yield _image(whole)
         return
@@ -587,7 +587,7 @@ def _members(mechanism: Mechanism, whole: PlacedLink, composition: Composition |
 def _inner_bodies(
     mechanism: Mechanism, links: Iterable[PlacedLink | PlacedSuperelement], compositions: Mapping[int, Composition]
 ) -> Iterator[_DrawnBody]:
-    """The bodies within compounds."""
+    """Bodies within compounds."""
     for whole in links:
         if (composition := compositions.get(id(whole.part))) is not None:
             for name, body in composition.bodies.items():
@@ -619,7 +619,7 @@ def _placed_link(mechanism: Mechanism, drawn: _DrawnLink, outer: Frame, name: st
 
 
 def _seen_from(mechanism: Mechanism, part: Part, frame: Frame) -> Material | None:
-    """The material of a part as it stands: of a crystal, in the part's own axes; of a contact, with that of its seat."""
+    """Material of a part in the part's axes (crystals), or with that of its seat (contacts)."""
     name, counter = material_of(part), counter_of(part)
     if not name:
         return None
@@ -634,7 +634,7 @@ def _placed_ports(part: Superelement, outer: Frame, names: Iterable[str], ends: 
 
 
 def _image(link: PlacedLink) -> PlacedLink:
-    """The link in a right-handed frame: in a mirrored copy it is of the part's mirror image."""
+    """The link in a right-handed frame, with the part's mirror image in a mirrored instance."""
     if not link.frame.mirrored:
         return link
     part = link.part.mirrored
@@ -644,7 +644,7 @@ def _image(link: PlacedLink) -> PlacedLink:
 
 
 def apply_overrides(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -> tuple[Link, Part]:
-    """A link and its part with the mechanism's `overrides` for the owners' addresses applied, in the owners' order.
+    """Apply the `overrides` of the owners' addresses to a link and its part, in the owners' order.
 
     >>> from dataclasses import replace
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -669,10 +669,9 @@ def apply_overrides(mechanism: Mechanism, link: Link, owners: tuple[str, ...]) -
 
 
 def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> MassProperties | None:
-    """The mass of a body and of what is lent to it; what they have in common is told where the copies are meant to stand.
+    """Mass of a body and of bodies lent to it; overlaps are determined without misalignment.
 
-    A lug that is shifted by a few micrometres neither sinks into its body nor comes off it: no mass is gained or lost. A stated mass counts
-    as it is, whatever is drawn of its body.
+    A misalignment of a lug by a few micrometres changes no mass. A specified mass applies regardless of outlines.
     """
     weighed = [item for item in drawn if item.body.mass is None and item.body.solids]
     single = [item for item in drawn if item.body.mass is not None or len(weighed) == 1]
@@ -696,7 +695,7 @@ def _circuits(links: Mapping[str, PlacedLink], copies: Collection[str]) -> dict[
 
 
 def _gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink]) -> dict[str, PlacedGauge]:
-    """The gauges in the description's order; sums of what stands there."""
+    """Gauges in the description's order; sums of placed gauges."""
     require(gauge_findings(mechanism, links))
     single = {item.name: item for key, place in mechanism.gauges.items() for item in _single_gauges(mechanism, links, key, place)}
     formed = {name: place for name, place in mechanism.gauges.items() if isinstance(place, GaugeSum)}

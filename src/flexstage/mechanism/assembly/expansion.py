@@ -1,4 +1,4 @@
-"""Which expansion coefficient every body and part of a stage has."""
+"""Thermal expansion coefficients of bodies and parts of a stage."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ from flexstage.parts.mass import solid_properties
 from flexstage.parts.part import counter_of, inner, material_of, span
 from flexstage.parts.shape import Shaped
 
-_STATED, _ASKED = "as stated", "as asked"
+_STATED, _ASKED = "as specified", "as requested"
 
 
 @dataclass(frozen=True)
 class Ground:
-    """The `material` the ground grows with (`None`: it does not grow), and from where that is known."""
+    """Material of the ground for thermal expansion (`None`: no expansion), and its source."""
 
     material: str | None
     source: str
 
     @property
     def stated(self) -> bool:
-        """Whether the description, or who asked, states it."""
+        """Whether it is specified in the description or the call."""
         return self.source in (_STATED, _ASKED)
 
 
 @dataclass(frozen=True, eq=False)
 class Expansion:
-    """Expansion coefficients [1/K] of the `bodies` (the ground's too) and of the `parts` with a length [m].
+    """Expansion coefficients [1/K] of the `bodies` (with the ground) and of the `parts` with a length [m].
 
-    `taken` says for each body which material was taken, and from where (its solids, its links); `ground` is that of the ground.
+    `taken` is the assumed material of each body with its source (solids, links); `ground` is that of the ground.
     """
 
     bodies: Mapping[str, Number]
@@ -48,11 +48,11 @@ class Expansion:
 
 
 def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
-    """Expansion coefficients of everything; `ground` names the ground's material (absent: see `ground_of`; `none`: it does not grow).
+    """Compute all expansion coefficients; `ground` names the ground's material (default: `ground_of`; `none`: no expansion).
 
-    A body takes the material of its solids, of several the heaviest solid's; without solids that of its links, where they agree. Given
-    matrices grow as the drawn parts that they stand for; others and ideal joints have no length and do not grow. Raises `DesignError` with
-    all materials and stacks that state no expansion, and all bodies of unknown material.
+    A body has the material of its heaviest solid, or without solids the common material of its links. Compliance matrices expand as the
+    drawn parts that they replace; other matrices and ideal joints have no length and no expansion. Raises `DesignError` for all materials
+    and stacks without a coefficient, and all bodies of unknown material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = expansion(double_triangle(), ground="steel")
@@ -70,13 +70,13 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     drawn = {name: as_drawn(mechanism, link) for name, link in assembly.links.items()}
     parts = {name: (coefficient(link), span(link.part)) for name, link in drawn.items() if _grows(link)}
     taken = {name: f"{material}, {source}" for name, (material, source) in choices.items()}
-    return Expansion({GROUND: 0.0, **bodies}, parts, {GROUND: f"does not grow, {floor.source}", **taken}, floor)
+    return Expansion({GROUND: 0.0, **bodies}, parts, {GROUND: f"no expansion, {floor.source}", **taken}, floor)
 
 
 def _unknown_growth(assembly: Assembly) -> Iterator[Finding]:
     for name in assembly.superelements:
-        what = "it is known by its matrices alone: how its ports move apart with temperature is not known"
-        yield Finding(name, what, "Work out its growth in the code that its matrices come from")
+        what = "thermal expansion of the superelement unknown"
+        yield Finding(name, what, "Compute it in the program that computed its matrices")
 
 
 def _stated_expansion(mechanism: Mechanism, material: str) -> Number:
@@ -85,18 +85,18 @@ def _stated_expansion(mechanism: Mechanism, material: str) -> Number:
 
 
 def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
-    """What the ground grows with: as asked (`none`: it does not grow), as the description states, else as all that stands on it.
+    """Return the ground's material: as requested (`none`: no expansion), as in the description, else that of all parts on the ground.
 
-    Taken are the outlines that belong to the ground, else the links on it, if they are of one material. Raises `DesignError` where they are
-    of several, or of none: then drift does not follow from the description.
+    Parts on the ground are its outlines, else its links, if they are of one material. Raises `DesignError` for several materials or none:
+    drift is then undefined.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> ground_of(double_triangle())
-    Ground(material='steel', source='all links that stand on it are of it')
+    Ground(material='steel', source='all links on it are of it')
     """
     given = asked if asked is not None else mechanism.ground
     if asked is not None and asked not in (NOT_GROWING, *mechanism.materials):
-        raise refuse("ground", f"material {asked} is not described", suggest_nearest(asked, (NOT_GROWING, *mechanism.materials)))
+        raise refuse("ground", f"unknown material {asked}", suggest_nearest(asked, (NOT_GROWING, *mechanism.materials)))
     if given is not None:
         return Ground(None if given == NOT_GROWING else given, _STATED if asked is None else _ASKED)
     assembly = expand(mechanism)
@@ -105,15 +105,15 @@ def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
     if len(solids) == 1:
         return Ground(solids[0], "all its outlines are of it")
     if not solids and len(links) == 1:
-        return Ground(links[0], "all links that stand on it are of it")
+        return Ground(links[0], "all links on it are of it")
     found = f"its outlines are of {', '.join(solids)}" if solids else f"the links on it are of {', '.join(links) or 'no material'}"
     example = (*solids, *links, *mechanism.materials, "steel")[0]
-    advice = f'State it in the design: ground = "{example}", or "{NOT_GROWING}" if it does not grow'
-    raise refuse("ground", f"how it grows with temperature is not known: {found}", advice)
+    advice = f'Specify it in the design: ground = "{example}", or "{NOT_GROWING}" without expansion'
+    raise refuse("ground", f"thermal expansion unknown: {found}", advice)
 
 
 def coefficient(link: PlacedLink) -> Number:
-    """The expansion coefficient of a link's part [1/K], NaN where it is not stated.
+    """Return the expansion coefficient of a link's part [1/K]; NaN if unspecified.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> coefficient(expand(double_triangle()).links["B1/pzt"])
@@ -129,7 +129,7 @@ def _grows(link: PlacedLink) -> bool:
 
 
 def _body_material(mechanism: Mechanism, assembly: Assembly, name: str) -> tuple[str, str]:
-    """The material a body grows with and its source; an empty name where it is not known."""
+    """Material of a body and its source; an empty name if unknown."""
     solids = {address.removeprefix(f"{name}."): placed.solid for address, placed in assembly.bodies[name].solids.items()}
     if len(_distinct(mechanism, (solid.material for solid in solids.values()))) == 1:
         return next(iter(solids.values())).material, "of its solids"
@@ -139,7 +139,7 @@ def _body_material(mechanism: Mechanism, assembly: Assembly, name: str) -> tuple
     found = _link_materials(mechanism, assembly, name)
     if len(found) == 1:
         return found[0], "of its links"
-    return "", f"it has no solids, and its links are of {', '.join(found) or 'no material'}"
+    return "", f"no solids, and its links are of {', '.join(found) or 'no material'}"
 
 
 def _weight(mechanism: Mechanism, solid: Solid) -> float:
@@ -153,7 +153,7 @@ def _link_materials(mechanism: Mechanism, assembly: Assembly, body: str) -> list
 
 
 def _distinct(mechanism: Mechanism, names: Iterable[str]) -> list[str]:
-    """Names of materials, one of those that are the same material under several (of mounted stages)."""
+    """Distinct materials by name; equal ones (of mounted stages) once."""
     known = {digest(mechanism.materials.get(name, name), physics=True): name for name in sorted(set(names), reverse=True)}
     return sorted(known.values())
 
@@ -162,9 +162,9 @@ def _unknown(mechanism: Mechanism, choices: Mapping[str, tuple[str, str]]) -> li
     found: list[Finding] = []
     for name, (material, source) in choices.items():
         if not material:
-            found.append(Finding(name, f"how it grows with temperature is not known: {source}", "Give the body one solid of its material"))
+            found.append(Finding(name, f"thermal expansion unknown: {source}", "Add a solid of its material to the body"))
         elif material not in mechanism.materials:
-            found.append(Finding(name, f"material {material} is not described", suggest_nearest(material, mechanism.materials)))
+            found.append(Finding(name, f"unknown material {material}", suggest_nearest(material, mechanism.materials)))
     return found
 
 
@@ -176,5 +176,5 @@ def _unstated_findings(mechanism: Mechanism, assembly: Assembly, choices: Mappin
         link.link.part for link in assembly.links.values() if _grows(link) and link.material is None and np.isnan(coefficient(link)).any()
     ]
     missing = {f"materials.{name}": "10.3e-6 1/K" for name in materials} | {f"parts.{name}": "-3e-6 1/K" for name in stacks}
-    what = "states no thermal expansion, and drift needs it"
-    return [Finding(where, what, f'Add for example expansion = "{example}"') for where, example in missing.items()]
+    what = "thermal expansion coefficient missing, required for drift"
+    return [Finding(where, what, f'Add e.g. expansion = "{example}"') for where, example in missing.items()]

@@ -18,15 +18,15 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM
 from flexstage.spatial.frame import COMPONENTS, Frame, transport, twist_transform
 
 LARGE = 60
-"""Bodies from which a single design is worked out without the zeros of its matrices."""
+"""Number of bodies from which a single design uses sparse matrices."""
 
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Where each body's twist stands in the coordinate vector: six coordinates a body, the platform's first; then the `inner` ones.
+    """Layout of the coordinate vector: six coordinates per body, the platform first; then the `inner` ones.
 
-    `inner` is how many inner coordinates a link has, by its name: amplitudes of its modes while its ends are held, zero in rigid motion.
-    Of a layout that is `sparse`, matrices over the coordinates come as `flexstage.base.sparse.Sparse`.
+    `inner` is the number of internal coordinates by link: amplitudes of its fixed-interface modes, zero in rigid motion.
+    For a `sparse` layout, matrices over the coordinates are `flexstage.base.sparse.Sparse`.
     """
 
     bodies: tuple[str, ...]
@@ -45,23 +45,23 @@ class Layout:
         return (*twists, *(f"{link}.mode{number + 1}" for link, count in self.inner.items() for number in range(count)))
 
     def columns(self, body: str) -> slice:
-        """The coordinates of a body."""
+        """Coordinates of a body."""
         start = self._starts[body]
         return slice(start, start + 6)
 
     @cached_property
     def _starts(self) -> Mapping[str, int]:
-        """The first coordinate of every body."""
+        """First coordinate of every body."""
         return {body: 6 * number for number, body in enumerate(self.bodies)}
 
     @cached_property
     def inner_starts(self) -> Mapping[str, int]:
-        """The first inner coordinate of every link that has some."""
+        """First internal coordinate of every link that has some."""
         ends = np.cumsum(list(self.inner.values()), dtype=int).tolist()
         return {name: 6 * len(self.bodies) + end - self.inner[name] for name, end in zip(self.inner, ends, strict=True)}
 
     def embed(self, first: int, block: Array) -> Array:
-        """A matrix (..., r, n) that is a block (..., r, c) from column `first` on, and zero elsewhere."""
+        """Matrix (..., r, n) with a block (..., r, c) from column `first`, else zero."""
         if self.sparse:
             return cast("Array", Sparse(np.arange(first, first + block.shape[-1]), block, self.size))
         result = np.zeros((*block.shape[:-1], self.size), dtype=block.dtype)
@@ -69,16 +69,16 @@ class Layout:
         return result
 
     def selector(self, body: str) -> Array:
-        """The (6, n) matrix that picks a body's twist, at its own reference point in the stage's axes."""
+        """Selection matrix (6, n) of a body's twist at its reference point, in the stage's axes."""
         return self.embed(self._starts[body], np.eye(6))
 
     def inner_selector(self, link: str) -> Array:
-        """The (m, n) matrix that picks a link's inner coordinates; without rows where it has none."""
+        """Selection matrix (m, n) of a link's internal coordinates; without rows if it has none."""
         return self.embed(self.inner_starts.get(link, 0), np.eye(self.inner.get(link, 0)))
 
 
 def layout(assembly: Assembly, inner: Mapping[str, int] | None = None, *, sparse: bool = False) -> Layout:
-    """The coordinate layout of an expanded stage whose links have so many `inner` coordinates (absent: none), dense or `sparse`.
+    """Return the coordinate layout of an expanded stage with `inner` coordinates of links (default: none), dense or `sparse`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -91,7 +91,7 @@ def layout(assembly: Assembly, inner: Mapping[str, int] | None = None, *, sparse
 
 
 def is_single(assembly: Assembly) -> bool:
-    """Whether nothing that is placed is a batch or stepped.
+    """Return whether a stage is a single design, without batch axes and complex steps.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -104,7 +104,7 @@ def is_single(assembly: Assembly) -> bool:
 
 
 def require_room(assembly: Assembly, matrices: float) -> None:
-    """Refuse a stage whose dense matrices do not fit: so many at once of (coordinates x rows of bodies or links), 8 bytes an entry.
+    """Refuse a stage whose dense matrices (coordinates x rows of bodies or links, 8 bytes per entry) exceed the memory.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -115,13 +115,13 @@ def require_room(assembly: Assembly, matrices: float) -> None:
 
     def fits(there: float) -> str:
         most = int(np.sqrt(there / needed) * bodies)
-        return f"About {most:,} bodies would fit with as many links to each; join bodies that move as one, or read parts of it"
+        return f"About {most:,} bodies with as many links each fit; join bodies without relative motion, or analyse parts of the stage"
 
     require_memory("stage", f"matrices of {bodies:,} bodies and {links:,} links", needed, fits)
 
 
 def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Array:
-    """The (..., 6, n) matrix of a body's twist at a frame's origin, in the frame's axes; zero for the ground.
+    """Compute the matrix (..., 6, n) of a body's twist at a frame's origin, in the frame's axes; zero for the ground.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -135,7 +135,7 @@ def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Arra
 
 
 def end_twists(assembly: Assembly, order: Layout, link: PlacedLink) -> tuple[Array, Array]:
-    """The (..., 6, n) matrices of the twists of a link's first and second body, at the link's centre, in its frame.
+    """Compute the matrices (..., 6, n) of the twists of a link's first and second body, at its centre, in its frame.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -148,7 +148,7 @@ def end_twists(assembly: Assembly, order: Layout, link: PlacedLink) -> tuple[Arr
 
 
 def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
-    """The (..., 6, n) matrix of a link's relative twist: second body against first, at the link's centre, in its frame.
+    """Compute the matrix (..., 6, n) of a link's relative twist: second body against first, at its centre, in its frame.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -161,7 +161,7 @@ def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
 
 
 def free_deformations(assembly: Assembly) -> Array:
-    """The (..., 6 L, n) deformations of all links if the n strokes, each a unit, met no resistance, in the links' frames.
+    """Compute the free deformations (..., 6 L, n) of all links for unit strokes, in the links' frames.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -179,9 +179,9 @@ def free_deformations(assembly: Assembly) -> Array:
 
 
 def with_ground(assembly: Assembly, order: Layout) -> Array:
-    """The (..., n, 6) rigid motion of all bodies moving with the ground, whose twist is given at the platform's reference point.
+    """Compute the rigid motion (..., n, 6) of all bodies with the ground, for a twist at the platform's reference point.
 
-    Inner coordinates rest in it. Raises `DesignError` where there is no platform.
+    Internal coordinates are zero. Raises `DesignError` without a platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -190,7 +190,7 @@ def with_ground(assembly: Assembly, order: Layout) -> Array:
     True
     """
     if PLATFORM not in assembly.bodies:
-        raise refuse("bodies", f'there is no body "{PLATFORM}"', f"Declare the moving part under bodies.{PLATFORM}")
+        raise refuse("bodies", f'unknown body "{PLATFORM}"', f"Declare the moving part under bodies.{PLATFORM}")
     centre = assembly.bodies[PLATFORM].reference
     carries = [transport(assembly.bodies[body].reference - centre) for body in order.bodies]
     batch = np.broadcast_shapes(*(carry.shape[:-2] for carry in carries))

@@ -1,4 +1,4 @@
-"""Units that are like another: what they take from it, and whose overrides count for it."""
+"""Inheritance of units (`like`): inherited bodies and links, and precedence of overrides."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flexstage.mechanism.mechanism import Mechanism, Unit
 
 
 def drawn_units(mechanism: Mechanism) -> Mapping[str, Unit]:
-    """The units with all bodies and links that they take from those they are like; what a unit draws itself goes before.
+    """Return the units with inherited bodies and links; bodies and links of the unit take precedence.
 
     >>> drawn_units(Mechanism("", units={"outer": Unit({}, {}, like="inner"), "inner": Unit({}, {}, stiffness=1e6)}))["outer"].like
     'inner'
@@ -30,7 +30,7 @@ def _drawn(mechanism: Mechanism, name: str) -> Unit:
 
 
 def ancestry(mechanism: Mechanism, name: str) -> tuple[str, ...]:
-    """A unit, the one it is like, the one that is like, and so on; ends where one is not there or comes again.
+    """Return a unit with the chain of units that it inherits from, up to an unknown or repeated one.
 
     >>> ancestry(Mechanism("", units={"outer": Unit({}, {}, like="inner"), "inner": Unit({}, {})}), "outer")
     ('outer', 'inner')
@@ -43,7 +43,7 @@ def ancestry(mechanism: Mechanism, name: str) -> tuple[str, ...]:
 
 
 def link_lineage(mechanism: Mechanism, unit: str, link: str) -> tuple[str, ...]:
-    """The units whose overrides count for a unit's link, from the one that draws it on.
+    """Return the units whose overrides apply to a unit's link, from the one that draws it.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> link_lineage(double_triangle(), "horizontal", "front")
@@ -55,15 +55,15 @@ def link_lineage(mechanism: Mechanism, unit: str, link: str) -> tuple[str, ...]:
 
 
 def likeness_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Units that are, by whatever way, like themselves.
+    """Return errors for units with circular inheritance.
 
     >>> print(*likeness_findings(Mechanism("", units={"inner": Unit({}, {}, like="inner")})))
-    units.inner.like: it is like itself. Draw one of them by itself.
+    units.inner.like: circular reference. Remove one like.
     """
     for name, unit in mechanism.units.items():
         if unit.like is None:
             continue
         line = ancestry(mechanism, name)
         if mechanism.units[line[-1]].like == name:
-            what = "it is like itself" if len(line) == 1 else f"it is like itself: {', '.join(line)} are like one another in a circle"
-            yield Finding(f"units.{name}.like", what, "Draw one of them by itself")
+            what = "circular reference" if len(line) == 1 else f"circular reference: {', '.join(line)}"
+            yield Finding(f"units.{name}.like", what, "Remove one like")

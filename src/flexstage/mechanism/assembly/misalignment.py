@@ -1,4 +1,4 @@
-"""Misalignment: a copy of a unit, or a gauge, that does not stand where its pattern puts it."""
+"""Misalignment of unit instances and gauges relative to their pattern."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from flexstage.spatial.rotation import exponential
 
 @dataclass(frozen=True, eq=False)
 class Misalignment(Description):
-    """How a copy stands against its pattern, in its own frame: `shift` of its origin, and `rotation` about its own axes.
+    """Misalignment of an instance in its own frame: `shift` of its origin, and `rotation` vector about its axes.
 
-    A rotation vector: its direction is the axis, its length the angle. Of a unit everything that is drawn in it moves as one, the hinge
-    to the platform and its seat there too: the stage is made so, it is not forced.
+    The direction of the rotation vector is the axis, its length the angle. All bodies and links of a unit move together, including the
+    hinge to the platform and its seat: the stage is manufactured so, without forces.
     """
 
     shift: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
@@ -32,7 +32,7 @@ MISALIGNED = tuple(field.name for field in fields(Misalignment))
 
 
 def misalignment_of(overrides: Mapping[str, Any], copy: str) -> Misalignment:
-    """What overrides say of a copy's or a gauge's place.
+    """Return the misalignment of an instance or a gauge from overrides.
 
     >>> misalignment_of({"B2.shift.x": 1e-5}, "B2").shift
     (1e-05, 0.0, 0.0)
@@ -47,7 +47,7 @@ def misalignment_of(overrides: Mapping[str, Any], copy: str) -> Misalignment:
 
 
 def misalign(frame: Frame, overrides: Mapping[str, Any], copy: str) -> Frame:
-    """The frame of a copy as overrides leave it: shifted along its own axes, turned about its own origin.
+    """Apply misalignment to the frame of an instance: shifted along its axes, rotated about its origin.
 
     >>> at = Frame(np.eye(3), np.zeros(3))
     >>> misalign(at, {"B2.rotation.z": 0.5 * np.pi}, "B2").direction(np.array([1.0, 0.0, 0.0])).round(12).tolist()

@@ -1,4 +1,4 @@
-"""A stage on a stage: one description of both, everything of the carried one under its name (`fine/B1`)."""
+"""Mounting of one stage on another: a single description, with names of the mounted stage prefixed (`fine/B1`)."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ from flexstage.parts.material import Material
 from flexstage.spatial.frame import Frame, identity, reflection
 
 STAGES = "stages"
-"""The table of a design file that says what stages stand on this one."""
+"""Table of a design file with the stages mounted on this one."""
 
 
 @dataclass(frozen=True, eq=False)
 class Mount(Description):
-    """A stage from another design `file` (its path is from this one), its ground joined to the body `on`, where it is drawn by a `pose`."""
+    """Stage of another design `file` (relative path), with its ground fixed to the body `on` at a `pose`."""
 
     file: str
     on: str = GROUND
@@ -51,13 +51,14 @@ class Mount(Description):
 def mount(
     stage: Mechanism, name: str, carried: Mechanism, *, on: str = GROUND, pose: Pose | None = None, platform: bool | None = None
 ) -> Mechanism:
-    """Return the stage with another one `carried` on its body `on`: what was that one's ground is this body.
+    """Return the stage with a stage `carried` mounted on its body `on`, which replaces the mounted stage's ground.
 
-    Bodies, links, units, copies, parts, gauges and loads of the carried stage are called `name/...`, their numbers are as they are there;
-    its overrides and tags come along, its temperatures too, and, on the ground, what that grows with. Its gravity, damping, requirements,
-    envelope, formulas and what else is said of a stage as a whole do not. `platform`: that of the carried stage is the platform of both
-    (absent: where the stage itself has no body of this name). Raises `DesignError` where names clash, the body is not there, the pose is
-    mirrored, or both stages state another growth or temperature of one ground.
+    Bodies, links, units, instances, parts, gauges and loads of the mounted stage are named `name/...`, with unchanged numbers. Its
+    overrides, tags and temperatures are kept, and, on the ground, the ground's material. Gravity, damping, requirements, envelope, formulas
+    and other properties of the whole stage are dropped. `platform`: use the mounted stage's platform as that of both (default: if the stage
+    has no body `platform`).
+
+    Raises `DesignError` for name clashes, an unknown body, a mirrored pose, or different expansion or temperature of a common ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> both = mount(parallelogram(), "fine", parallelogram(), on="platform")
@@ -99,16 +100,16 @@ def _mount_findings(stage: Mechanism, name: str, carried: Mechanism, on: str, po
     placed = (*stage.placements, *stage.gauges, *stage.stops)
     taken = {*stage.bodies, *stage.units, *stage.links, *(copy for key in placed for copy in copy_names(key))}
     if name in taken:
-        yield Finding(where, "something else has this name", "Give the stage a name of its own: all that is in it is called by it")
+        yield Finding(where, "the name is in use", "Use another name for the mounted stage: it is the prefix of its names")
     if pose.mirror is not None:
-        yield Finding(f"{where}.pose.mirror", "a whole stage is not mirrored", "Mirror its units, in its own file")
+        yield Finding(f"{where}.pose.mirror", "a whole stage cannot be mirrored", "Mirror its units, in its own file")
     known = {GROUND, *placed_bodies(stage)}
     if on not in known:
-        yield Finding(f"{where}.on", f'there is no body "{on}"', suggest_nearest(on, known))
+        yield Finding(f"{where}.on", f'unknown body "{on}"', suggest_nearest(on, known))
     if _is_on_ground(stage, on):
         yield from _ground_findings(stage, name, carried)
     if on in {body for unit in drawn_units(carried).values() for body in unit.bodies}:
-        yield Finding(f"{where}.on", f'a unit of the carried stage has a body "{on}" itself', "Give one of them another name")
+        yield Finding(f"{where}.on", f'a unit of the mounted stage has a body "{on}"', "Rename one of them")
 
 
 def _is_on_ground(stage: Mechanism, on: str) -> bool:
@@ -116,27 +117,27 @@ def _is_on_ground(stage: Mechanism, on: str) -> bool:
 
 
 def _ground(name: str, carried: Mechanism) -> str | None:
-    """What the carried stage states that its ground grows with, by its new name."""
+    """Specified ground material of the mounted stage, by its new name."""
     return carried.ground if carried.ground in (None, NOT_GROWING) else f"{name}/{carried.ground}"
 
 
 def _temperatures(stage: Mechanism) -> dict[str, Number]:
-    """The temperature of every body, and of the ground, that the stage states."""
+    """Specified temperatures of bodies and of the ground."""
     moving = [name for name, body in placed_bodies(stage).items() if body.of is None]
     everywhere = dict.fromkeys((GROUND, *moving), stage.temperatures[EVERYWHERE]) if EVERYWHERE in stage.temperatures else {}
     return everywhere | {name: value for name, value in stage.temperatures.items() if name != EVERYWHERE}
 
 
 def _ground_findings(stage: Mechanism, name: str, carried: Mechanism) -> Iterator[Finding]:
-    """What both state of the ground must agree."""
+    """Errors for different specifications of a common ground."""
     mine, other = stage.ground, _ground(name, carried)
     if mine and other and not _agree(stage.materials.get(mine, mine), carried.materials.get(carried.ground or "", other)):
-        what = f'its ground grows as "{other}", that of what it is mounted beside as "{mine}"'
-        yield Finding(f"stages.{name}", what, f'State it in this design: ground = "{mine}", or "{NOT_GROWING}" if it does not grow')
+        what = f'different ground materials (got "{other}" in the mounted stage, "{mine}" in this one)'
+        yield Finding(f"stages.{name}", what, f'Specify it in this design: ground = "{mine}", or "{NOT_GROWING}" without expansion')
     warm, warmer = (_temperatures(each).get(GROUND) for each in (stage, carried))
     if warm is not None and warmer is not None and not np.array_equal(warm, warmer):
-        what = f"its ground is warmer by {warmer:g} K, that of what it is mounted beside by {warm:g} K"
-        yield Finding(f"stages.{name}", what, f'State it in this design: temperatures.ground = "{warm:g} K"')
+        what = f"different ground temperatures (got {warmer:g} K in the mounted stage, {warm:g} K in this one)"
+        yield Finding(f"stages.{name}", what, f'Specify it in this design: temperatures.ground = "{warm:g} K"')
 
 
 def _agree(one: Material | str, other: Material | str) -> bool:
@@ -145,9 +146,9 @@ def _agree(one: Material | str, other: Material | str) -> bool:
 
 @dataclass(frozen=True)
 class _Names:
-    """What things of the carried stage are called.
+    """New names of the mounted stage.
 
-    `on` is its ground; `drawn`: bodies that its units draw, which keep their names there; `brings_platform`: its platform is that of all.
+    `on` is its ground; `drawn` are bodies of its units, which keep their names; `brings_platform`: its platform is that of both stages.
     """
 
     name: str
@@ -156,17 +157,17 @@ class _Names:
     brings_platform: bool
 
     def body(self, body: str) -> str:
-        """A body of the stage or of a copy."""
+        """Name of a body of the stage or of an instance."""
         if body == GROUND:
             return self.on
         return body if body == PLATFORM and self.brings_platform else f"{self.name}/{body}"
 
     def key(self, section: str, key: str) -> str:
-        """An entry of a section."""
+        """Name of an entry of a section."""
         return self.body(key) if section == "bodies" else f"{self.name}/{key}"
 
     def inside(self, section: str, item: Any) -> Any:
-        """An entry of a section, with its references under their new names."""
+        """An entry of a section with renamed references."""
         own = self.drawn if section == "units" else ()
 
         def change(field_name: str, text: str) -> str:
@@ -178,13 +179,13 @@ class _Names:
 
 
 def _placed(entries: Mapping[str, Any], outer: Frame) -> Iterator[tuple[str, Any]]:
-    """Copies one by one, each in its pose in the carrying stage."""
+    """Single instances, each with its pose in the carrying stage."""
     for name, item, frame in patterned(entries):
         yield name, replace(item, pattern=_pose(frame.within(outer)))
 
 
 def _gauges(carried: Mechanism, name: str, frame: Frame) -> Iterator[tuple[str, GaugePlace]]:
-    """The gauges one by one: what looks at bodies in its new pose, what reads links or other gauges by their new names."""
+    """Single gauges: with a new pose, or with new names of links and gauges."""
     for key, item in carried.gauges.items():
         if isinstance(item, Probe):
             yield from _placed({key: item}, frame)
@@ -196,7 +197,7 @@ def _gauges(carried: Mechanism, name: str, frame: Frame) -> Iterator[tuple[str, 
 
 
 def _pose(frame: Frame) -> Pose:
-    """The pose of a frame; a left-handed one is the image of another in the plane across x."""
+    """Pose of a frame; a left-handed one is a mirror image in the plane normal to x."""
     plain = frame.within(reflection(0)) if frame.mirrored else frame
     along, up = (_components(plain.rotation[..., :, axis]) for axis in (0, 2))
     return Pose(_components(plain.position), along, up, Normal.X if frame.mirrored else None)
@@ -216,7 +217,7 @@ def _point(frame: Frame, at: Vector) -> Vector:
 
 
 def _turned(inertia: Inertia | None, frame: Frame) -> Inertia | None:
-    """Moments of inertia along the axes of the carrying stage: R J R^T."""
+    """Moments of inertia in the axes of the carrying stage: R J R^T."""
     if inertia is None or np.array_equal(frame.rotation, identity().rotation):
         return inertia
     matrix = frame.rotation @ tensor(inertia) @ np.swapaxes(frame.rotation, -1, -2)
@@ -247,7 +248,7 @@ def _override(name: str, key: str) -> str:
 
 
 def _provenance(stage: Mechanism, rename: _Names, carried: Mechanism) -> tuple[Table, Table]:
-    """Tags by their new addresses, and sources, those of other text but the same key under a new one."""
+    """Tags by new addresses, and sources; a source of equal key but different text gets a new key."""
     name = rename.name
     keys = {key: key if stage.sources.get(key, text) == text else f"{name}/{key}" for key, text in carried.sources.items()}
     tags: dict[str, str] = {}
@@ -265,9 +266,9 @@ def _provenance(stage: Mechanism, rename: _Names, carried: Mechanism) -> tuple[T
 
 
 def mount_all(stage: Mechanism, carried: Mapping[str, tuple[Mount, Mechanism]]) -> Mechanism:
-    """Return the stage with all that it carries, each after the one that it stands on. What it states of the ground itself holds for all.
+    """Return the stage with all mounted stages, each after its carrier. The ground specified in the stage applies to all.
 
-    Where the stage has no body `platform`, the stage that carries no other brings it. Raises `DesignError` where several do.
+    Without a body `platform` in the stage, the platform is that of the topmost stage. Raises `DesignError` for several topmost stages.
 
     >>> mount_all(Mechanism("bare"), {}).name
     'bare'
@@ -283,7 +284,7 @@ def mount_all(stage: Mechanism, carried: Mapping[str, tuple[Mount, Mechanism]]) 
 
 
 def _under_ground_of(stage: Mechanism, carried: Mechanism) -> Mechanism:
-    """The carried stage without what the stage itself states of the ground."""
+    """The mounted stage without ground properties that the stage specifies."""
     warm = _temperatures(carried)
     if GROUND in _temperatures(stage):
         warm.pop(GROUND, None)
@@ -291,12 +292,12 @@ def _under_ground_of(stage: Mechanism, carried: Mechanism) -> Mechanism:
 
 
 def _top(stage: Mechanism, carried: Mapping[str, Mount]) -> str | None:
-    """Which of the carried stages brings the platform; none if the stage has one."""
+    """Mounted stage with the platform; none if the stage has one."""
     if PLATFORM in stage.bodies or not carried:
         return None
     bearing = {item.on.partition("/")[0] for item in carried.values()}
     top = [name for name in carried if name not in bearing]
     if len(top) != 1:
-        what = f'there is no body "{PLATFORM}", and not one of the stages is on top of all others, but {", ".join(top) or "none"}'
+        what = f'unknown body "{PLATFORM}", and not one of the stages is on top of all others, but {", ".join(top) or "none"}'
         raise refuse("stages", what, f"Declare the moving part under bodies.{PLATFORM}")
     return top[0]

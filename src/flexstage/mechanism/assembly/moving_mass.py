@@ -12,7 +12,7 @@ from flexstage.spatial.frame import rigid_inertia
 
 
 def carried_masses(mechanism: Mechanism, placed: PlacedBody) -> tuple[MassProperties, ...]:
-    """Mass properties of the body itself, where it has mass, and of each payload it carries, in the stage's frame.
+    """Return mass properties of the body, if it has mass, and of each of its payloads, in the stage's frame.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -29,7 +29,7 @@ def carried_masses(mechanism: Mechanism, placed: PlacedBody) -> tuple[MassProper
 
 
 def moving_inertia(mechanism: Mechanism, placed: PlacedBody) -> Array | None:
-    """6x6 inertia (..., 6, 6) of the body with its payloads for its twist at its reference, in the stage's axes; `None` without mass.
+    """Compute the inertia (..., 6, 6) of the body with payloads at its reference, in the stage's axes; `None` without mass.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

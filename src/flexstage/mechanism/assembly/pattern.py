@@ -15,7 +15,7 @@ ORIGIN: Vector = (0.0, 0.0, 0.0)
 
 
 def between(start: Vector, end: Vector) -> Vector:
-    """The way from one point to another.
+    """Return the vector from one point to another.
 
     >>> between((1.0, 0.0, 0.0), (3.0, 1.0, 0.0))
     (2.0, 1.0, 0.0)
@@ -24,7 +24,7 @@ def between(start: Vector, end: Vector) -> Vector:
 
 
 def middle(start: Vector, end: Vector) -> Vector:
-    """The point half way between two.
+    """Return the midpoint of two points.
 
     >>> middle((1.0, 0.0, 0.0), (3.0, 1.0, 0.0))
     (2.0, 0.5, 0.0)
@@ -42,7 +42,7 @@ class InstanceOrientation(Enum):
 
 
 class Normal(Enum):
-    """The normal of a plane through the stage's origin that copies are mirrored in."""
+    """Normal of a mirror plane through the stage's origin."""
 
     X = "x"
     Y = "y"
@@ -51,12 +51,12 @@ class Normal(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Polar(Description):
-    """Copies at equal steps on a circle around the stage's z axis.
+    """Polar pattern: instances at equal steps on a circle around the stage's z axis.
 
-    `first` is the *position angle* of the first copy, counted from x towards y; `facing` the direction of each copy's x axis, then
-    turned by `turn` about z. Each copy's z axis is the stage's z axis (`InstanceOrientation.AXIS`: x up, z inward). `step` is
-    the angle between copies; absent: a full circle shared by the copies. With `mirror` all copies are the images of these in the stage's
-    plane of that normal.
+    `first` is the *position angle* of the first instance, from x towards y; `facing` the direction of each instance's x axis. It is then
+    rotated by `turn` about z. Each instance's z axis is the stage's z axis (`InstanceOrientation.AXIS`: x up, z inward). `step` is the
+    angle between instances (default: equal division of a full circle). `mirror`: mirror images of all instances in the stage's plane with
+    that normal.
     """
 
     radius: Annotated[Number, LENGTH, NOT_NEGATIVE]
@@ -70,10 +70,10 @@ class Polar(Description):
 
 @dataclass(frozen=True, eq=False)
 class Pose(Description):
-    """A single copy: its origin `at`, its x axis `along`, its z axis `up` (directions need no unit length; they must be perpendicular).
+    """Pose of a single instance: origin `at`, x axis `along`, z axis `up` (perpendicular, of any length).
 
-    Instead of `at` and `along` two points of its x axis may be given: the origin `start`, and an `end` that x points to. With `mirror` the
-    copy is the image of that one in the stage's plane of that normal.
+    Two points of the x axis may replace `at` and `along`: the origin `start`, and an `end` in the direction of x. `mirror`: the mirror
+    image in the stage's plane with that normal.
     """
 
     at: Annotated[Vector, LENGTH] = (0.0, 0.0, 0.0)
@@ -85,12 +85,12 @@ class Pose(Description):
 
     @property
     def origin(self) -> Vector:
-        """Where the copy's origin is."""
+        """Origin of the instance."""
         return self.at if self.start is None else self.start
 
     @property
     def direction(self) -> Vector:
-        """The direction of its x axis."""
+        """Direction of the x axis."""
         return self.along if self.start is None or self.end is None else between(self.start, self.end)
 
 
@@ -98,7 +98,7 @@ Pattern: TypeAlias = Polar | Pose
 
 
 def copy_names(key: str) -> tuple[str, ...]:
-    """The copies that a placement key names.
+    """Return the instances named by a placement key.
 
     >>> copy_names("B1-B3"), copy_names("top")
     (('B1', 'B2', 'B3'), ('top',))

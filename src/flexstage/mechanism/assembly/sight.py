@@ -1,4 +1,4 @@
-"""What gauges look at: components of relative twists, of links too, and weighted sums of them."""
+"""Measured quantities of gauges: components of relative twists, also of links, and weighted sums."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from flexstage.spatial.frame import Frame
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """One thing that a gauge reads: a component of the twist of `body` at `frame` less that of `base` at `foot`, times `weight`.
+    """One term of a reading: a component of the twist of `body` at `frame` minus that of `base` at `foot`, times `weight`.
 
-    Each in the axes of its frame. The two are one frame but for gauges on links, whose faces are apart.
+    Each in the axes of its frame. Both frames are equal except for gauges on links.
     """
 
     body: str
@@ -36,7 +36,7 @@ class Sight:
 
 @dataclass(frozen=True, eq=False)
 class PlacedGauge:
-    """A gauge of the expanded stage: its reading is the sum of its `sights`. Of a sum `members` are the gauges with their weights."""
+    """Gauge of the expanded stage: its reading is the sum of its `sights`. `members` of a sum are gauges with their weights."""
 
     name: str
     gauge: Instrument
@@ -45,18 +45,18 @@ class PlacedGauge:
 
     @property
     def unit(self) -> str:
-        """Unit of its reading: m or rad."""
+        """Unit of the reading: m or rad."""
         return self.gauge.quantity.si
 
     @property
     def single(self) -> Sight | None:
-        """What it looks at; absent of sums."""
+        """The only term; none for sums."""
         return None if self.members else self.sights[0]
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedStop:
-    """A stop of the expanded stage: what it sees of its `sight` stays between `low` and `high` (...) [m], infinite where it is open."""
+    """Stop of the expanded stage: `low` and `high` (...) [m] bound the motion of its `sight`, infinite on an open side."""
 
     sight: Sight
     low: Array
@@ -64,19 +64,19 @@ class PlacedStop:
 
 
 def place_stop(stop: Stop, frame: Frame) -> PlacedStop:
-    """A stop at a frame: it sees the body's motion along x against the base's, as a gauge of a gap does."""
+    """Return a stop at a frame: the body's motion along x against the base's, as for a gap gauge."""
     seen = Sight(stop.body, stop.base, frame, frame, Freedom.X.index, 1.0)
     return PlacedStop(seen, np.asarray(-np.inf if stop.gap_negative is None else -stop.gap_negative), np.asarray(stop.gap))
 
 
 def sight(probe: Probe, gauge: Instrument, frame: Frame) -> Sight:
-    """What a gauge sees that stands at a frame."""
+    """Return the measured quantity of a gauge at a frame."""
     sign = -1.0 if probe.positive is SensorSense.CLOSES else 1.0
     return Sight(probe.body, probe.base or GROUND, frame, frame, gauge.freedom.index, sign)
 
 
 def sight_of_link(first: str, second: str, frame: Frame, part: Part, gauge: Instrument) -> Sight:
-    """What a gauge on a link sees: the second body where it meets the link against the first where that does."""
+    """Return the measured quantity of a gauge on a link: second body against first, each at its end."""
     half = 0.5 * np.asarray(span(part))[..., None] * frame.rotation[..., :, 0]
     return Sight(
         second,
@@ -89,7 +89,7 @@ def sight_of_link(first: str, second: str, frame: Frame, part: Part, gauge: Inst
 
 
 def link_names(text: str) -> tuple[str, ...]:
-    """The links that a gauge's `link` names.
+    """Return the links named by a gauge's `link`.
 
     >>> link_names("B1-B3/pzt"), link_names("strut")
     (('B1/pzt', 'B2/pzt', 'B3/pzt'), ('strut',))
@@ -99,7 +99,7 @@ def link_names(text: str) -> tuple[str, ...]:
 
 
 def place_sum(name: str, place: GaugeSum, gauges: Mapping[str, GaugePlace], single: Mapping[str, PlacedGauge]) -> PlacedGauge:
-    """A sum as its members see; sums among them are taken apart."""
+    """Return the terms of a sum from its members; nested sums are expanded."""
     members: dict[str, Number] = {}
     for member, weight in _members(place, gauges):
         members[member] = members.get(member, 0.0) + weight
@@ -120,7 +120,7 @@ def _members(place: GaugeSum, gauges: Mapping[str, GaugePlace]) -> Iterator[tupl
 
 
 def gauge_findings(mechanism: Mechanism, links: Collection[str]) -> Iterator[Finding]:
-    """Findings about what gauges stand on and sum up, where their sensors are known; `links` are those of the expanded stage."""
+    """Return errors in poses, links and sums of gauges with known sensors; `links` are those of the expanded stage."""
     for key, place in mechanism.gauges.items():
         if isinstance(place, GaugeSum):
             yield from _sum_findings(f"gauges.{key}", key, place, mechanism.gauges)
@@ -133,23 +133,23 @@ def _place_findings(where: str, key: str, place: Probe | LinkProbe, gauge: Instr
     if isinstance(place, LinkProbe):
         yield from _link_findings(f"{where}.link", key, place, links)
     elif gauge.inside:
-        what = f"{place.gauge} is a gauge on a link, and no link is named"
-        yield Finding(where, what, 'Write link = "B1/pzt", say, in the place of body and pose')
+        what = f"link missing for {place.gauge}, a gauge on a link"
+        yield Finding(where, what, 'Use e.g. link = "B1/pzt" instead of body and pose')
     elif gauge.gap and place.positive is None:
-        yield Finding(where, "it has no positive", 'Write for example positive = "opens"')
+        yield Finding(where, "it has no positive", 'Use e.g. positive = "opens"')
     elif not gauge.gap and place.positive is not None:
-        what = f"{place.gauge} reads along or about the gauge's own x axis, and no gap {place.positive.value}"
-        yield Finding(f"{where}.positive", what, "Leave it out; turn the x axis round for the other sign")
+        what = f"{place.gauge} has no gap that {place.positive.value}; it reads along or about its x axis"
+        yield Finding(f"{where}.positive", what, "Remove it; reverse the x axis for the other sign")
 
 
 def _link_findings(where: str, key: str, place: LinkProbe, links: Collection[str]) -> Iterator[Finding]:
     named, gauges = link_names(place.link), copy_names(key)
     if len(named) != len(gauges):
-        what = f'"{place.link}" names {_count(named, "link")}, and {key} {_count(gauges, "gauge")}'
-        yield Finding(where, what, "Name as many links as gauges")
+        what = f"wrong number of links (got {_count(named, 'link')} for {_count(gauges, 'gauge')})"
+        yield Finding(where, what, "Use one link per gauge")
     for name in named:
         if name not in links:
-            yield Finding(where, f'there is no link "{name}"', suggest_nearest(name, links))
+            yield Finding(where, f'unknown link "{name}"', suggest_nearest(name, links))
 
 
 def _count(names: tuple[str, ...], noun: str) -> str:
@@ -158,19 +158,19 @@ def _count(names: tuple[str, ...], noun: str) -> str:
 
 def _sum_findings(where: str, key: str, place: GaugeSum, gauges: Mapping[str, GaugePlace]) -> Iterator[Finding]:
     if len(copy_names(key)) > 1:
-        yield Finding(where, f"a sum is one gauge, and {key} names several", "Give each sum a table of its own")
+        yield Finding(where, f"a sum is a single gauge (got several in {key})", "Use one table per sum")
     if not place.sum:
-        yield Finding(f"{where}.sum", "it has no members", "Write for example sum = { S1 = 0.5, S2 = -0.5 }")
+        yield Finding(f"{where}.sum", "it has no members", "Use e.g. sum = { S1 = 0.5, S2 = -0.5 }")
     known = [name for other in gauges for name in copy_names(other) if other != key]
     for name in place.sum:
         if name not in known:
-            yield Finding(f"{where}.sum.{name}", f'there is no other gauge "{name}"', suggest_nearest(name, known))
+            yield Finding(f"{where}.sum.{name}", f'unknown gauge "{name}"', suggest_nearest(name, known))
     if key in _circle(gauges):
-        yield Finding(f"{where}.sum", "it takes itself up", "Name other gauges")
+        yield Finding(f"{where}.sum", "circular sum", "Use other gauges")
 
 
 def _circle(gauges: Mapping[str, GaugePlace]) -> list[str]:
-    """Sums that take one another up in a circle, the first that is found."""
+    """First circle of nested sums."""
     try:
         TopologicalSorter({name: place.sum for name, place in gauges.items() if isinstance(place, GaugeSum)}).prepare()
     except CycleError as error:
@@ -192,5 +192,5 @@ def _mixture_findings(mechanism: Mechanism) -> Iterator[Finding]:
         if isinstance(place, GaugeSum):
             counted = Counter(units[name] for name, _ in _members(place, mechanism.gauges) if name in units)
             if len(counted) > 1:
-                what = f"its members read {' and '.join(sorted(counted))}"
+                what = f"different quantities ({' and '.join(sorted(counted))})"
                 yield Finding(f"gauges.{key}.sum", what, "Sum gauges of one quantity")

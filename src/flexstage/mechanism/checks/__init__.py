@@ -1,7 +1,7 @@
-"""Checks of a description: everything that is wrong with it, told so that it can be mended.
+"""Checks of a description, with all errors.
 
-`check` asks, `require_valid` throws. Checks are vectorised: of a batch they name the first failing index. What needs the elastic model (a
-mechanism that gives way) is found by the models.
+`check` returns errors, `require_valid` raises them. Checks are vectorised: they report the first failing index of a batch. Models report
+errors that require elasticity (a free internal mode).
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ __all__ = ["check", "copy_findings", "package_findings", "require_valid"]
 
 @check_arguments
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Return all findings about a description, none if it can be read.
+    """Return all errors of a description; none for a valid one.
 
-    A check is left out where its ground is not sound: numbers are not compared before they are finite, links not turned before their parts
-    are sound, the graph is not followed before its names exist, files of matrices are not read before all else is sound.
+    A check is skipped if its assumptions fail. Numbers are compared if finite, links oriented if their parts are valid. The graph is
+    searched if its names exist; matrix files are read if all else is valid.
 
     >>> [str(finding) for finding in check(Mechanism("empty"))]
-    ['bodies: there is no body "platform". Declare the moving part under bodies.platform.']
+    ['bodies: unknown body "platform". Declare the moving part under bodies.platform.']
     """
     for ground in (kind_findings, copy_findings, place_findings):
         if findings := tuple(ground(mechanism)):
@@ -53,12 +53,12 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 
 def require_valid(mechanism: Mechanism) -> Mechanism:
-    """Return the description if there are no findings about it, else raise them together as `DesignError`.
+    """Return a valid description, else raise all errors as `DesignError`.
 
     >>> require_valid(Mechanism("empty"))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: bodies: there is no body "platform". Declare the moving part under bodies.platform.
+    flexstage.base.finding.DesignError: bodies: unknown body "platform". Declare the moving part under bodies.platform.
     """
     require(check(mechanism))
     return mechanism

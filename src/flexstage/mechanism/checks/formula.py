@@ -1,4 +1,4 @@
-"""Checks of named numbers and formulas: spelling, units, circles, and values equal to those that their formulas give."""
+"""Checks of named numbers and formulas: spelling, units, circular references, and values equal to their formulas."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _ALIKE = 1e-9
 
 
 def formula_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about named numbers and formulas that a description in Python may have: files are so by their reading.
+    """Return errors of named numbers and formulas in a Python description; the file reader ensures these for files.
 
     >>> print(*formula_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "ells")})))
-    numbers.arm: "ells" is not a known unit. Give it a unit, such as mm, or 1 for a ratio.
+    numbers.arm: "ells" is not a known unit. Use a unit, e.g. mm, or 1 for a ratio.
     """
     for name, number in mechanism.numbers.items():
         yield from spelling_findings(name)
@@ -48,10 +48,10 @@ def formula_findings(mechanism: Mechanism) -> Iterator[Finding]:
             continue
         number = mechanism.numbers.get(address.removeprefix(PREFIX)) if address.startswith(PREFIX) else None
         if number is not None and number.unit != (unit := shown_unit(amount_of(number))):
-            yield Finding(address, f"its formula gives it in {unit}, and its unit is {number.unit}", f"Write {unit}")
+            yield Finding(address, f"wrong unit (got {number.unit}, expected {unit} by its formula)", f"Use {unit}")
         if found is None or not np.allclose(found, wanted, rtol=_ALIKE, atol=0.0):
-            what = f'its formula "{mechanism.formulas[address]}" gives {_si(wanted)}, and its value is {_si(found)} (SI)'
-            yield Finding(address, what, "Set the value by the formula, or take the formula out")
+            what = f'wrong value (got {_si(found)}, expected {_si(wanted)} in SI by its formula "{mechanism.formulas[address]}")'
+            yield Finding(address, what, "Use the value of the formula, or remove the formula")
 
 
 def _si(value: Any) -> str:
@@ -62,4 +62,4 @@ def _unit_findings(name: str, number: NamedNumber) -> Iterator[Finding]:
     try:
         quantity_of_unit(number.unit)
     except ValueError as error:
-        yield Finding(PREFIX + name, str(error), "Give it a unit, such as mm, or 1 for a ratio")
+        yield Finding(PREFIX + name, str(error), "Use a unit, e.g. mm, or 1 for a ratio")

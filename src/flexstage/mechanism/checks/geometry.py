@@ -1,4 +1,4 @@
-"""Geometry of single parts and bodies: what cannot be made, and what is no mass."""
+"""Checks of single parts and bodies: impossible geometry and mass properties."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ from flexstage.parts.shape import Elastic, Order, Shaped
 from flexstage.parts.superelement import Superelement
 
 _NEAR = 1e-6
-"""How far the ends of a link may miss its part's length [m]: points are written with as many digits."""
+"""Tolerance between the distance of a link's ends and its part's length [m]: rounding of points in files."""
 _SLACK = 1e-9
-"""Relative slack of comparisons that rounding may spoil: a thin plate has xx + yy = zz."""
+"""Relative tolerance for rounding: a thin plate has xx + yy = zz."""
 
 
 _MOMENT_DIGITS = 5
-"""Digits of moments of inertia below which rounding does not excuse what no mass has: a thin bar's least one is a difference of entries."""
+"""Least number of digits of moments of inertia for the rounding tolerance: the least moment of a thin bar is a difference."""
 
 
 def geometry_findings(mechanism: Mechanism, *, overrides: bool = True) -> Iterator[Finding]:
-    """Findings about materials, parts, solids, stated masses and payloads; with `overrides` also about parts of single copies.
+    """Return errors of materials, parts, solids, specified masses and payloads; with `overrides`, also of parts of single instances.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.03, thickness=0.012, width=0.01)
     >>> print(*geometry_findings(Mechanism("", parts={"blade": leaf})))
-    parts.blade.thickness: found 12 mm, which is not below the width, 10 mm. Exchange them, or turn the link's bends.
+    parts.blade.thickness: must be below the width, 10 mm (got 12 mm). Exchange them, or turn the link's bends.
     """
     for name, material in mechanism.materials.items():
         yield from (replace(fault, where=f"materials.{name}.{fault.where}") for fault in material.faults)
@@ -60,13 +60,13 @@ def geometry_findings(mechanism: Mechanism, *, overrides: bool = True) -> Iterat
     yield from _lengths(mechanism)
     for name, payload in mechanism.payloads.items():
         if payload.point and payload.inertia is not None:
-            yield Finding(f"payloads.{name}.point", "it states an inertia, and a point has none", "Leave one of them out")
+            yield Finding(f"payloads.{name}.point", "a point has no inertia", "Remove point or the inertia")
         if payload.inertia is not None:
             yield from _inertia(f"payloads.{name}.inertia", payload.inertia)
 
 
 def _lengths(mechanism: Mechanism) -> Iterator[Finding]:
-    """Links between two points that are not as far apart as their part is long."""
+    """Errors for links with ends not at the distance of their part's length."""
     for where, link in every_link(mechanism):
         part = mechanism.parts.get(link.part)
         own = None if part is None else inner(part)
@@ -77,12 +77,12 @@ def _lengths(mechanism: Mechanism) -> Iterator[Finding]:
         if np.any(off):
             at, values = first_failing(off, apart, np.asarray(own.span))
             found, length = (show(value, LENGTH, digits=6) for value in values)
-            what = f"from and to are {found} apart, and part {link.part} is {length} long"
-            yield Finding(f"{where}{at}", what, "Move an end, or give the part that length")
+            what = f"wrong distance of from and to (got {found}, expected the length of part {link.part}, {length})"
+            yield Finding(f"{where}{at}", what, "Move an end, or change the part's length")
 
 
 def _without_image(mechanism: Mechanism) -> Iterator[Finding]:
-    """Mirrored copies of what has no mirror image, or none that is known."""
+    """Errors for mirrored instances of parts without a known mirror image."""
     for key, placement in mechanism.placements.items():
         unit = drawn_units(mechanism).get(placement.unit)
         if placement.pattern.mirror is None or unit is None:
@@ -94,7 +94,7 @@ def _without_image(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def matrix_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about the files of superelements: presupposes that what the description states of them is sound.
+    """Return errors of superelement files, for valid descriptions of them.
 
     >>> list(matrix_findings(Mechanism("")))
     []
@@ -105,7 +105,7 @@ def matrix_findings(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def _departed_parts(mechanism: Mechanism) -> Iterator[tuple[str, Part]]:
-    """The parts as they are after the overrides, by the link or the copy that departs."""
+    """Overridden parts, by link or instance."""
     places = [locate(mechanism, key) for key in mechanism.overrides]
     for owners in dict.fromkeys(place.owners for place in places if not place.misaligned):
         yield owners[-1], apply_overrides(mechanism, follow(mechanism, link_path(mechanism, owners[0])), owners)[1]
@@ -115,7 +115,7 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
     if isinstance(part, Restricted):
         yield from _part(f"{where}.part", part.part)
         for freedom in set(part.elastic) & set(part.free):
-            yield Finding(where, f"freedom {freedom.value} is both elastic and free", "Name it once")
+            yield Finding(where, f"degree of freedom {freedom.value} both elastic and free", "Use it once")
         return
     yield from _orders(where, part.orders if isinstance(part, Elastic) else ())
     if isinstance(part, Elastic):
@@ -125,7 +125,7 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
 
 
 def _orders(where: str, orders: Iterable[Order]) -> Iterator[Finding]:
-    """A number is less than another one, or at most as large."""
+    """Errors in the order of two numbers."""
     for order in orders:
         if order.small is None or order.large is None:
             continue
@@ -134,33 +134,33 @@ def _orders(where: str, orders: Iterable[Order]) -> Iterator[Finding]:
         if np.any(failing):
             at, values = first_failing(failing, small, large)
             found, other = (show(value, order.quantity, digits=6) for value in values)
-            what = f"found {found}, which is not {'below' if order.strict else 'at most'} {order.other}, {other}"
+            what = f"must be {'below' if order.strict else 'at most'} {order.other}, {other} (got {found})"
             yield Finding(f"{where}.{order.field}{at}", what, order.advice)
 
 
 def _body(where: str, body: Body) -> Iterator[Finding]:
     stated = [name for name in ("mass", "centre", "inertia") if getattr(body, name) is not None]
     if stated and body.solids:
-        yield Finding(where, f"it has solids and states its {', '.join(stated)}", "Leave one of them: mass comes from either")
+        yield Finding(where, f"both solids and {', '.join(stated)} specified", "Remove one of them: either determines the mass")
     elif stated and body.mass is None:
-        yield Finding(where, f"it states its {', '.join(stated)} without a mass", "State the mass too")
+        yield Finding(where, f"{', '.join(stated)} without a mass", "Specify the mass too")
     if body.inertia is not None:
         yield from _inertia(f"{where}.inertia", body.inertia)
     if body.point and (body.mass is None or body.inertia is not None):
-        yield Finding(f"{where}.point", "only a stated mass without inertia can be meant as a point", "Leave out point, or the inertia")
+        yield Finding(f"{where}.point", "a point requires a specified mass without inertia", "Remove point, or the inertia")
     for name, solid in body.solids.items():
         yield from _solid(f"{where}.solids.{name}", solid)
 
 
 def _lent(where: str, body: Body, owner: Body | None) -> Iterator[Finding]:
-    """A body of another one has outlines only, and its owner takes its mass from outlines too."""
+    """Errors for a body `of` another one: both must have masses from outlines only."""
     stated = [name for name in ("mass", "centre", "inertia", "reference") if getattr(body, name) is not None]
     if stated:
-        what = f'it is of "{body.of}" and states its {", ".join(stated)}'
-        yield Finding(where, what, f'Leave these out, or state them of "{body.of}"')
+        what = f'{", ".join(stated)} not allowed for a body of "{body.of}"'
+        yield Finding(where, what, f'Remove these, or specify them for "{body.of}"')
     if owner is not None and owner.mass is not None and body.solids:
-        what = f'it lends solids to "{body.of}", which states its mass'
-        yield Finding(where, what, f'Leave the mass out: that of "{body.of}" then comes from all its solids')
+        what = f'its solids belong to "{body.of}", which has a specified mass'
+        yield Finding(where, what, f'Remove the mass: all solids then determine the mass of "{body.of}"')
     for name, solid in body.solids.items():
         yield from _solid(f"{where}.solids.{name}", solid)
 
@@ -174,20 +174,22 @@ def _solid(where: str, solid: Solid) -> Iterator[Finding]:
 
 
 def _polygon(where: str, solid: Extrusion) -> Iterator[Finding]:
-    """A polygon has three corners or more, and its sides meet only there."""
+    """Errors of a polygon: fewer than three corners, or intersecting sides."""
     if len(solid.outline) < 3:
-        yield Finding(where, f"it has {len(solid.outline)} corners", "Give three or more, one after the other round the polygon")
+        yield Finding(
+            where, f"too few corners (got {len(solid.outline)}, expected 3 or more)", "List the corners in order round the polygon"
+        )
         return
     corners = first_design(np.real(solid.corners), 2)
     after = np.roll(corners, -1, axis=0)
     for here, there in itertools.combinations(range(len(corners)), 2):
         apart = there - here not in (1, len(corners) - 1)
         if np.all(corners[here] == corners[there]) or (apart and _cross((corners[here], after[here]), (corners[there], after[there]))):
-            what = f"its sides from corner {here + 1} and from corner {there + 1} meet"
-            yield Finding(where, what, "Give the corners one after the other round the polygon, each once")
+            what = f"its sides from corner {here + 1} and from corner {there + 1} intersect"
+            yield Finding(where, what, "List the corners in order round the polygon, each once")
             return
     if abs(winding(corners)) <= _SLACK * float(np.max(np.abs(corners))) ** 2:
-        yield Finding(where, "its corners lie on a line", "Give a polygon that encloses an area")
+        yield Finding(where, "its corners are collinear", "Use a polygon with an area")
 
 
 def _cross(one: tuple[Array, Array], other: tuple[Array, Array]) -> bool:
@@ -198,11 +200,11 @@ def _cross(one: tuple[Array, Array], other: tuple[Array, Array]) -> bool:
 
 
 def _inertia(where: str, inertia: Inertia) -> Iterator[Finding]:
-    """No mass has a principal moment above the sum of the other two, or a negative one, by more than its digits are rounded."""
+    """Errors of principal moments: negative, or above the sum of the other two, beyond rounding."""
     matrix = np.real(tensor(inertia))
     principal = np.linalg.eigvalsh(matrix)
     total = functools.reduce(np.add, np.moveaxis(principal, -1, 0))
-    rounded = 0.75 * 10.0 ** (1 - max(_MOMENT_DIGITS, *map(_digits, np.ravel(matrix))))  # three entries a row, each half of a digit
+    rounded = 0.75 * 10.0 ** (1 - max(_MOMENT_DIGITS, *map(_digits, np.ravel(matrix))))  # three entries per row, each half a digit
     slack = max(_SLACK, rounded) * np.abs(total)
     lacking = total - 2.0 * principal[..., 2] < -slack
     negative = principal[..., 0] < -slack
@@ -210,12 +212,12 @@ def _inertia(where: str, inertia: Inertia) -> Iterator[Finding]:
     if np.any(failing):
         at, values = first_failing(failing, *np.moveaxis(principal, -1, 0))
         told = ", ".join(f"{value:.6g}" for value in values)
-        what = f"its principal moments are {told} kg m^2: none may be negative or above the sum of the other two"
+        what = f"invalid principal moments (got {told} kg m^2, expected none negative or above the sum of the other two)"
         yield Finding(f"{where}{at}", what, "Check the moments and the signs of the products")
 
 
 def _digits(value: float) -> int:
-    """With how many significant digits a number is written, at most twelve.
+    """Number of significant digits of a number, at most twelve.
 
     >>> _digits(4.25e-7), _digits(130e-9)
     (3, 2)

@@ -1,4 +1,4 @@
-"""The graph of bodies and links: everything hangs together, and no actuator pushes into the void."""
+"""Checks of the graph of bodies and links: connected bodies, actuators between ground and platform."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM, Mechanism
 from flexstage.parts.part import imposes_stroke
 
 _Neighbours: TypeAlias = Mapping[str, set[str]]
-"""By body, the bodies that links join it to."""
+"""Adjacent bodies, by body."""
 
 
 @dataclass(frozen=True)
 class _Edge:
-    """A link of the expanded stage: its name, the bodies it joins, its part's name."""
+    """Link of the expanded stage: name, joined bodies, part."""
 
     name: str
     joins: tuple[str, str]
@@ -26,11 +26,11 @@ class _Edge:
 
 
 def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about the expanded graph; presupposes that its names exist.
+    """Return errors of the expanded graph, for existing names.
 
     >>> from flexstage.parts.body import Body
     >>> print(*graph_findings(Mechanism("", bodies={"platform": Body(mass=1.0)})))
-    platform: no chain of links leads from it to the ground. Join it by a link, or remove it.
+    platform: not connected to the ground. Join it by a link, or remove it.
     """
     bodies, edges = _graph(mechanism)
     neighbours = _neighbours(edges)
@@ -39,8 +39,8 @@ def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
     used = _on_a_path(edges) if PLATFORM in reached else {edge.name for edge in edges}
     for edge in edges:
         if imposes_stroke(mechanism.parts[edge.part]) and edge.name not in used and set(edge.joins) <= reached:
-            what = f"the actuator joins {edge.joins[0]} and {edge.joins[1]}, on no path between ground and platform"
-            yield Finding(edge.name, what, "Lead one of its ends to the ground and the other to the platform, or remove it")
+            what = f"the actuator between {edge.joins[0]} and {edge.joins[1]} is not on a path from ground to platform"
+            yield Finding(edge.name, what, "Connect one end to the ground and the other to the platform, or remove it")
 
 
 def _graph(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
@@ -54,20 +54,22 @@ def _graph(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:
 
 
 def _edges(name: str, part: str, joins: tuple[str, ...]) -> Iterator[_Edge]:
-    """A link as an edge; one with ports as edges from its first body to each other."""
+    """A link as an edge; one with ports as edges from its first body to each other body."""
     first, *others = dict.fromkeys(joins)
     yield from (_Edge(name if len(others) == 1 else f"{name}.{other}", (first, other), part) for other in others)
 
 
 def _loose_findings(loose: Iterable[str], neighbours: _Neighbours) -> Iterator[Finding]:
-    """One finding for bodies that hang together, however many: one link may be what is missing."""
+    """One error per connected group of bodies: a single link may be missing."""
     rest = dict.fromkeys(loose)
     while rest:
         first = next(iter(rest))
         group = _reach(neighbours, first)
         others = [body for body in rest if body in group and body != first]
-        also, them = (f", {name_first(others)}", "one of them by a link, or remove them") if others else ("", "it by a link, or remove it")
-        yield Finding(first, f"no chain of links leads from it{also} to the ground", f"Join {them}")
+        also, them = (
+            (f" (with {name_first(others)})", "one of them by a link, or remove them") if others else ("", "it by a link, or remove it")
+        )
+        yield Finding(first, f"not connected to the ground{also}", f"Join {them}")
         rest = {body: None for body in rest if body not in group}
 
 
@@ -81,7 +83,7 @@ def _neighbours(edges: Iterable[_Edge]) -> _Neighbours:
 
 
 def _reach(neighbours: _Neighbours, start: str) -> set[str]:
-    """The bodies that hang together with one."""
+    """Bodies connected with one."""
     reached, front = {start}, [start]
     while front:
         new = neighbours.get(front.pop(), set()) - reached
@@ -91,10 +93,10 @@ def _reach(neighbours: _Neighbours, start: str) -> set[str]:
 
 
 def _on_a_path(edges: list[_Edge]) -> set[str]:
-    """The links on any path between ground and platform that visits no body twice.
+    """Links on any simple path between ground and platform.
 
-    They form one block (two-connected part) with a closing edge between the two: depth-first search after Hopcroft and Tarjan 1973, begun
-    with that edge, so that its block is the first to be complete at the ground.
+    They form a biconnected component with a closing edge between the two. Depth-first search (Hopcroft and Tarjan 1973) starts with that
+    edge, so that its component is the first complete one at the ground.
     """
     ways: dict[str, list[tuple[str, str]]] = {}
     for edge in (_Edge("", (GROUND, PLATFORM), ""), *edges):

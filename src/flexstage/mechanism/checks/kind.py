@@ -1,4 +1,4 @@
-"""Values are of the kind that their field asks for, and the packages that offer kinds are installed."""
+"""Checks of the kinds of values, and of the packages that provide kinds."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 def kind_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about values of classes that no register lists: they cannot be written to a file.
+    """Return errors for values of unregistered classes, which files cannot hold.
 
     >>> from flexstage.parts.rod import Rod
     >>> class Wire(Rod): ...
     >>> print(*kind_findings(Mechanism("", parts={"wire": Wire("steel", length=0.03, diameter=0.001)})))
-    parts.wire: found Wire(... where ... Rod ... is expected. Give ...
+    parts.wire: must be ... Rod ... (got Wire(...). Use ...
     """
     return _unlisted(node_of(Mechanism), mechanism, "")
 
@@ -27,31 +27,31 @@ def kind_findings(mechanism: Mechanism) -> Iterator[Finding]:
 def _unlisted(node: Node, value: Any, where: str) -> Iterator[Finding]:
     if isinstance(node, RecordNode | UnionNode) and type(value) not in node.records:
         names = " or ".join(record.__name__ for record in node.records)
-        yield Finding(where, f"found {textwrap.shorten(repr(value), 60)} where {names} is expected", f"Give a {names}")
+        yield Finding(where, f"must be {names} (got {textwrap.shorten(repr(value), 60)})", f"Use {names}")
         return
     for name, inner, item in node.members(value):
         yield from () if item is None else _unlisted(inner, item, join(where, name))
 
 
 def package_findings(packages: Iterable[str]) -> Iterator[Finding]:
-    """Findings about packages that a description asks for and that are not installed, or not in the versions asked for.
+    """Return errors for required packages that are missing or of another version.
 
     >>> print(*package_findings(["numpy >= 1", "tapered-leaf >= 1"]))
-    packages: "tapered-leaf >= 1" is not installed. Install it where flexstage is, for example with: pip install "tapered-leaf >= 1".
+    packages: "tapered-leaf >= 1" is not installed. Install it in the environment of flexstage: pip install "tapered-leaf >= 1".
     """
     for text in packages:
-        from packaging.requirements import InvalidRequirement, Requirement  # takes 0.1 s, and few designs name any
+        from packaging.requirements import InvalidRequirement, Requirement  # takes 0.1 s, and few designs have any
 
         try:
             wanted = Requirement(text)
         except InvalidRequirement:
-            yield Finding("packages", f'"{text}" names no package', 'Write its name, and perhaps its versions: "tapered-leaf >= 1"')
+            yield Finding("packages", f'invalid package (got "{text}")', 'Use its name, with optional versions, e.g. "tapered-leaf >= 1"')
             continue
-        install = f'Install it where flexstage is, for example with: pip install "{text}"'
+        install = f'Install it in the environment of flexstage: pip install "{text}"'
         try:
             there = version(wanted.name)
         except PackageNotFoundError:
             yield Finding("packages", f'"{text}" is not installed', install)
             continue
         if not wanted.specifier.contains(there, prereleases=True):
-            yield Finding("packages", f'"{text}" is asked for, and {wanted.name} {there} is installed', install)
+            yield Finding("packages", f'wrong version (got {wanted.name} {there}, expected "{text}")', install)

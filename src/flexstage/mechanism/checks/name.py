@@ -1,4 +1,4 @@
-"""Names: legal, unique, and naming something that exists."""
+"""Checks of names: valid, unique, and existing."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _RANGE = re.compile(r"(.*?)(\d+)-(?:\1)?(\d+)")
 
 
 def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about names; presupposes those about copies.
+    """Return errors of names, for valid placement keys.
 
     >>> print(*name_findings(Mechanism("", bodies={"ground": Body(), "platform": Body()})))
-    bodies.ground: "ground" is implied and cannot be a body of the stage. Give the body another name.
+    bodies.ground: "ground" is implied and cannot be a body of the stage. Rename the body.
     """
     yield from _spelling(mechanism)
     yield from _bodies(mechanism)
@@ -43,12 +43,12 @@ def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def copy_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about placement keys that name copies (`B1-B3`): reversed, too many, or a copy named twice.
+    """Return errors of placement keys (`B1-B3`): reversed, too many, or repeated instances.
 
     >>> from flexstage.mechanism.mechanism import Placement
     >>> from flexstage.mechanism.assembly.pattern import Pose
     >>> print(*copy_findings(Mechanism("", placements={"B3-B1": Placement("leg", Pose())})))
-    placements.B3-B1: the first number, 3, is above the last, 1. Write them in rising order.
+    placements.B3-B1: the first number, 3, is above the last, 1. Use ascending order.
     """
     for section in ("placements", "gauges", "stops"):
         keys = getattr(mechanism, section)
@@ -58,22 +58,24 @@ def copy_findings(mechanism: Mechanism) -> Iterator[Finding]:
             names = Counter(name for key in keys for name in copy_names(key))
             for name in [name for name, count in names.items() if count > 1]:
                 holders = ", ".join(key for key in keys if name in copy_names(key))
-                yield Finding(f"{section}.{name}", f"{holders} name it {names[name]} times", "Give every copy a name of its own")
+                yield Finding(f"{section}.{name}", f"{holders} use the name {names[name]} times", "Use a unique name for every instance")
 
 
 def _range_fault(where: str, key: str) -> Finding | None:
     if len(key) > _LONGEST:
-        return Finding(f"{where[:_LONGEST]}...", f"the name has {len(key)} characters", f"At most {_LONGEST} are allowed")
+        return Finding(
+            f"{where[:_LONGEST]}...", f"name too long (got {len(key)} characters, expected {_LONGEST} at most)", "Use a shorter name"
+        )
     match = _RANGE.fullmatch(key)
     if match is None:
         return None
     if max(len(match[2]), len(match[3])) > 9:
-        return Finding(where, "its numbers have too many digits", "Write for example B1-B3")
+        return Finding(where, "its numbers have too many digits", "Use e.g. B1-B3")
     first, last = int(match[2]), int(match[3])
     if first > last:
-        return Finding(where, f"the first number, {first}, is above the last, {last}", "Write them in rising order")
+        return Finding(where, f"the first number, {first}, is above the last, {last}", "Use ascending order")
     if last - first >= MOST_COPIES:
-        return Finding(where, f"it names {last - first + 1} copies", f"At most {MOST_COPIES} are allowed")
+        return Finding(where, f"too many instances (got {last - first + 1}, expected {MOST_COPIES} at most)", "Use fewer instances")
     return None
 
 
@@ -86,13 +88,11 @@ def _spelling(mechanism: Mechanism) -> Iterator[Finding]:
     for where, names in tables.items():
         for name in names:
             if name in RESERVED or len(name) > _LONGEST or not re.fullmatch(r"\w[\w-]*(/\w[\w-]*)*", name):
-                yield Finding(
-                    f'{where}."{name[:_LONGEST]}"', "this is no legal name", "Use letters, digits, _ and -; tags and like are reserved"
-                )
+                yield Finding(f'{where}."{name[:_LONGEST]}"', "invalid name", "Use letters, digits, _ and -; tags and like are reserved")
 
 
 def _links(mechanism: Mechanism) -> Iterator[tuple[str, Link, dict[str, Body]]]:
-    """Every drawn link, where it stands, and the bodies it may join beside the ground."""
+    """Every drawn link, its address, and the bodies it may join apart from the ground."""
     stage = placed_bodies(mechanism)
     for name, link in mechanism.links.items():
         yield f"links.{name}", link, stage
@@ -102,7 +102,7 @@ def _links(mechanism: Mechanism) -> Iterator[tuple[str, Link, dict[str, Body]]]:
 
 
 def _owners(mechanism: Mechanism) -> Iterator[Finding]:
-    """A body that is `of` another one names a body of the stage that moves by itself, or the ground."""
+    """Errors of `of`: it must be an independent body of the stage, or the ground."""
     stage = placed_bodies(mechanism)
     for where, body in every_body(mechanism):
         if body.of is None:
@@ -110,26 +110,26 @@ def _owners(mechanism: Mechanism) -> Iterator[Finding]:
         yield from _check_known(f"{where}.of", "body of the stage", body.of, {GROUND, *stage})
         owner = stage.get(body.of)
         if where == f"bodies.{PLATFORM}":
-            yield Finding(f"{where}.of", "the platform moves by itself", "Let the other body be of the platform")
+            yield Finding(f"{where}.of", "the platform cannot be of another body", 'Set of = "platform" for the other body')
         elif owner is not None and owner.of is not None:
             what = f'"{body.of}" is itself of "{owner.of}"'
-            yield Finding(f"{where}.of", what, f'Write of = "{owner.of}"' if owner is not body else "Name another body, or leave it out")
+            yield Finding(f"{where}.of", what, f'Use of = "{owner.of}"' if owner is not body else "Use another body, or remove it")
 
 
 def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
     if PLATFORM not in mechanism.bodies:
-        yield Finding("bodies", f'there is no body "{PLATFORM}"', f"Declare the moving part under bodies.{PLATFORM}")
+        yield Finding("bodies", f'unknown body "{PLATFORM}"', f"Declare the moving part under bodies.{PLATFORM}")
     if GROUND in mechanism.bodies:
-        yield Finding(f"bodies.{GROUND}", f'"{GROUND}" is implied and cannot be a body of the stage', "Give the body another name")
+        yield Finding(f"bodies.{GROUND}", f'"{GROUND}" is implied and cannot be a body of the stage', "Rename the body")
     for unit, drawn in mechanism.units.items():
         for name in drawn.bodies:
             if name == GROUND or (name in mechanism.bodies and "/" not in unit):
-                yield Finding(f"units.{unit}.bodies.{name}", f'the stage itself has a body "{name}"', "Give the unit's body another name")
+                yield Finding(f"units.{unit}.bodies.{name}", f'the stage has a body "{name}" too', "Rename the unit's body")
 
 
 def _check_known(where: str, kind: str, name: str | None, names: Iterable[str]) -> Iterator[Finding]:
     if name is not None and name not in names:
-        yield Finding(where, f'there is no {kind} "{name}"', suggest_nearest(name, names))
+        yield Finding(where, f'unknown {kind} "{name}"', suggest_nearest(name, names))
 
 
 def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
@@ -142,30 +142,30 @@ def _check_placement(mechanism: Mechanism) -> Iterator[Finding]:
                 yield from _check_known(f"{section}.{name}.{key}", "body", getattr(item, key, None), known)
     for name, stop in mechanism.stops.items():
         if stop.body == stop.base:
-            yield Finding(f"stops.{name}.base", f'it is "{stop.body}", as the body is', "Name the body that it runs against")
+            yield Finding(f"stops.{name}.base", f'equal to the body, "{stop.body}"', "Use the opposite body")
     yield from gauge_findings(mechanism, {*mechanism.links, *_links_of_copies(mechanism)})
     for name in mechanism.temperatures:
         yield from _check_known(f"temperatures.{name}", "body", name, {EVERYWHERE, *gauged})
 
 
 def _loops(mechanism: Mechanism) -> Iterator[Finding]:
-    """Links of a unit that join a body of one copy: in that copy both ends may be the same."""
+    """Links of a unit that join a body of one instance: in that instance both ends may be equal."""
     bodies, units = placed_bodies(mechanism), drawn_units(mechanism)
     for copy, name in unit_of_copy(mechanism).items():
         unit = units.get(name, Unit())
         for link_name, link in unit.links.items():
             first, *others = set(joined(link, bodies, copy, unit.bodies))
             if not others and any("/" in body for body in link.bodies):
-                advice = "Draw that link in the stage itself, or in a unit of its own"
-                yield Finding(f"{copy}/{link_name}.joins", f'in this copy both ends join "{first}"', advice)
+                advice = "Draw that link in the stage, or in a separate unit"
+                yield Finding(f"{copy}/{link_name}.joins", f'in this instance both ends join "{first}"', advice)
 
 
 def _clashes(mechanism: Mechanism) -> Iterator[Finding]:
     copies = set(unit_of_copy(mechanism))
     for kind, names in (("unit", mechanism.units), ("link", mechanism.links)):
         for name in sorted(copies & set(names)):
-            advice = "Give one of them another name: addresses could mean either"
-            yield Finding(f"placements.{name}", f"a {kind} and a copy have this name", advice)
+            advice = "Rename one of them: addresses would be ambiguous"
+            yield Finding(f"placements.{name}", f"a {kind} and an instance have this name", advice)
 
 
 def _link(where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
@@ -175,7 +175,7 @@ def _link(where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
     owners = {owner_of(bodies, body) for body in link.bodies}
     if len(owners) == 1:
         both = "both ends" if len(link.bodies) == 2 else "all ports"
-        yield Finding(f"{where}.joins", f'{both} join "{owners.pop()}"', "Name two different bodies")
+        yield Finding(f"{where}.joins", f'{both} join "{owners.pop()}"', "Use two different bodies")
 
 
 def _circuits(mechanism: Mechanism) -> Iterator[Finding]:

@@ -1,4 +1,4 @@
-"""Directions: not zero, perpendicular where two make a frame, and given where a part is not axisymmetric."""
+"""Checks of directions: nonzero, perpendicular in a frame, and specified for parts that are not axisymmetric."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from flexstage.parts.part import Part, Restricted, ports_of
 from flexstage.parts.stated import is_even
 
 _TOLERANCE = np.deg2rad(0.1)
-"""Directions written with three digits are perpendicular to this; frames are then made exactly so."""
+"""Tolerance of perpendicular directions (three digits); frames are then orthogonalised."""
 
 
 def orientation_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about directions of links, patterns and solids.
+    """Return errors of directions of links, patterns and solids.
 
     >>> from flexstage.mechanism.mechanism import Link
     >>> link = Link(("ground", "platform"), "wire", at=(0.0, 0.0, 0.0), along=(0.0, 0.0, 0.0))
     >>> print(*orientation_findings(Mechanism("", links={"strut": link})))
-    links.strut.along: the direction is zero. Give one of x, -x, y, -y, z, -z, or three numbers.
+    links.strut.along: the direction is zero. Use one of x, -x, y, -y, z, -z, or three numbers.
     """
     yield from _links(mechanism)
     yield from _solids(mechanism)
@@ -51,13 +51,13 @@ def _links(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _unsaid(part: str, *, ported: bool) -> tuple[str, str]:
     if ported:
-        return f'part "{part}" has ports, and the link does not say which way its z axis points', 'Write for example bends = "z"'
-    what = f'part "{part}" is not round, and the link does not say which way it bends'
-    return what, 'Write for example bends = "y": the axis of its compliant rotation'
+        return f'part "{part}" has ports, and the link does not say which way its z axis points', 'Use e.g. bends = "z"'
+    what = f'bends missing, as part "{part}" is not axisymmetric'
+    return what, 'Use e.g. bends = "y": the axis of its compliant rotation'
 
 
 def is_axisymmetric(part: Part, free: tuple[Freedom, ...] | None = None) -> bool:
-    """Whether a part behaves alike in all directions across its axis, so that its link needs no `bends`.
+    """Return whether a part is axisymmetric, so that its link requires no `bends`.
 
     >>> is_axisymmetric(Joint((Freedom.RZ,))), is_axisymmetric(Joint((Freedom.RY, Freedom.RZ)))
     (False, True)
@@ -79,21 +79,21 @@ def _solids(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def _pattern(where: str, pattern: Pattern, *, has_up: bool = True) -> Iterator[Finding]:
-    """One without `has_up`, such as a gauge, which is symmetric about its line, need not state which way is up."""
+    """Errors of a pattern; without `has_up` (a gauge, symmetric about its line) `up` is optional."""
     if not isinstance(pattern, Pose):
         return
     here, usual = f"{where}.pose", Pose()
     ends = [name for name, point in (("from", pattern.start), ("to", pattern.end)) if point is not None]
     if len(ends) == 1:
-        yield Finding(here, f"it has {ends[0]} alone", "Give both from and to, or at and along")
+        yield Finding(here, f"{ends[0]} without its counterpart", "Specify both from and to, or at and along")
     elif ends and (pattern.at != usual.at or pattern.along != usual.along):
-        yield Finding(here, "it has both from and to and at or along", "Leave one of them")
+        yield Finding(here, "both from and to, and at or along specified", "Remove one of them")
     up = None if not has_up and pattern.up == usual.up else pattern.up
     yield from _pair(f"{here}.{'to' if ends else 'along'}", pattern.direction, f"{here}.up", up)
 
 
 def _pair(where: str, along: Vector, other_where: str, other: Vector | None) -> Iterator[Finding]:
-    """Both directions exist, and the second is perpendicular to the first."""
+    """Errors of two directions: zero, or not perpendicular."""
     zeros = [*_zero(where, along), *(_zero(other_where, other) if other is not None else ())]
     yield from zeros
     if zeros or other is None:
@@ -104,8 +104,8 @@ def _pair(where: str, along: Vector, other_where: str, other: Vector | None) -> 
     skew = np.abs(angle - 0.5 * np.pi) > _TOLERANCE
     if np.any(skew):
         at, (found,) = first_failing(skew, angle)
-        what = f"it stands at {np.rad2deg(found):.4g} deg to {where.rpartition('.')[2]}, not at 90 deg"
-        yield Finding(f"{other_where}{at}", what, "Give two perpendicular directions")
+        what = f"wrong angle to {where.rpartition('.')[2]} (got {np.rad2deg(found):.4g} deg, expected 90 deg)"
+        yield Finding(f"{other_where}{at}", what, "Use two perpendicular directions")
 
 
 def _zero(where: str, direction: Vector) -> Iterator[Finding]:
@@ -116,5 +116,5 @@ def _zero(where: str, direction: Vector) -> Iterator[Finding]:
         yield Finding(
             f"{where}{at}",
             f"the direction is {f'of length {length:.3g}' if length else 'zero'}",
-            "Give one of x, -x, y, -y, z, -z, or three numbers",
+            "Use one of x, -x, y, -y, z, -z, or three numbers",
         )

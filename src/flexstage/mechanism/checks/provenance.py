@@ -1,4 +1,4 @@
-"""Overrides and tags: they point somewhere, and say what they mean."""
+"""Checks of overrides and tags: valid addresses and texts."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _WORDS = (STATED, DERIVED, ASSUMED)
 
 
 def override_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about overrides: each must address a link's value, be of its kind, and stand alone.
+    """Return errors of overrides: each must address a link's value, have its kind, and be unique.
 
     >>> print(*override_findings(Mechanism("", overrides={"parts.neck.thickness": 0.001})))
-    overrides."parts.neck.thickness": there is no "neck". There are none.
+    overrides."parts.neck.thickness": unknown name "neck". None is defined.
     """
     made: dict[str, str] = {}
     inside: dict[str, str] = {}
@@ -36,7 +36,7 @@ def override_findings(mechanism: Mechanism) -> Iterator[Finding]:
         prefixes = [".".join((*place.owners[-1:], *place.path[:depth])) for depth in range(1, len(place.path) + 1)]
         other = inside.get(place.address) or next((made[prefix] for prefix in prefixes if prefix in made), None)
         if other is not None:
-            yield Finding(where, f'it departs in the same as "{other}"', "Keep one of them")
+            yield Finding(where, f'it overrides the same value as "{other}"', "Remove one of them")
         made[place.address] = key
         inside.update(dict.fromkeys(prefixes, key))
 
@@ -44,20 +44,20 @@ def override_findings(mechanism: Mechanism) -> Iterator[Finding]:
 def _override(mechanism: Mechanism, key: str, place: Place, value: Any) -> Iterator[Finding]:
     where = f'overrides."{key}"'
     if not any(key.startswith(f"{owner}.") for owner in place.owners):
-        advice = "Set that value itself; overrides are written unit/link.field or copy/link.field"
-        yield Finding(where, f"it addresses {place.address}, which is no override of a link", advice)
+        advice = "Set that value directly; addresses of overrides are unit/link.field or instance/link.field"
+        yield Finding(where, f"{place.address} is not an override of a link", advice)
         return
     try:
-        value_at(replace(mechanism, overrides=Table({key: value})), place)  # constructs what it changes
+        value_at(replace(mechanism, overrides=Table({key: value})), place)  # validates by construction
     except DesignError as error:
         yield from (replace(finding, where=where) for finding in error.findings)
 
 
 def tag_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Findings about tags: each must stand at a value, and begin with stated, derived or assumed.
+    """Return errors of tags: each must have the address of a value, and begin with stated, derived or assumed.
 
     >>> print(*tag_findings(Mechanism("", tags={"gravity": "published"})))
-    tags."gravity": found "published", which does not begin with stated, derived or assumed. Write for example "stated paper 2.2".
+    tags."gravity": found "published", which does not begin with stated, derived or assumed. Use e.g. "stated paper 2.2".
     """
     without = replace(mechanism, overrides=Table({}))
     for address, tag in mechanism.tags.items():
@@ -65,12 +65,12 @@ def tag_findings(mechanism: Mechanism) -> Iterator[Finding]:
         try:
             locate(without, address)
         except DesignError as error:
-            yield from (replace(finding, where=where, what=f"it points nowhere: {finding.what}") for finding in error.findings)
+            yield from (replace(finding, where=where, what=f"unknown address: {finding.what}") for finding in error.findings)
         words = tag.split()
         if words[:1] not in [[word] for word in _WORDS]:
             what = f'found "{tag}", which does not begin with stated, derived or assumed'
-            yield Finding(where, what, 'Write for example "stated paper 2.2"')
+            yield Finding(where, what, 'Use e.g. "stated paper 2.2"')
         elif words[0] == STATED and (len(words) < 2 or words[1] not in mechanism.sources):
             source = words[1] if len(words) > 1 else ""
-            what = f'it is stated by "{source}", which is none of the sources' if source else "it is stated by no source"
+            what = f'unknown source "{source}"' if source else "source missing"
             yield Finding(where, what, suggest_nearest(source, mechanism.sources))

@@ -1,1 +1,1 @@
-"""Outlines of a stage: pieces, nearness and contact."""
+"""Outlines of a stage: convex pieces, proximity and contact."""

@@ -1,6 +1,6 @@
-"""Contact: do links meet their bodies, do the outlines of a body hang together, do all others keep apart, do gauges look at their targets?
+"""Contact checks: links touch their bodies, outlines of a body are connected, others have clearance, gauges face their targets.
 
-Told from the outlines that the description has, without CAD, on the first design of a batch. Round faces are followed within `SAGITTA`.
+Based on the outlines of the description, without CAD, for the first design of a batch. Round faces are approximated within `SAGITTA`.
 """
 
 from __future__ import annotations
@@ -30,34 +30,34 @@ from flexstage.spatial.convex import Convex, distance, polytope_corners, separat
 from flexstage.spatial.frame import Frame
 
 TOUCHING = 1e-6
-"""Faces nearer than this touch [m]."""
+"""Distance below which faces touch [m]."""
 _SHARE = 1e-3
-"""What of an end face may lie beside its body."""
+"""Largest share of an end face outside its body."""
 _BRACKET = 0.05
-"""A gauge's target may stand on a bracket that is not drawn: this share of its body's longest side away."""
+"""Largest distance of a gauge's target on an undrawn bracket, relative to its body's longest side."""
 _ENOUGH = 300
-"""Pairs of pieces looked at for the deepest overlap once there is one."""
+"""Number of pairs of pieces examined for the deepest overlap."""
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 128, endpoint=False)
-"""Angles of the corners of the polygon that a round end face is measured with."""
+"""Angles of the corners of the polygon of a round end face."""
 _MARGIN = (5e-5, 0.05)
-"""Beside its end faces a link keeps clear of its bodies but for this length [m], or this share of its half length."""
+"""Length [m], or share of the half length, near its end faces where a link may touch its bodies."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Hole:
-    """A hole where it stands: the `frame` of its centre."""
+    """A hole; `frame` is at its centre."""
 
     solid: Solid
     frame: Frame
 
     def contains(self, points: Array) -> Array:
-        """Which points (n, 3) lie in it, or no farther beside than round faces are followed."""
+        """Mask of points (n, 3) in the hole, within the tolerance of round faces."""
         return self.solid.contains((points - self.frame.position) @ self.frame.rotation, SAGITTA)
 
 
 @dataclass(frozen=True, eq=False)
 class _Thing:
-    """A body's solid or a link's part where it stands; `bodies` it belongs to, or joins."""
+    """A body's solid or a link's part in the stage; `bodies` are its own, or joined."""
 
     name: str
     form: Form
@@ -72,7 +72,7 @@ class _Thing:
 
     @cached_property
     def holes(self) -> tuple[_Hole, ...]:
-        """The holes that others of its body leave in it."""
+        """Holes of the body in this solid."""
         own = self.form.holes if isinstance(self.form, Pierced) else ()
         return tuple(_Hole(hole, _first(hole.frame).within(self.frame)) for hole in own)
 
@@ -86,13 +86,13 @@ class _Thing:
 
     @property
     def end(self) -> Section:
-        """The section at both ends of a link."""
+        """Section at both ends of a link."""
         assert isinstance(self.form, Shaped)  # noqa: S101  only links are asked
         return self.form.end
 
     @cached_property
     def face(self) -> tuple[Array, Array]:
-        """Points (n, 3) on a link's end face at its origin, and the share of the face that each stands for; the first lie near its rim."""
+        """Points (n, 3) on a link's end face at its origin, with their shares of the area; rim points first."""
         end, found = self.end, []
         for piece in end.pieces(_ANGLES):
             low, high = piece.min(axis=0), piece.max(axis=0)
@@ -105,16 +105,16 @@ class _Thing:
 
     @property
     def slack(self) -> float:
-        """How far its pieces may stay inside it [m]."""
+        """Largest distance of its pieces inside the form [m]."""
         return 0.0 if is_flat(self.form) else SAGITTA
 
 
 @SESSION.keep(4)
 def contact_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """What the outlines of a stage contradict.
+    """Return contradictions of the outlines of a stage.
 
-    Ends off the faces of their bodies, bodies in pieces, overlaps, gauges that look beside their targets; nothing where there are no
-    outlines. Imported shapes are named: they are not looked at.
+    Link ends off the faces of their bodies, disconnected bodies, overlaps, gauges off their targets; none without outlines. Imported shapes
+    are named, but not checked.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> contact_findings(parallelogram())
@@ -135,7 +135,7 @@ def contact_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 @dataclass(frozen=True)
 class Gap:
-    """Two outlines that no joint connects, and how far apart they are [m]; negative where they overlap."""
+    """Two unconnected outlines and their distance [m]; negative for an overlap."""
 
     first: str
     second: str
@@ -143,10 +143,10 @@ class Gap:
 
 
 def gaps(mechanism: Mechanism, within: float) -> tuple[Gap, ...]:
-    """Overlaps, and gaps of at most `within` [m], between outlines that do not belong together; on the first design of a batch.
+    """Return overlaps, and gaps of at most `within` [m], between unconnected outlines; on the first design of a batch.
 
-    The two of a pair belong to different bodies, or are links, or a link and a body that it does not join. Round faces are followed within
-    `SAGITTA`. Imported shapes are left out.
+    A pair consists of different bodies, of two links, or of a link and a body that it does not join. Round faces are approximated within
+    `SAGITTA`. Imported shapes are omitted.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> gaps(parallelogram(), 1e-4)
@@ -194,12 +194,12 @@ def _by_body(things: Iterable[_Thing]) -> dict[str, list[_Thing]]:
 def _unseen(things: Iterable[_Thing]) -> Iterator[Finding]:
     names = [thing.name for thing in things if isinstance(thing.form, Imported)]
     if names:
-        what = "its shape is imported: whether it meets what joins it and keeps clear of the rest is not looked at"
-        yield Finding(", ".join(names), what, "Ask `flexstage cad`")
+        what = "contact and clearance of imported shapes not checked"
+        yield Finding(", ".join(names), what, "Run `flexstage cad`")
 
 
 def _alike(findings: Sequence[Finding], assembly: Assembly) -> Iterator[Finding]:
-    """Findings that copies of a unit share, told once."""
+    """Errors shared by instances of a unit, reported once."""
     copies = {name.partition("/")[0] for name in (*assembly.links, *assembly.bodies, *assembly.ground) if "/" in name}
     groups: dict[tuple[str, ...], list[Finding]] = {}
     for finding in findings:
@@ -214,7 +214,7 @@ def _alike(findings: Sequence[Finding], assembly: Assembly) -> Iterator[Finding]
 
 
 def _other_name(first: Finding, other: Finding) -> str:
-    """What tells a finding from the first one like it: its place, or the word of it that differs."""
+    """Difference of an error from the first similar one: its address, or the word that differs."""
     if first.where != other.where:
         return other.where
     return next(there.rstrip(",:") for here, there in zip(first.what.split(), other.what.split(), strict=False) if here != there)
@@ -225,7 +225,7 @@ def _other_name(first: Finding, other: Finding) -> str:
 
 @dataclass(frozen=True, eq=False)
 class _Meeting:
-    """An end face and the outlines of a body: share of the face that lies on one, how deep the link runs into them [m]."""
+    """An end face against the outlines of a body: share of the face in contact, depth of penetration [m]."""
 
     share: float
     depth: float
@@ -243,7 +243,7 @@ def _joint_findings(assembly: Assembly, things: Mapping[str, _Thing], solids: Ma
 
 
 def _obstacles(link: _Thing, body: str, solids: Mapping[str, list[_Thing]]) -> list[_Thing]:
-    """The outlines of a body that a link may meet: of the ground those drawn with it; none where one is imported."""
+    """Outlines of a body that a link may touch; of the ground, those drawn with the link; none if one is imported."""
     own = [each for each in solids.get(body, []) if body != GROUND or _group(each.name) == _group(link.name)]
     return [] if any(isinstance(each.form, Imported) for each in own) else own
 
@@ -257,14 +257,14 @@ def _link_findings(link: _Thing, ends: Sequence[tuple[float, str, list[_Thing]]]
     if not all(meeting.sound for meeting in meetings) and all(_meeting(link, -side, met).sound for side, _, met in ends):
         first, second = link.bodies
         what = f"it is drawn from {second} to {first}, but joins {first} to {second}"
-        yield Finding(link.name, what, "Turn `along` round, or name the two bodies the other way round")
+        yield Finding(link.name, what, "Reverse `along`, or exchange the two bodies")
         return
     for (side, body, met), meeting in zip(ends, meetings, strict=True):
         yield from _end_findings(link, side, body, met, meeting)
 
 
 def _meeting(link: _Thing, side: float, met: Sequence[_Thing]) -> _Meeting:
-    """The end face looked at from both sides, at points all over it."""
+    """Contact of the end face on both sides, at points over its area."""
     points, weights = link.face
     axis = side * link.frame.rotation[:, 0]
     face = link.frame.point(points + np.array([side * link.half, 0.0, 0.0]))
@@ -277,7 +277,7 @@ def _meeting(link: _Thing, side: float, met: Sequence[_Thing]) -> _Meeting:
 
 @lru_cache(maxsize=64)
 def _face(y: float, z: float, *, is_round: bool) -> tuple[Array, Array]:
-    """Points on a rectangle or circle by its half sides, and the share that each stands for; many links have the same."""
+    """Points on a rectangle or circle by its half sides, with shares of the area; cached."""
     if is_round:
         radii = np.array([0.9995, 0.9, 0.7, 0.5, 0.3, 0.1])
         shares = np.array([0.0, 0.36, 0.28, 0.2, 0.12, 0.04])
@@ -291,7 +291,7 @@ def _face(y: float, z: float, *, is_round: bool) -> tuple[Array, Array]:
 
 
 def _widen(weights: Array) -> Array:
-    """Points on the rim count for a little more than what may lie beside a body."""
+    """Weights with rim points slightly above the tolerated share."""
     rim = weights == 0.0
     return np.where(rim, 1.5 * _SHARE, weights * (1.0 - 1.5 * _SHARE * np.count_nonzero(rim)))
 
@@ -303,7 +303,7 @@ def _rim(link: _Thing, side: float) -> Array:
 
 
 def _inside(thing: _Thing, points: Array, slack: float = TOUCHING) -> Array:
-    """Which points (n, 3) lie in a solid, or within `slack` [m] of it."""
+    """Mask of points (n, 3) in a solid, or within `slack` [m] of it."""
     own = (points - thing.frame.position) @ thing.frame.rotation
     if isinstance(thing.form, Solid):
         return thing.form.contains(own, slack)
@@ -311,7 +311,7 @@ def _inside(thing: _Thing, points: Array, slack: float = TOUCHING) -> Array:
 
 
 def _depth(met: Sequence[_Thing], face: Array, inward: Array, most: float) -> float:
-    """How far one must go from points of an end face along the link to leave all outlines [m], by halving."""
+    """Distance [m] along the link from points of an end face to the outside of all outlines, by bisection."""
     low, high = 0.0, most
     steps = np.linspace(0.0, most, 33)
     deep = [step for step in steps if any(np.any(_inside(each, face + step * inward, 0.0)) for each in met)]
@@ -329,16 +329,16 @@ def _end_findings(link: _Thing, side: float, body: str, met: Sequence[_Thing], m
         corners = link.frame.point(_rim(link, side))
         gap = min(distance(corners, piece.points) for each in met for piece in each.pieces)
         if gap > TOUCHING:
-            advice = f"Move the link or the outline, or lengthen one, by {_text(gap)} so that they touch"
-            yield Finding(link.name, f"its end is {_text(gap)} away from {body}, which it joins", advice)
+            advice = f"Move or lengthen the link or the outline by {_text(gap)}"
+            yield Finding(link.name, f"gap of {_text(gap)} between its end and {body}", advice)
             return
     if meeting.depth > 0.0:
         deep = _text(meeting.depth)
-        advice = f"Trim the outline of {body} by {deep}, or move it: end faces meet, solids do not overlap"
-        yield Finding(link.name, f"it runs {deep} into {body}", advice)
+        advice = f"Trim the outline of {body} by {deep}, or move it: end faces must touch without overlap"
+        yield Finding(link.name, f"it penetrates {body} by {deep}", advice)
     elif meeting.share < 1.0 - _SHARE:
         what = f"only about {100.0 * meeting.share:.2g} % of its end face lies on {body}"
-        yield Finding(link.name, what, f"Widen the outline of {body} there, or move it: the whole end face must lie on it")
+        yield Finding(link.name, what, f"Widen the outline of {body} there, or move it: it must support the whole end face")
     if meeting.sound:
         yield from _side_findings(link, body, met)
 
@@ -350,8 +350,8 @@ def _side_findings(link: _Thing, body: str, met: Sequence[_Thing]) -> Iterator[F
     near = [met[other - 1] for one, other in near_pairs([short, *(each.outline for each in met)], 0.0) if one == 0]
     deep = max((_overlap(link.trim(margin), each.pieces, each.holes)[0] for each in near), default=0.0)
     if deep > TOUCHING:
-        what = f"it meets {body} beside its end face too, {_text(deep)} deep"
-        yield Finding(link.name, what, f"Trim the outline of {body} beside the link")
+        what = f"it penetrates {body} by {_text(deep)} outside its end face"
+        yield Finding(link.name, what, f"Trim the outline of {body} near the link")
 
 
 # Bodies
@@ -376,15 +376,15 @@ def _apart_findings(body: str, things: Sequence[_Thing]) -> Iterator[Finding]:
         gap, nearest = min((_gap(things[i], things[j]), j) for i in group for j in rest)
         names = ", ".join(things[number].name for number in sorted(group))
         if gap > TOUCHING:
-            what = f"{names} is {_text(gap)} away from {things[nearest].name}: the body is in pieces"
-            yield Finding(body, what, "Let the outlines of one body touch over a face")
+            what = f"{names} is {_text(gap)} away from {things[nearest].name}: the body is disconnected"
+            yield Finding(body, what, "Connect the outlines of one body over a face")
         else:
-            what = f"{names} meets {things[nearest].name} along an edge or at a point only"
-            yield Finding(body, what, "Let them touch over a face, or overlap")
+            what = f"{names} touches {things[nearest].name} only along an edge or at a point"
+            yield Finding(body, what, "Connect them over a face, or let them overlap")
 
 
 def _is_joined(first: _Thing, second: _Thing) -> bool:
-    """Whether two solids overlap, or touch over a face: along an edge two directions part them."""
+    """Whether two solids overlap, or touch over a face: along an edge two directions separate them."""
     slack = TOUCHING + first.slack + second.slack
     for one, other in product(first.pieces, second.pieces):
         gap, _, next_gap = separation(one, other)
@@ -412,25 +412,25 @@ def _clash_findings(things: Mapping[str, _Thing]) -> Iterator[Finding]:
             place = ", ".join(f"{round(1e3 * float(value), 2) + 0.0:g}" for value in around)
             yield Finding(first.name, f"it overlaps {second.name} by {_text(deep)} around ({place}) mm", _advice(first, second))
         elif deep >= -TOUCHING and not _meet_in_a_point(first, second, drawn_bodies):
-            yield Finding(first.name, f"it touches {second.name}, which no joint connects it to", _advice(first, second))
+            yield Finding(first.name, f"it touches {second.name} without a joint", _advice(first, second))
 
 
 def _belong(first: _Thing, second: _Thing) -> bool:
-    """Whether two are of one body, or a link and a body it joins."""
+    """Whether two belong to one body, or are a link and a joined body."""
     return (first.is_link != second.is_link and bool(set(first.bodies) & set(second.bodies))) or (
         not first.is_link and not second.is_link and first.bodies == second.bodies
     )
 
 
 def _meet_in_a_point(first: _Thing, second: _Thing, drawn_bodies: set[str]) -> bool:
-    """Whether two links join a body that has no outlines and may lie between them."""
+    """Whether two links join a body without outlines, possibly between them."""
     return first.is_link and second.is_link and bool((set(first.bodies) & set(second.bodies)) - drawn_bodies)
 
 
 def _overlap(first: Sequence[Convex], second: Sequence[Convex], holes: Sequence[_Hole] = ()) -> tuple[float, Array]:
-    """How deep two sets of pieces overlap [m] (negative: how far they are apart at least), and the middle of that place.
+    """Depth of overlap of two sets of pieces [m] (negative: least distance), and its centre.
 
-    What lies in one of the `holes` as a whole is no overlap.
+    A common volume within one of the `holes` is not an overlap.
     """
     deepest, around = -np.inf, np.zeros(3)
     for count, (one, other) in enumerate(_close(first, second)):
@@ -444,7 +444,7 @@ def _overlap(first: Sequence[Convex], second: Sequence[Convex], holes: Sequence[
 
 
 def _is_hollow(one: Convex, other: Convex, holes: Sequence[_Hole]) -> bool:
-    """Whether what two pieces have in common, grown by twice what touches, lies in a hole."""
+    """Whether the common volume of two pieces, enlarged by twice the contact tolerance, is within a hole."""
     sides, offsets = [], []
     for piece in (one, other):
         for normals in (piece.normals, -piece.normals):
@@ -466,7 +466,7 @@ def _close(first: Sequence[Convex], second: Sequence[Convex]) -> Iterator[tuple[
 def _advice(first: _Thing, second: _Thing) -> str:
     if not first.is_link and not second.is_link and GROUND in {*first.bodies, *second.bodies}:
         return "Trim one of the two outlines"
-    return "Trim one of the two outlines, or move one where that moves no axis"
+    return "Trim or move one of the two outlines without moving an axis"
 
 
 # Gauges
@@ -491,7 +491,7 @@ def _gauge_findings(assembly: Assembly, solids: Mapping[str, list[_Thing]]) -> I
 
 
 def _is_within(reach: float, point: Array, piece: Convex) -> bool:
-    """Whether the face of a piece that looks at a point holds the foot of the perpendicular, no farther away: a short yes."""
+    """Fast test: whether the nearest face of a piece contains the foot of the perpendicular within a distance."""
     across, heights = piece.points @ piece.normals.T, piece.normals @ point
     low, high = across.min(axis=0), across.max(axis=0)
     beyond = heights - np.clip(heights, low, high)
@@ -501,15 +501,15 @@ def _is_within(reach: float, point: Array, piece: Convex) -> bool:
 
 
 def _miss(frame: Frame, things: Sequence[_Thing], reach: float) -> float:
-    """How far the axis of a gauge passes by."""
+    """Distance of a gauge's axis from an outline."""
     axis = frame.position + reach * np.outer([-1.0, 1.0], frame.rotation[:, 0])
     return min(distance(axis, piece.points) for thing in things for piece in thing.pieces)
 
 
 def _off_target(name: str, body: str, beside: float, miss: float) -> Finding:
-    passes = f"its axis passes {_text(miss)} beside it" if miss > TOUCHING else "on its axis"
-    what = f"it measures at a point {_text(beside)} away from the outline of {body}, {passes}"
-    return Finding(name, what, f"Move the gauge, draw its target among the solids of {body}, or name the body that it looks at")
+    passes = f"its axis misses it by {_text(miss)}" if miss > TOUCHING else "on its axis"
+    what = f"its measuring point is {_text(beside)} away from the outline of {body}, {passes}"
+    return Finding(name, what, f"Move the gauge, add its target to the solids of {body}, or change its body")
 
 
 def _text(length: float) -> str:

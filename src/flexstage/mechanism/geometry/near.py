@@ -1,4 +1,4 @@
-"""Nearness: which outlines of a stage may meet, found from their boxes."""
+"""Proximity: candidate pairs of outlines by their bounding boxes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.spatial.convex import Boxes, separations
 
 
 def near_pairs(boxes: Sequence[Outline], within: float) -> list[tuple[int, int]]:
-    """Pairs of outlines whose boxes come nearer than `within` [m], by the 15 separating directions of two boxes.
+    """Return pairs of outlines with boxes nearer than `within` [m], by the 15 separating axes of two boxes.
 
     >>> from flexstage.spatial.frame import Frame
     >>> boxes = [Outline("", Frame(np.eye(3), np.array([x, 0.0, 0.0])), np.ones(3)) for x in (0.0, 1.5, 4.0)]

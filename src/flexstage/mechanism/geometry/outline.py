@@ -1,4 +1,4 @@
-"""Outlines of everything that takes up room: the bodies' solids and the links' parts as boxes and cylinders in the stage's frame."""
+"""Outlines of bodies' solids and links' parts: boxes and cylinders in the stage's frame."""
 
 from __future__ import annotations
 
@@ -17,11 +17,10 @@ from flexstage.spatial.frame import Frame
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """A box (`size` along the axes of `frame`, (..., 3) [m]) or, a cylinder along x (`is_cylinder`: length, diameter, diameter).
+    """Box (`size` along the axes of `frame`, (..., 3) [m]), or cylinder along x (`is_cylinder`: length, diameter, diameter).
 
-    `name` is the address of what it outlines (`platform.plate`, `B1/front`). `hole` (..., 2): sides of a box' rectangular hole along z;
-    `bore`: diameter of a cylinder's hole along x. `corners` (..., n, 3) are those of an outline that does not fill its box; a ball is as
-    long as it is thick, `is_ball`.
+    `name` is its address (`platform.plate`, `B1/front`). `hole` (..., 2): sides of a rectangular hole of a box along z; `bore`: diameter of
+    a cylinder's hole along x. `corners` (..., n, 3) are of an outline smaller than its box; `is_ball`: a ball, as long as its diameter.
     """
 
     name: str
@@ -35,7 +34,7 @@ class Outline:
 
     @property
     def designs(self) -> tuple[int, ...]:
-        """The batch axes of where it stands and how large it is."""
+        """Batch axes of position and size."""
         corners = () if self.corners is None else self.corners.shape[:-2]
         return np.broadcast_shapes(self.frame.position.shape[:-1], self.frame.rotation.shape[:-2], self.size.shape[:-1], corners)
 
@@ -60,7 +59,7 @@ class Outline:
 
 
 def outlines(assembly: Assembly) -> tuple[Outline, ...]:
-    """Outlines of all solids, the ground's included, and of all parts with dimensions; compliance matrices and ideal joints have none.
+    """Return outlines of all solids (also of the ground), and of all parts with dimensions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -90,7 +89,7 @@ def _part(link: PlacedLink) -> Iterator[Outline]:
 
 
 def _prism(corners: Array, height: Array) -> Array:
-    """Corners (..., 2 n, 3) of a prism over others (..., n, 2)."""
+    """Corners (..., 2 n, 3) of a prism over a polygon (..., n, 2)."""
     flat = np.concatenate([corners, corners], axis=-2)
     level = 0.5 * height[..., None] * np.repeat([-1.0, 1.0], corners.shape[-2])
     shape = np.broadcast_shapes(flat.shape[:-1], level.shape)

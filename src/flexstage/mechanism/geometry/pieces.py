@@ -1,6 +1,6 @@
-"""Forms as convex pieces: bodies' solids and links' parts cut into polytopes, each inside the material.
+"""Convex decomposition: bodies' solids and links' parts as polytopes inside the material.
 
-Flat faces are exact. Arcs are followed within `SAGITTA`, from inside, so that pieces meet only where the forms do.
+Flat faces are exact. Arcs are approximated within `SAGITTA` from inside, so that pieces touch only if the forms do.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Form: TypeAlias = Shaped | Solid
 
 
 def form_of(part: Part) -> Form | None:
-    """The form of a link's part; a compliance matrix and an ideal joint have none.
+    """Return the form of a link's part; none for a compliance matrix and an ideal joint.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> form_of(Leaf("steel", 0.02, 0.001, 0.01)).span
@@ -36,7 +36,7 @@ def form_of(part: Part) -> Form | None:
 
 
 def is_flat(form: Form) -> bool:
-    """Whether its pieces are the form itself, without arcs.
+    """Return whether its pieces are exact (a form without arcs).
 
     >>> from flexstage.parts.body import Block
     >>> is_flat(Block("steel", (0.1, 0.1, 0.1)))
@@ -47,9 +47,9 @@ def is_flat(form: Form) -> bool:
 
 @SESSION.keep(256)
 def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
-    """The convex pieces of a form in its own frame; a link's `trim` [m] is cut off at both of its ends. An imported shape has none.
+    """Return the convex pieces of a form in its own frame, without `trim` [m] at both ends of a link; none for an imported shape.
 
-    The holes that others of its body leave in a solid count as filled.
+    Holes of the body in a solid are ignored.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> len(pieces(Leaf("steel", 0.02, 0.001, 0.01)))
@@ -61,7 +61,7 @@ def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
 
 
 def _loft(form: Shaped, trim: float) -> Iterator[Convex]:
-    """A part without cuts, straight between the stations of its silhouette."""
+    """A part without cuts, linear between the stations of its silhouette."""
     places, angles = np.array([x for x, _ in form.silhouette]), _angles(form)
     inside = np.clip(places, places[0] + trim, places[-1] - trim)
     for here, there in pairwise(inside):
@@ -70,26 +70,26 @@ def _loft(form: Shaped, trim: float) -> Iterator[Convex]:
 
 
 def _slab(stations: tuple[float, float], sections: tuple[Section, Section], angles: Array) -> Iterator[Convex]:
-    """Between two stations, piece by piece of the sections there."""
+    """Pieces between two stations, one for each piece of the sections."""
     for one, other in zip(*(section.pieces(angles) for section in sections), strict=True):
         yield frustum(*stations, one, other)
 
 
 def _angles(form: Shaped) -> Array:
-    """Where a round outline has corners."""
+    """Angles of the corners of a round outline."""
     count = corner_count(0.5 * max(single(np.maximum(section.height, section.width)) for _, section in form.silhouette))
     return 2.0 * np.pi * np.arange(count) / count
 
 
 def _hinge(form: Profiled, trim: float) -> Iterator[Convex]:
-    """Slabs between stations along the hinge; the height between two is the tangent's of its cuts, or the lower end's."""
+    """Slabs between stations along the hinge; heights are from tangents of its cuts, or the lower end."""
     angles = _angles(form)
     for stations, (low, high) in _slabs(form.profile, trim):
         yield from _slab(stations, (form.grown(low), form.grown(high)), angles)
 
 
 def _slabs(profile: Profile, trim: float) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
-    """Stations and heights of the cuts' inner approximation: tangents at the middle of each arc."""
+    """Stations and heights of the cuts' inner approximation by tangents at arc midpoints."""
     half = 0.5 * single(length(profile)) - trim
     if isinstance(profile, Straight):
         yield (-half, half), (0.0, 0.0)
@@ -116,7 +116,7 @@ def _slabs(profile: Profile, trim: float) -> Iterator[tuple[tuple[float, float],
 
 
 def _chords(contour: Contour, half: float) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
-    """Chords between stations up to `half`, each lowered by what it rises above the contour."""
+    """Chords between stations up to `half`, each lowered to the contour."""
     for start, end in pairwise(contour.knots):
         samples = np.linspace(start, end, 4 * MOST + 1)
         bend = float(np.max(np.abs(np.diff(contour.height(samples), 2)))) * (4.0 * MOST) ** 2
@@ -130,7 +130,7 @@ def _chords(contour: Contour, half: float) -> Iterator[tuple[tuple[float, float]
 
 
 def _below(heights: Array) -> tuple[float, float]:
-    """Ends of a straight line below heights at equal distances: their chord, lowered; no end below nought."""
+    """Ends of a straight line below equidistant heights: their chord, lowered, with ends of at least zero."""
     share = np.linspace(0.0, 1.0, len(heights))
     above = float(np.max(heights[0] + (heights[-1] - heights[0]) * share - heights))
     low, high = float(heights[0]) - above, float(heights[-1]) - above

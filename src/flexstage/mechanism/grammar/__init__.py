@@ -1,1 +1,1 @@
-"""The grammar of descriptions: the values that each class holds."""
+"""Grammar of descriptions: fields and values of each class."""

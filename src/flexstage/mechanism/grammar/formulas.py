@@ -1,7 +1,7 @@
-"""Formulas of a description: what its numbers are worked out of, kept beside their values.
+"""Formulas of a description, stored with the computed values.
 
-A formula stands under the address of its number (`parts.leaf.length`, `numbers.half`). Values are always those of the formulas: who changes
-a named number changes all that depends on it (`address.set_value`), who changes a value with a formula takes the formula out.
+A formula has the address of its number (`parts.leaf.length`, `numbers.half`). Values always equal their formulas: a change of a named
+number recomputes all dependent values (`address.set_value`), a change of a computed value removes its formula.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _NOT_FINITE = ("nan", "inf", "infinity")
 
 
 def scope_of(mechanism: Mechanism) -> dict[str, Amount]:
-    """The named numbers of a description.
+    """Return the named numbers of a description.
 
     >>> scope_of(Mechanism("", numbers={"arm": NamedNumber(0.026, "mm")}))["arm"].noun()
     'a length'
@@ -50,12 +50,12 @@ def scope_of(mechanism: Mechanism) -> dict[str, Amount]:
 
 
 def amount_of(number: NamedNumber) -> Amount:
-    """The amount of a named number; raises `ValueError` for a unit there is none of."""
+    """Return the amount of a named number; raises `ValueError` for an unknown unit."""
     return Amount(number.value, Dimension(Fraction(1), dimension_of(number.unit).powers))
 
 
 def formula_value(text: str, quantity: Quantity, scope: Scope, where: str) -> Number:
-    """The value of a formula that is to be of a quantity [SI]; raises `DesignError` at `where`, `UnknownAmountError`.
+    """Evaluate a formula of a quantity [SI]; raises `DesignError` at `where`, `UnknownAmountError`.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> formula_value("2 * 3 mm", LENGTH, {}, "parts.leaf.length")
@@ -66,13 +66,13 @@ def formula_value(text: str, quantity: Quantity, scope: Scope, where: str) -> Nu
     except ExpressionError as error:
         raise refuse(where, error.what, error.advice) from None
     if found.dimension.powers not in {dimension_of(form).powers for form in (quantity.si, *quantity.also)}:
-        what = f'found "{text}", {found.noun()}, where {quantity.noun} is expected'
-        raise refuse(where, what, "Check the units of the numbers it is made of")
+        what = f'must be {quantity.noun} (got "{text}", {found.noun()})'
+        raise refuse(where, what, "Check the units of its numbers")
     return found.value  # type: ignore[no-any-return]
 
 
 def is_formula(text: str, scope: Scope) -> bool:
-    """Whether a text that is no plain number with a fitting unit is meant as a formula.
+    """Return whether a text (other than a plain number with a valid unit) is a formula.
 
     >>> is_formula("2 * 3 mm", {}), is_formula("3 furlong", {}), is_formula("steel", {}), is_formula("arm +", {})
     (True, False, False, True)
@@ -90,7 +90,7 @@ def is_formula(text: str, scope: Scope) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """Named numbers as a file has them: their `values`, what formulas may refer to, their own formulas, and what is wrong with them."""
+    """Named numbers of a file: `values`, `scope` of formulas, their own formulas, and errors."""
 
     values: Mapping[str, NamedNumber]
     scope: Scope
@@ -129,12 +129,12 @@ def read_numbers(table: Mapping[str, Any]) -> Numbers:
 
 
 def _plain_number(raw: Any, where: str) -> NamedNumber | None:
-    """The number of a text without names or signs, or a bare one; nothing for a formula."""
-    example = 'Write for example "26 mm", 0.3, or a formula such as "arm / 2"'
+    """Number of a text without names or operators, or a bare number; `None` for a formula."""
+    example = 'Use e.g. "26 mm", 0.3, or a formula such as "arm / 2"'
     if isinstance(raw, (int, float)) and not isinstance(raw, bool):
         return NamedNumber(parse(str(raw), RATIO, where=where), "1")
     if not isinstance(raw, str):
-        raise refuse(where, "this is no number", example)
+        raise refuse(where, "not a number", example)
     number, unit = split_unit(raw)
     try:
         quantity = quantity_of_unit(unit)
@@ -148,7 +148,7 @@ def _plain_number(raw: Any, where: str) -> NamedNumber | None:
 def _evaluate(
     texts: Mapping[str, str], values: Mapping[str, NamedNumber], table: Mapping[str, Any]
 ) -> tuple[dict[str, NamedNumber], list[Finding]]:
-    """The named numbers with those of formulas, each after what it is worked out of, and what is wrong with them."""
+    """Named numbers including computed ones, in order of dependence, and their errors."""
     expressions: dict[str, Expression] = {}
     findings: list[Finding] = []
     for name, text in texts.items():
@@ -165,24 +165,24 @@ def _evaluate(
         except ExpressionError as error:
             findings.append(Finding(PREFIX + name, error.what, error.advice))
         except UnknownAmountError:
-            continue  # of what it is worked out of the fault is told
+            continue  # the error of its operand is reported
     return found, findings
 
 
 def shown_unit(amount: Amount) -> str:
-    """The unit that a named number is shown in whose value a formula gives; raises `ExpressionError` if none can be written.
+    """Return the display unit of a computed named number; raises `ExpressionError` if there is none.
 
     >>> shown_unit(amount_of(NamedNumber(0.026, "um")))
     'mm'
     """
     unit = quantity_of_dimension(amount.dimension).shown
     if not is_unit(unit) and unit != "1":
-        raise ExpressionError(f"its unit would be {unit}, which nobody can write", "Write the root where it is used")
+        raise ExpressionError(f"the unit {unit} is not supported", "Use the root in the formula that requires it")
     return unit
 
 
 def _order(expressions: Mapping[str, Expression]) -> list[str]:
-    """Names, each after those it is worked out of; those in circles, or worked out of them, are left out."""
+    """Names in order of dependence, without circular ones and their dependents."""
     lost = {name for circle in cycles(expressions) for name in circle}
     names = {name: expression.names for name, expression in expressions.items() if name not in lost}
     return [name for name in TopologicalSorter(names).static_order() if name in names]
@@ -193,7 +193,7 @@ def _scope(table: Mapping[str, Any], found: Mapping[str, NamedNumber]) -> Scope:
 
 
 def dependents(mechanism: Mechanism, name: str) -> tuple[str, ...]:
-    """The addresses of all values that a named number changes, directly or by way of others, each after those it is worked out of.
+    """Return the addresses of all values that depend on a named number, in order of dependence.
 
     >>> formulas = {"numbers.half": "arm/2", "parts.leaf.length": "half", "parts.leaf.width": "1 mm * 2"}
     >>> dependents(Mechanism("", formulas=formulas), "arm")
@@ -210,7 +210,7 @@ def dependents(mechanism: Mechanism, name: str) -> tuple[str, ...]:
 
 
 def depth(mechanism: Mechanism, name: str) -> int:
-    """How many formulas a named number is worked out by, one after another.
+    """Return the length of the chain of formulas of a named number.
 
     >>> depth(Mechanism("", formulas={"numbers.half": "arm/2", "numbers.quarter": "half/2"}), "quarter")
     2
@@ -220,7 +220,7 @@ def depth(mechanism: Mechanism, name: str) -> int:
 
 
 def cycles(expressions: Mapping[str, Expression]) -> Iterator[tuple[str, ...]]:
-    """Names that are worked out of themselves: each circle once, from a name to itself.
+    """Yield circular dependencies: each once, from a name to itself.
 
     >>> list(cycles({"a": parse_expression("2*b"), "b": parse_expression("a")}))
     [('a', 'b', 'a')]
@@ -239,38 +239,36 @@ def cycles(expressions: Mapping[str, Expression]) -> Iterator[tuple[str, ...]]:
 
 
 def cycle_findings(expressions: Mapping[str, Expression]) -> Iterator[Finding]:
-    """Findings about names that are worked out of themselves."""
+    """Return errors for circular dependencies."""
     for circle in cycles(expressions):
-        yield Finding(PREFIX + circle[0], f"it is worked out of itself: {' -> '.join(circle)}", "Give one of them a number")
+        yield Finding(PREFIX + circle[0], f"circular formulas: {' -> '.join(circle)}", "Use a number for one of them")
 
 
 def spelling_findings(name: str) -> Iterator[Finding]:
     """Findings about the name of a number: letters, digits and _, and no function.
 
     >>> print(*spelling_findings("sin"))
-    numbers.sin: sin has a meaning of its own in formulas. Call the number otherwise, for example sin_1.
+    numbers.sin: sin is reserved in formulas. Rename the number, e.g. sin_1.
     """
     if not _NAME.fullmatch(name):
         yield Finding(PREFIX + name[:60], "the name of a number begins with a letter and has letters, digits and _", "Rename it")
     elif name in FUNCTIONS or name.lower() in _NOT_FINITE:
-        yield Finding(PREFIX + name, f"{name} has a meaning of its own in formulas", f"Call the number otherwise, for example {name}_1")
+        yield Finding(PREFIX + name, f"{name} is reserved in formulas", f"Rename the number, e.g. {name}_1")
 
 
 def unused_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Named numbers that neither a formula nor a requirement refers to.
+    """Return errors for named numbers that no formula and no requirement uses.
 
     >>> print(*unused_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "mm")})))
-    numbers.arm: no formula refers to it, so that it changes nothing. Write it where it is meant, or take it out.
+    numbers.arm: no formula uses it. Use it in a formula, or remove it.
     """
     used = {name for text in mechanism.formulas.values() for name in parse_expression(text).names}
     used |= {key.removeprefix(PREFIX) for key in mechanism.requirements}
     for name in mechanism.numbers:
         if name not in used:
-            yield Finding(
-                PREFIX + name, "no formula refers to it, so that it changes nothing", "Write it where it is meant, or take it out"
-            )
+            yield Finding(PREFIX + name, "no formula uses it", "Use it in a formula, or remove it")
 
 
 def _references(known: Mapping[str, frozenset[str]]) -> dict[str, frozenset[str]]:
-    """The names that each named number is worked out of."""
+    """Names that each named number depends on."""
     return {address.removeprefix(PREFIX): names for address, names in known.items() if address.startswith(PREFIX)}

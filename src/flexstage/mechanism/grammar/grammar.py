@@ -1,8 +1,7 @@
-"""The grammar of descriptions: what each class holds, read from its annotations.
+"""Grammar of descriptions: fields of each class, from its annotations.
 
-One tree of nodes per class. What a file, an address or a check does with a kind of node stands in the node's class (here those that hold
-others, in `node` those of one value), so that a field is written once, in its class. Names that tell alternatives apart in a file
-(`kind = "notch"`) stand here too.
+One tree of nodes per class. The node's class has the behaviour for files, addresses and checks: containers here, single values in `node`. A
+field is thus written once, in its class. The names of alternatives in a file (`kind = "notch"`) are here too.
 """
 
 from __future__ import annotations
@@ -67,10 +66,10 @@ from flexstage.parts.shape import Elastic
 TAGS = "tags"
 LIKE = "like"
 RESERVED = (TAGS, LIKE)
-"""Keys that may stand in any table of a file and are no field."""
+"""Keys allowed in any table of a file that are not fields."""
 
 BY_FIELD = ""
-"""In the place of the key of alternatives that are told apart by which of their fields stands in the table; the name is the field's."""
+"""Key of alternatives that are distinguished by the field in the table; the name is the field's."""
 
 _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
     Probe: (BY_FIELD, "body"),
@@ -90,7 +89,7 @@ _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
     Pose: (None, "pose"),
 }
 TOLD_BY = "TOLD_BY"
-"""Class attribute of alternatives that do not stand above: the key that tells them apart, or None, and their name in a file."""
+"""Class attribute of other alternatives: the discriminating key, or None, and their name in a file."""
 
 _ALWAYS = ("gravity",)
 _TAGS_SCHEMA: dict[str, Any] = {
@@ -99,50 +98,50 @@ _TAGS_SCHEMA: dict[str, Any] = {
     "additionalProperties": {"type": "string", "pattern": r"^(stated|derived|assumed)( |$)", "examples": ["stated paper 2.2"]},
 }
 _KIND = "kind"
-_ELSEWHERE = "A kind that another package offers is known where that package is installed"
+_ELSEWHERE = "Install the package of the kind, if another package provides it"
 
 
 @dataclass(frozen=True)
 class ListNode(RowNode):
-    """Texts, choices, numbers or tables in a row, `length` of them (None: any number)."""
+    """List of texts, choices, numbers or tables, of `length` (None: any)."""
 
     item: Node
     length: int | None
 
     @property
     def example(self) -> str:
-        """A text as it may stand in a file."""
+        """Example text of a file."""
         return f"[{', '.join([self.item.example] * (self.length or 1))}]"
 
     @property
     def size(self) -> int | None:
-        """How many it states."""
+        """Length of the list."""
         return self.length
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its values, all where it is."""
+        """Values, all at the address of the list."""
         return (("", self.item, part) for part in row)
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its items by number, from 1 on."""
+        """Items by number, from 1."""
         return ((str(number), self.item, item) for number, item in enumerate(value, start=1))
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """An array."""
+        """JSON array."""
         length = {} if self.length is None else {"minItems": self.length, "maxItems": self.length}
         return {"type": "array", "items": self.item.schema(definitions), **length}
 
 
 @dataclass(frozen=True)
 class NumbersNode(ListNode):
-    """Numbers or points in a row, any number of them, each of which has an address: its place, counted from nought."""
+    """List of numbers or points of any length, each with an address: its index from zero."""
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its values by their place."""
+        """Values by index."""
         return ((str(place), self.item, part) for place, part in enumerate(row))
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its values by their place."""
+        """Values by index."""
         return self.parts(value)
 
     def child(self, value: Any, name: str) -> Node:
@@ -150,13 +149,13 @@ class NumbersNode(ListNode):
         return self.item
 
     def key(self, value: Any, name: str) -> int:
-        """The place of a number."""
+        """Index of a number."""
         return int(name)
 
 
 @dataclass(frozen=True)
 class TableNode(Node):
-    """Values by name."""
+    """Table of values by name."""
 
     item: Node
 
@@ -170,15 +169,15 @@ class TableNode(Node):
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
         """A table."""
         if TAGS in value:
-            raise refuse(f"{where}.{TAGS}", f'no entry may be named "{TAGS}"', "Rename it")
+            raise refuse(f"{where}.{TAGS}", f'"{TAGS}" is reserved', "Rename the entry")
         return {whole_text(name, where): writer.write(self.item, item, f"{where}.{name}") for name, item in value.items()}
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """An object of any keys."""
+        """JSON object with any keys."""
         return {"type": "object", "properties": _tags_of(definitions), "additionalProperties": self.item.schema(definitions)}
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its values."""
+        """Values."""
         return ((name, self.item, item) for name, item in value.items())
 
     def child(self, value: Any, name: str) -> Node:
@@ -188,21 +187,21 @@ class TableNode(Node):
 
 @dataclass(frozen=True)
 class OpenNode(Node):
-    """Values by name, which stay as they stand: the name decides what each is. `said` is their meaning in a schema."""
+    """Table of raw values by name; the name determines the kind of each. `said` is their description in a schema."""
 
     said: str
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The table as it stands."""
+        """Raw table."""
         return Table(raw) if _is_table(raw, where, reader) else BAD
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """An object of any values."""
+        """JSON object with any values."""
         return {"type": "object", "description": self.said}
 
 
 class JoinsNode(Node):
-    """The two bodies that a link joins, or a table of bodies by port."""
+    """Bodies joined by a link: two, or a table by port."""
 
     shown = '["ground", "platform"]'
 
@@ -218,7 +217,7 @@ class JoinsNode(Node):
         return self._node(value).write(value, where, writer)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """An array of two, or an object."""
+        """JSON array of two, or object."""
         by_port = {"type": "object", "additionalProperties": {"type": "string"}}
         return {"oneOf": [ListNode(TextNode(), 2).schema(definitions), by_port]}
 
@@ -227,12 +226,12 @@ class JoinsNode(Node):
         return self._node(value).child(value, name)
 
 
-OVERRIDES = OpenNode("Overrides by address: unit/link.field of all copies, copy/link.field of one.")
+OVERRIDES = OpenNode("Overrides by address: unit/link.field of all instances, instance/link.field of one.")
 
 
 @dataclass(frozen=True)
 class RecordNode(Node):
-    """A description class with its fields.
+    """Description class with its fields.
 
     >>> from flexstage.parts.rod import Rod
     >>> [address for address, _, _ in RecordNode(Rod).numbers(Rod("steel", length=0.03, diameter=0.001), "parts.wire")]
@@ -243,16 +242,16 @@ class RecordNode(Node):
 
     @property
     def records(self) -> tuple[type, ...]:
-        """Classes of its values: this one, no class derived from it."""
+        """Classes of its values: this one only."""
         return (self.record,)
 
     @property
     def fields(self) -> Mapping[str, Slot]:
-        """The fields by name."""
+        """Fields by name."""
         return _slots(self.record)
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The record of the entries of the table, and defaults."""
+        """Record of the table's entries and defaults."""
         if not _is_table(raw, where, reader):
             return BAD
         raw = _strip_tags(raw, where, reader)
@@ -264,17 +263,17 @@ class RecordNode(Node):
                 used.add(key)
                 values[name] = reader.read(inner, raw[key], join(where, key))
             elif slot.required:
-                advice = f"Write for example {slot.keys[0]} = {slot.node.example}"
+                advice = f"Use e.g. {slot.keys[0]} = {slot.node.example}"
                 values[name] = reader.refuse(where or "file", f"it has no {' or '.join(slot.keys)}", advice)
             else:
                 values[name] = slot.default
         known = [key for slot in self.fields.values() for key in slot.keys]
         for key in [key for key in raw if key not in used]:
-            reader.refuse(join(where, key), "this key is not known here", advise_key(key, set(known) - used, known))
+            reader.refuse(join(where, key), "unknown key", advise_key(key, set(known) - used, known))
         return BAD if BAD in values.values() else self.record(**values)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
-        """A table of the fields that are not at their defaults, or have a formula."""
+        """Table of fields with other than default values, or with a formula."""
         return dict(self._entries(value, where, writer))
 
     def _entries(self, record: Any, where: str, writer: Writer) -> Iterator[tuple[str, Any]]:
@@ -286,7 +285,7 @@ class RecordNode(Node):
                 yield self.key(record, name), writer.write(slot.node, value, join(where, name))
 
     def schema(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
-        """A reference to the definition of a class, told apart by `key = name`."""
+        """Reference to the definition of a class, with the discriminator `key = name`."""
         title = self.record.__name__
         if title not in definitions.known:
             definitions.known[title] = {}
@@ -294,7 +293,7 @@ class RecordNode(Node):
         return {"$ref": f"#/$defs/{title}"}
 
     def definition(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
-        """The schema of the class in full."""
+        """Full schema of the class."""
         properties: dict[str, Any] = {key: {"const": name}} if key else {}
         required = [key] if key else []
         wrapped: list[dict[str, Any]] = []
@@ -308,14 +307,14 @@ class RecordNode(Node):
         demand: dict[str, Any] = {"required": required}
         if section is not None:
             names = {"anyOf": [{"enum": list(section.entries)}, {"type": "string"}]}
-            properties |= {LIKE: names | {"description": "the entry of the catalogue to start from"}}
+            properties |= {LIKE: names | {"description": "catalogue entry with default values"}}
             demand = {"anyOf": [{"required": required}, {"required": [LIKE]}]}
         demand |= {"oneOf": wrapped} if wrapped else {}
         shape = {"type": "object", "description": meaning(self.record), "properties": properties | _tags_of(definitions)}
         return shape | demand | {"additionalProperties": False}
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its fields."""
+        """Fields."""
         for name, slot in self.fields.items():
             yield name, slot.node, getattr(value, name)
 
@@ -324,24 +323,24 @@ class RecordNode(Node):
         return self.fields[name].node
 
     def key(self, value: Any, name: str) -> str:
-        """The field's key, or the name of its alternative where that stands in the file."""
+        """Key of a field, or the name of its alternative if the file has that."""
         slot = self.fields[name]
         return slot.key if slot.wrapped is None else slot.wrapped.name_of(getattr(value, name))
 
     def field_called(self, value: Any, key: str) -> str:
-        """The field that a file calls by the name of what it holds: `polar` for `pattern`."""
+        """Field of a file key that is an alternative's name: `polar` for `pattern`."""
         found = (name for name, slot in self.fields.items() if slot.wrapped is not None and self.key(value, name) == key)
         return next(found, key)
 
 
 @dataclass(frozen=True)
 class UnionNode(Node):
-    """One of several classes: told apart by the value of the key `told_by`, or, where that is None, by which name stands in the table."""
+    """One of several classes: identified by the value of the key `told_by`, or if None, by the name in the table."""
 
     told_by: str | None
     options: tuple[tuple[str, RecordNode], ...]
     usual: str | None = None
-    """The alternative of a table that names none."""
+    """Default alternative."""
 
     @property
     def records(self) -> tuple[type, ...]:
@@ -349,34 +348,36 @@ class UnionNode(Node):
         return tuple(option.record for _, option in self.options)
 
     def name_of(self, value: Any) -> str:
-        """The name of a value's alternative."""
+        """Name of a value's alternative."""
         return next(name for name, option in self.options if option.record is type(value))
 
     def option(self, value: Any) -> RecordNode:
-        """The node of a value's alternative."""
+        """Node of a value's alternative."""
         return dict(self.options)[self.name_of(value)]
 
     @property
     def example(self) -> str:
-        """A text as it may stand in a file."""
+        """Example text of a file."""
         return f'{{ {self.told_by} = "{self.options[0][0]}", ... }}' if self.told_by else self.shown
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The record of the alternative that is named."""
+        """Record of the named alternative."""
         if not _is_table(raw, where, reader):
             return BAD
         options = dict(self.options)
         key = self.told_by or ""
         name = raw.get(key, self.usual)
         if name is None:
-            return reader.refuse(where, f"it has no {key}", f"Write {key} = one of {', '.join(options)}")
+            return reader.refuse(where, f"{key} missing", f"Use {key} = one of {', '.join(options)}")
         if not isinstance(name, str) or name not in options:
             advice = advise_kind(kind(name), options)
-            return reader.refuse(join(where, key), f"found {kind(name)}", f"{advice}. {_ELSEWHERE}" if key == _KIND else advice)
+            return reader.refuse(
+                join(where, key), f"unknown {key} (got {kind(name)})", f"{advice}. {_ELSEWHERE}" if key == _KIND else advice
+            )
         return options[name].read({item: value for item, value in raw.items() if item != key}, where, reader)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
-        """A table that says its alternative."""
+        """Table with the name of its alternative."""
         inner = self.option(value).write(value, where, writer)
         name = self.name_of(value)
         return {self.told_by: name} | inner if self.told_by and name != self.usual else inner
@@ -387,28 +388,28 @@ class UnionNode(Node):
         return {"oneOf": schemas} if len(schemas) > 1 else schemas[0]
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Those of the alternative."""
+        """Members of the alternative."""
         return self.option(value).members(value)
 
     def child(self, value: Any, name: str) -> Node:
-        """That of the alternative."""
+        """Result of the alternative."""
         return self.option(value).child(value, name)
 
     def key(self, value: Any, name: str) -> str:
-        """That of the alternative."""
+        """Result of the alternative."""
         return self.option(value).key(value, name)
 
     def field_called(self, value: Any, key: str) -> str:
-        """That of the alternative."""
+        """Result of the alternative."""
         return self.option(value).field_called(value, key)
 
 
 @dataclass(frozen=True)
 class FieldUnionNode(UnionNode):
-    """One of several classes, told apart by which of their fields stands in the table; the first where none of them does."""
+    """One of several classes, identified by the field in the table; by default the first."""
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The record of the alternative whose field stands there."""
+        """Record of the alternative with the field in the table."""
         if not _is_table(raw, where, reader):
             return BAD
         return next((option for name, option in self.options if name in raw), self.options[0][1]).read(raw, where, reader)
@@ -416,7 +417,7 @@ class FieldUnionNode(UnionNode):
 
 @dataclass(frozen=True)
 class Slot:
-    """A field: its key in a file, what it holds, whether it may be `None`, and its default (`dataclasses.MISSING`: none; tables: empty)."""
+    """Field: its key in a file, its node, whether it may be `None`, and its default (`dataclasses.MISSING`: none; tables: empty)."""
 
     key: str
     node: Node
@@ -425,41 +426,41 @@ class Slot:
 
     @property
     def required(self) -> bool:
-        """Whether it must be given."""
+        """Whether the field is required."""
         return self.default is dataclasses.MISSING
 
     @property
     def wrapped(self) -> UnionNode | None:
-        """Alternatives whose names stand in the place of the key."""
+        """Alternatives with names instead of the key."""
         return self.node if isinstance(self.node, UnionNode) and self.node.told_by is None else None
 
     @property
     def alternatives(self) -> tuple[tuple[str, Node], ...]:
-        """Keys that it may stand under, and what stands there."""
+        """Possible keys, and their nodes."""
         return ((self.key, self.node),) if self.wrapped is None else self.wrapped.options
 
     @property
     def keys(self) -> list[str]:
-        """Keys that it may stand under."""
+        """Possible keys."""
         return [key for key, _ in self.alternatives]
 
     def alternative(self, raw: dict[str, Any], where: str, reader: Reader) -> tuple[str, Node]:
-        """The key under which the field stands in a table, and its node there."""
+        """Key of the field in a table, and its node."""
         present = [(key, node) for key, node in self.alternatives if key in raw]
         if len(present) > 1:
-            reader.refuse(where, f"it has both {' and '.join(key for key, _ in present)}", "Leave one of them")
+            reader.refuse(where, f"both {' and '.join(key for key, _ in present)} specified", "Remove one of them")
         return present[0] if present else (self.key, self.node)
 
 
 def _is_table(raw: Any, where: str, reader: Reader) -> bool:
     fits = isinstance(raw, dict)
     if not fits:
-        reader.refuse(where, f"found {kind(raw)} where a table is expected", "Write a table: [name] or { key = value }")
+        reader.refuse(where, f"must be a table (got {kind(raw)})", "Write a table: [name] or { key = value }")
     return fits
 
 
 def _strip_tags(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, Any]:
-    """The table without its tags, which are noted by address."""
+    """The table without its tags, which are stored by address."""
     if not reader.tagged:
         return raw
     tags = raw.get(TAGS, {})
@@ -475,7 +476,7 @@ def _tags_of(definitions: Definitions) -> dict[str, Any]:
 
 
 def node_of(record: type) -> RecordNode:
-    """The node of a description class.
+    """Return the node of a description class.
 
     >>> from flexstage.parts.rod import Rod
     >>> node_of(Rod).fields["length"].node.quantity.name
@@ -540,7 +541,7 @@ def _node(hint: Any) -> Node:
 
 
 def _discriminator(option: type) -> tuple[str | None, str]:
-    """The key that tells an alternative apart, and its name there; parts say their kind."""
+    """Discriminating key of an alternative, and its name there; `kind` for parts."""
     told = _ALTERNATIVES.get(option) or getattr(option, TOLD_BY, None)
     return told or (_KIND, option.kind)  # type: ignore[attr-defined]
 

@@ -1,7 +1,7 @@
-"""Nodes of the grammar that hold one value: a number, a vector, a direction, a matrix, a text, a choice.
+"""Grammar nodes of single values: number, vector, direction, matrix, text, choice.
 
-What can be done with a kind of node stands in its class: `read` what a file has, `write` it, its `schema`, `check` the kind of a value,
-walk its `members`, `parse` the text of an assignment.
+Each node class has the operations `read` and `write` for files, `schema`, `check` for the kind of a value, and `members`. `parse` reads the
+text of an assignment.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, ClassVar
 
-from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.units.expression import UnknownAmountError
 from flexstage.base.units.quantity import (
     COMPLIANCE,
@@ -29,7 +29,7 @@ from flexstage.base.units.quantity import (
     Bound,
     Quantity,
 )
-from flexstage.base.units.unit import parse, quantity_of_unit, show
+from flexstage.base.units.unit import example, missing_unit, parse, quantity_of_unit, show
 from flexstage.mechanism.grammar.formulas import Numbers, formula_value, is_formula
 from flexstage.spatial.frame import COMPONENTS
 
@@ -43,22 +43,22 @@ _FORMULA = rf"^(?![0-9.eE+-]*$){_OPERAND}([-+*/]{_OPERAND})*$"
 
 
 class Bad:
-    """Marks a value that could not be read; a finding says why."""
+    """Marker of an unreadable value, with a reported error."""
 
 
 BAD = Bad()
 
 
 class EnoughError(Exception):
-    """There are so many findings that reading on is of no use."""
+    """Too many errors to continue."""
 
 
 @dataclass
 class Reader:
-    """Gathers what reading finds: findings, tags by address, and sources that catalogue entries bring along.
+    """Result collector of reading: errors, tags by address, and sources of catalogue entries.
 
-    `tagged`: tables may have tags; otherwise that is a name as any other. `numbers` are those that formulas may refer to, `formulas` those
-    that were found, by address; without `numbers` there are none.
+    `tagged`: tables may have tags; otherwise `tags` is an ordinary name. `numbers` are named numbers for formulas (without: no formulas),
+    `formulas` are those read, by address.
     """
 
     tagged: bool = True
@@ -69,14 +69,14 @@ class Reader:
     formulas: dict[str, str] = field(default_factory=dict)
 
     def read(self, node: Node, raw: Any, where: str) -> Any:
-        """The value that `raw` means as a `node`; `BAD` after a finding."""
+        """Value of `raw` by a `node`; `BAD` after an error."""
         try:
             return node.read(raw, where, self)
         except DesignError as error:
             return self.note(error.findings)
 
     def formula(self, text: str, quantity: Quantity, where: str) -> Any:
-        """The value of a formula, which is noted; `BAD` where a number it refers to could not be read."""
+        """Value of a formula, which is stored; `BAD` if one of its numbers is unreadable."""
         scope = self.numbers.scope if self.numbers is not None else {}
         try:
             value = formula_value(text, quantity, scope, where)
@@ -86,11 +86,11 @@ class Reader:
         return value
 
     def refuse(self, where: str, what: str, advice: str) -> Bad:
-        """Note a finding."""
+        """Report an error."""
         return self.note([Finding(where, what, advice)])
 
     def note(self, findings: Iterable[Finding]) -> Bad:
-        """Note findings, up to a number that is of use to anybody."""
+        """Report errors, up to a maximum number."""
         self.findings += findings
         if len(self.findings) >= MOST_FINDINGS:
             raise EnoughError
@@ -99,17 +99,17 @@ class Reader:
 
 @dataclass
 class Writer:
-    """Gathers what writing finds. What has a formula, by address, is written as that."""
+    """Error collector of writing. Values with a formula, by address, are written as formulas."""
 
     findings: list[Finding] = field(default_factory=list)
     formulas: Mapping[str, str] = field(default_factory=dict)
 
     def has_formula(self, where: str) -> bool:
-        """Whether a value, or anything it holds, has one."""
+        """Whether a value or one of its members has a formula."""
         return any(key == where or key.startswith(f"{where}.") for key in self.formulas)
 
     def write(self, node: Node, value: Any, where: str) -> Any:
-        """The form of a value in a file; `None` after a finding."""
+        """File form of a value; `None` after an error."""
         try:
             return node.write(value, where, self)
         except DesignError as error:
@@ -119,7 +119,7 @@ class Writer:
 
 @dataclass
 class Definitions:
-    """The schemas of classes by name, which others refer to, and the catalogue that `like` may name entries of.
+    """Schemas of classes by name, for references, and the catalogue for `like`.
 
     `tagged`: tables may have tags. `formulas`: numbers may be formulas.
     """
@@ -130,63 +130,63 @@ class Definitions:
 
 
 class Node:
-    """A kind of value. What a kind does not say of itself is said here."""
+    """Kind of value, with default operations."""
 
     single: ClassVar[bool] = False
-    """Whether one text means it, as an assignment needs it."""
+    """Whether a single text can represent the value, as in an assignment."""
     components: ClassVar[bool] = False
-    """Whether its members are told apart as x, y, z, rx, ry, rz."""
+    """Whether its members are named x, y, z, rx, ry, rz."""
     shown: ClassVar[str] = "{ ... }"
 
     @property
     def example(self) -> str:
-        """A text as it may stand in a file."""
+        """Example text of a file."""
         return self.shown
 
     @property
     def measures(self) -> Quantity | None:
-        """What its number, or each of its components, is a number of."""
+        """Quantity of its number or of each component."""
         return None
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The value that `raw` means; `BAD` after a finding. May raise `DesignError`."""
+        """Value of `raw`; `BAD` after an error. May raise `DesignError`."""
         raise NotImplementedError
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """The form of a value in a file; raises `DesignError` for what has none."""
+        """File form of a value; raises `DesignError` if it has none."""
         raise NotImplementedError
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """The JSON Schema of what may stand in a file."""
+        """JSON Schema of the file form."""
         raise NotImplementedError
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Name, node and value of what a value holds."""
+        """Name, node and value of members."""
         return iter(())
 
     def child(self, value: Any, name: str) -> Node:
-        """The node of the member of that name (see `path.member`); `value` decides between alternatives."""
+        """Node of the member of that name (see `path.member`); `value` selects an alternative."""
         raise KeyError(name)
 
     def key(self, value: Any, name: str) -> Any:
-        """What a member is called in a file."""
+        """Key of a member in a file."""
         return COMPONENTS.index(name) if self.components else name
 
     def field_called(self, value: Any, key: str) -> str:
-        """The field that a file calls so by what it holds (`polar` for `pattern`); otherwise the key itself."""
+        """Field of a file key that is an alternative's name (`polar` for `pattern`); else the key."""
         return key
 
     def parse(self, text: str, where: str) -> Any:
-        """The value that the text of an assignment means (`1.4 mm`, `x`, `steel`); raises `DesignError` at `where`."""
+        """Value of the text of an assignment (`1.4 mm`, `x`, `steel`); raises `DesignError` at `where`."""
         if not self.single:
-            raise refuse(where, "it has several values", "Set one of them, for example its x")
+            raise refuse(where, "it has several values", "Set one of them, e.g. its x")
         reader = Reader()
         value = reader.read(self, text, where)
         require(reader.findings)
         return value
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
-        """Address, value and node of every number of a value; directions, absent values and changes are left out."""
+        """Address, value and node of every number of a value, without directions and absent values."""
         if value is not None:
             for name, inner, item in self.members(value):
                 yield from inner.numbers(item, join(where, name))
@@ -203,16 +203,16 @@ class NumberNode(Node):
 
     @property
     def measures(self) -> Quantity:
-        """Its quantity."""
+        """Quantity of the number."""
         return self.quantity
 
     @property
     def example(self) -> str:
-        """A text as it may stand in a file."""
+        """Example text of a file."""
         return self.quantity.example if self.quantity is RATIO else f'"{self.quantity.example}"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The number in SI, or what a formula gives."""
+        """Number in SI, or the value of a formula."""
         scope = {} if reader.numbers is None else reader.numbers.scope
         try:
             value = self.si(raw, where)
@@ -225,20 +225,19 @@ class NumberNode(Node):
         return value
 
     def si(self, raw: Any, where: str) -> float:
-        """The number in SI of what a file has; raises `DesignError` at `where` if that is none."""
+        """Number in SI of a file value; raises `DesignError` at `where` if invalid."""
         if is_bare(raw) and raw == 0:
             return float(raw)
-        example = f'Write for example "{self.quantity.example}"'
         if isinstance(raw, str):
             return parse(raw, self.quantity, where=where)
         if not is_bare(raw):
-            raise refuse(where, f"found {kind(raw)} where {self.quantity.noun} is expected", example)
+            raise refuse(where, f"must be {self.quantity.noun} (got {kind(raw)})", f"Use e.g. {example(self.quantity)}")
         if self.quantity is not RATIO:
-            raise refuse(where, f"found {kind(raw)} without a unit", example)
+            raise missing_unit(raw, self.quantity, where=where)
         return _float(raw, where)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Its formula, or the shortest text that is read back to the same bits; a ratio as it is."""
+        """Formula, or the shortest text that is read back to the same bits; a ratio as a number."""
         require_single(value, where)
         if where in writer.formulas:
             return writer.formulas[where]
@@ -247,7 +246,7 @@ class NumberNode(Node):
         return value if self.quantity is RATIO else show(value, self.quantity)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """A text whose unit the example shows."""
+        """JSON string with a unit as in the example."""
         said = f", {self.bound.text()}" if self.bound and self.bound.text() else ""
         text = {"type": "string", "pattern": _WITH_UNIT}
         told = {"description": f"{self.quantity.name}{said}", "examples": [self.quantity.example]}
@@ -258,30 +257,30 @@ class NumberNode(Node):
         return {"anyOf": [{"type": "number", **_limits(self.bound)}, *texts]} | told | {"examples": [float(self.quantity.example)]}
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
-        """The number itself."""
+        """The number."""
         if value is not None:
             yield where, value, self
 
 
 @dataclass(frozen=True)
 class NamedNode(Node):
-    """A named number of any quantity, which its unit says."""
+    """Named number of any quantity, determined by its unit."""
 
     single: ClassVar[bool] = True
     shown: ClassVar[str] = '"26 mm"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The number of that name, which was read before all else."""
+        """Number of that name, read before other values."""
         return reader.numbers.values.get(where.partition(".")[2], BAD) if reader.numbers is not None else BAD
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Its formula, or the shortest text in its unit that is read back to the same bits."""
+        """Formula, or the shortest text in its unit that is read back to the same bits."""
         return self.child(value, "value").write(value.value, where, writer)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A number, a text with a unit, or a formula."""
         texts = [{"type": "string", "pattern": pattern} for pattern in (_WITH_UNIT, _FORMULA)]
-        said = 'a number that formulas refer to by name: "26 mm", a ratio, or a formula of others, "arm / 2"'
+        said = 'named number for formulas: "26 mm", a ratio, or a formula of other named numbers, "arm / 2"'
         return {"anyOf": [{"type": "number"}, *texts], "description": said}
 
     def child(self, value: Any, name: str) -> NumberNode:
@@ -294,60 +293,60 @@ class NamedNode(Node):
 
 
 class RowNode(Node):
-    """Several values in brackets."""
+    """Values in brackets."""
 
     @property
     def size(self) -> int | None:
-        """How many there are; absent: any number."""
+        """Number of values (default: any)."""
         return None
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Where each value of a row is, from where the row is, its node and itself."""
+        """Address, node and value of each element of a row."""
         raise NotImplementedError
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """One value for each."""
+        """One value per element."""
         if not is_row(self, raw, self.size, where, reader):
             return BAD
         return every([reader.read(node, part, join(where, name) if name else where) for name, node, part in self.parts(raw)])
 
     def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """One form for each."""
+        """One form per element."""
         return [writer.write(node, part, join(where, name) if name else where) for name, node, part in self.parts(value)]
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """What it holds."""
+        """Elements."""
         return self.parts(value)
 
 
 @dataclass(frozen=True)
 class VectorNode(RowNode):
-    """Numbers by component: x, y, z; or the rows of a matrix."""
+    """Vector by component: x, y, z; or rows of a matrix."""
 
     items: tuple[Node, ...]
     components: ClassVar[bool] = True
 
     @property
     def measures(self) -> Quantity | None:
-        """The quantity of its first component."""
+        """Quantity of the first component."""
         return self.items[0].measures
 
     @property
     def example(self) -> str:
-        """A text as it may stand in a file."""
+        """Example text of a file."""
         return f"[{', '.join(item.example for item in self.items)}]"
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """As many texts."""
+        """JSON array of texts."""
         return row_schema([item.schema(definitions) for item in self.items])
 
     @property
     def size(self) -> int:
-        """As many as components."""
+        """Number of components."""
         return len(self.items)
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its components."""
+        """Components."""
         return zip(COMPONENTS, self.items, row, strict=False)
 
     def child(self, value: Any, name: str) -> Node:
@@ -373,16 +372,16 @@ class DirectionNode(VectorNode):
         return DIRECTION
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """A direction by name, or three numbers without units."""
+        """Direction by name, or three numbers without units."""
         if isinstance(raw, str) and raw in DIRECTIONS:
             return DIRECTIONS[raw]
         if not isinstance(raw, list) or len(raw) != 3:
             advice = f"Write one of {', '.join(DIRECTIONS)}, or three numbers without units"
-            return reader.refuse(where, f"found {kind(raw)} where a direction is expected", advice)
+            return reader.refuse(where, f"must be a direction (got {kind(raw)})", advice)
         return super().read(raw, where, reader)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Its name, or its components."""
+        """Name or components."""
         name = next((name for name, direction in DIRECTIONS.items() if repr(direction) == repr(value)), None)
         return super().write(value, where, writer) if name is None or writer.has_formula(where) else name
 
@@ -391,19 +390,19 @@ class DirectionNode(VectorNode):
         return {"oneOf": [{"enum": list(DIRECTIONS)}, super().schema(definitions)]}
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
-        """None: no component varies by itself."""
+        """None: components do not vary individually."""
         return iter(())
 
 
 def _rows(*quantities: Quantity) -> tuple[VectorNode, ...]:
-    """The rows of a 6x6 of quantities: of entries between translations, of mixed ones, between rotations."""
+    """Rows of a 6x6 of quantities: translational, coupling and rotational entries."""
     entries = [NumberNode(quantity, zero=True) for quantity in quantities]
     return tuple(VectorNode(tuple(entries[(row > 2) + (column > 2)] for column in range(6))) for row in range(6))
 
 
 @dataclass(frozen=True)
 class MatrixNode(VectorNode):
-    """A symmetric 6x6, of what is called `name`; files and overrides state the whole matrix or single entries.
+    """Symmetric 6x6 of the quantity `name`; files and overrides specify the whole matrix or single entries.
 
     >>> COMPLIANCES.child(None, "x").child(None, "rz").quantity.name, COMPLIANCES.child(None, "rx").child(None, "rx").quantity.name
     ('coupling compliance', 'rotational compliance')
@@ -413,20 +412,20 @@ class MatrixNode(VectorNode):
 
     @property
     def measures(self) -> None:
-        """Its entries are of several quantities."""
+        """None: its entries have several quantities."""
 
     @property
     def example(self) -> str:
-        """A text as it may stand in a file."""
+        """Example text of a file."""
         return f"[{self.items[0].example}, ...]"
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """Six rows."""
-        said = f"6x6 {self.name} about the centre, rows x, y, z, rx, ry, rz; zero stands without unit"
+        said = f"6x6 {self.name} about the centre, rows x, y, z, rx, ry, rz; zero without unit"
         return super().schema(definitions) | {"description": said}
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Its entries on the diagonal and above."""
+        """Entries on and above the diagonal."""
         for row, column in itertools.combinations_with_replacement(range(6), 2):
             name = COMPONENTS[column]
             yield f"{COMPONENTS[row]}.{name}", self.items[row].child(None, name), value[row][column]
@@ -446,9 +445,9 @@ class WholeNode(Node):
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """A whole number of 64 bits."""
         if not isinstance(raw, int) or isinstance(raw, bool) or abs(raw) >= 2**63:
-            return reader.refuse(where, f"found {kind(raw)} where a whole number is expected", "Write it without quotes")
+            return reader.refuse(where, f"must be a whole number (got {kind(raw)})", "Remove the quotes or the fraction")
         if self.bound is not None and not self.bound.low <= raw <= self.bound.high:
-            return reader.refuse(where, f"found {kind(raw)}", f"Give a whole number of {self.bound.whole()}")
+            return reader.refuse(where, f"must be {self.bound.whole()} (got {kind(raw)})", f"Use e.g. {self.bound.low:g}")
         return raw
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
@@ -462,13 +461,13 @@ class WholeNode(Node):
 
 @dataclass(frozen=True)
 class FlagNode(Node):
-    """Whether something is so: true or false."""
+    """Boolean: true or false."""
 
     shown: ClassVar[str] = "true"
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """True or false."""
-        return raw if isinstance(raw, bool) else reader.refuse(where, f"found {kind(raw)}", "Write true or false, without quotes")
+        return raw if isinstance(raw, bool) else reader.refuse(where, f"must be a boolean (got {kind(raw)})", "Use true or false")
 
     def write(self, value: Any, where: str, writer: Writer) -> bool:
         """True or false."""
@@ -481,14 +480,14 @@ class FlagNode(Node):
 
 @dataclass(frozen=True)
 class TextNode(Node):
-    """A text: a name or a remark."""
+    """Text: a name or a remark."""
 
     single: ClassVar[bool] = True
     shown: ClassVar[str] = '"a name"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
         """The text."""
-        return raw if isinstance(raw, str) else reader.refuse(where, f"found {kind(raw)} where a text is expected", "Write it in quotes")
+        return raw if isinstance(raw, str) else reader.refuse(where, f"must be a text (got {kind(raw)})", "Put it in quotes")
 
     def write(self, value: Any, where: str, writer: Writer) -> str:
         """The text."""
@@ -505,27 +504,27 @@ class ChoiceNode(Node):
 
     choices: type[Enum]
     only: tuple[Enum, ...] = ()
-    """Those that may stand here, if not all."""
+    """Allowed choices, if not all."""
     single: ClassVar[bool] = True
 
     @property
     def words(self) -> dict[str, Enum]:
-        """The choices by what a file calls them."""
+        """Choices by file name."""
         return {str(choice.value): choice for choice in self.only or self.choices}
 
     @property
     def example(self) -> str:
-        """A text as it may stand in a file."""
+        """Example text of a file."""
         return f'"{next(iter(self.words))}"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The choice of that name."""
+        """Choice of that name."""
         if isinstance(raw, str) and raw in self.words:
             return self.words[raw]
-        return reader.refuse(where, f"found {kind(raw)}", f"It is one of {', '.join(self.words)}")
+        return reader.refuse(where, f"unknown value (got {kind(raw)})", suggest_nearest(kind(raw).strip('"'), self.words))
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Its name."""
+        """Name of the choice."""
         return value.value
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
@@ -535,15 +534,15 @@ class ChoiceNode(Node):
 
 @dataclass(frozen=True)
 class AmountNode(Node):
-    """A number with its unit, or in percent; of which quantity, something else in the file decides, and who reads that reads the number."""
+    """Raw number with its unit, or in percent; another field of the file determines its quantity."""
 
     shown: ClassVar[str] = '"1.4 mm"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The text or the number as it stands."""
+        """Raw text or number."""
         if isinstance(raw, str) or is_bare(raw):
             return raw
-        return reader.refuse(where, f"found {kind(raw)} where a number with its unit is expected", f"Write for example {self.shown}")
+        return reader.refuse(where, f"must be a number with its unit (got {kind(raw)})", f"Use e.g. {self.shown}")
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """A text with a unit, or a number."""
@@ -560,9 +559,7 @@ class TextsNode(Node):
         """The texts as a tuple."""
         texts = [raw] if isinstance(raw, str) else raw
         if not isinstance(texts, list) or not texts:
-            return reader.refuse(
-                where, f"found {kind(raw)} where a text is expected, or several", "Write it in quotes, several in brackets"
-            )
+            return reader.refuse(where, f"must be a text (got {kind(raw)}), or several", "Write it in quotes, several in brackets")
         return every([reader.read(TextNode(), text, where) for text in texts])
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
@@ -570,16 +567,16 @@ class TextsNode(Node):
         return {"oneOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]}
 
 
-# --- what kinds of nodes have in common ---
+# --- common functions of nodes ---
 
 
 def join(where: str, name: str) -> str:
-    """The address of a member."""
+    """Return the address of a member."""
     return f"{where}.{name}" if where else name
 
 
 def kind(raw: Any) -> str:
-    """A file's value in a few words.
+    """Describe a file's value in a few words.
 
     >>> kind([1, 2]), kind({}), kind("steel")
     ('2 values in brackets', 'a table', '"steel"')
@@ -596,52 +593,52 @@ def kind(raw: Any) -> str:
 
 
 def short(raw: Any) -> str:
-    """A file's value, its beginning alone where it is long."""
+    """Return a file's value, truncated if long."""
     text = str(raw)
     return text if len(text) <= 40 else f"{text[:40]}..."
 
 
 def every(items: list[Any]) -> Any:
-    """The items, if none of them is bad."""
+    """Return the items if all are valid."""
     return BAD if any(item is BAD for item in items) else tuple(items)
 
 
 def is_row(node: Node, raw: Any, length: int | None, where: str, reader: Reader) -> bool:
-    """Whether a file's value is a list of that length (None: any); a finding if not."""
+    """Return whether a file's value is a list of that length (None: any); report an error if not."""
     fits = isinstance(raw, list) and (length is None or len(raw) == length)
     if not fits:
         count = f"{length} values" if length is not None else "several values"
-        reader.refuse(where, f"found {kind(raw)} where {count} are expected", f"Write them in brackets: {node.example}")
+        reader.refuse(where, f"must be {count} (got {kind(raw)})", f"Write them in brackets: {node.example}")
     return fits
 
 
 def row_schema(items: list[dict[str, Any]]) -> dict[str, Any]:
-    """The schema of a list of exactly these."""
+    """Return the schema of a list of these elements."""
     return {"type": "array", "prefixItems": items, "items": False, "minItems": len(items)}
 
 
 def meaning(record: type) -> str:
-    """The description of a class for people: its docstring on one line, without examples."""
+    """Return the description of a class: its docstring on one line, without examples."""
     return " ".join((inspect.getdoc(record) or "").partition("\n\n>>>")[0].split())
 
 
 def whole_text(value: str, where: str) -> str:
-    """A text that a file can hold."""
+    """Return a text that a file can hold."""
     try:
         value.encode()
     except UnicodeEncodeError:
-        raise refuse(where, "the text holds half a character (a lone surrogate)", "Write it anew") from None
+        raise refuse(where, "the text has half a character (a lone surrogate)", "Rewrite it") from None
     return value
 
 
 def require_single(value: Any, where: str) -> None:
     """Raise `DesignError` for a number that a file cannot hold."""
     if not isinstance(value, (int, float)):
-        raise refuse(where, "it is a batch or complex, and a file holds one design", "Pick one design before writing it")
+        raise refuse(where, "batches and complex numbers are not allowed in files", "Select one design before writing it")
 
 
 def is_bare(raw: Any) -> bool:
-    """Whether a file's value is a number without unit."""
+    """Return whether a file's value is a number without unit."""
     return isinstance(raw, (int, float)) and not isinstance(raw, bool)
 
 
@@ -651,7 +648,7 @@ def _float(raw: float, where: str) -> float:
     except OverflowError:
         value = math.inf
     if not math.isfinite(value):
-        raise refuse(where, f"found {kind(raw)}, which is not finite", "Give a finite number")
+        raise refuse(where, f"must be finite (got {kind(raw)})", "Give a finite number")
     return value
 
 

@@ -1,4 +1,4 @@
-"""What the trade calls things, and what they are called here (`synonyms.toml`): for advice where a word of a file is not known."""
+"""Synonyms of kinds and keys (`synonyms.toml`), for hints on unknown words of a file."""
 
 from __future__ import annotations
 
@@ -9,39 +9,37 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
-from flexstage.base.finding import suggest_nearest
+from flexstage.base.finding import list_choices, suggest_nearest
 from flexstage.base.renamed import new_name
 
 
 @cache
 def _words() -> dict[str, dict[str, Any]]:
-    """Kinds, keys and remarks by the word that is used here."""
+    """Kinds, keys and remarks by synonym."""
     return tomllib.loads(resources.files("flexstage.mechanism.grammar").joinpath("synonyms.toml").read_text(encoding="utf-8"))
 
 
 def advise_kind(word: str, known: Collection[str]) -> str:
-    """Advice about the word of a kind or shape that is not known: what the trade means by it, else what is near to it.
+    """Return a hint for an unknown kind or shape: by synonym, else the nearest names.
 
     >>> advise_kind("Leaf-Spring", ["leaf", "notch"]), advise_kind("leef", ["leaf", "notch"])
-    ('It is called leaf here', 'The nearest name is leaf')
+    ('Use leaf', 'Use leaf')
     """
     plain = re.sub(r"[\s_-]", "", word.strip('"').lower())
     meant = [kind for kind, words in _words()["kinds"].items() if kind in known and plain in words]
     if not meant:
         return suggest_nearest(word.strip('"'), known)
     remarks = _words()["remarks"]
-    told = " or ".join(f"{kind} ({remarks[kind]})" if kind in remarks else kind for kind in meant)
-    return f"It is called {told} here"
+    return f"Use {' or '.join(f'{kind} ({remarks[kind]})' if kind in remarks else kind for kind in meant)}"
 
 
 def advise_key(key: str, unused: Collection[str], known: Collection[str]) -> str:
-    """Advice about a key that is not known: what its symbol stands for, else what is near to it, first of those not yet used.
+    """Return a hint for an unknown key: by symbol, else the nearest names, unused ones first.
 
     >>> advise_key("E", {"young", "density"}, {"young", "density"}), advise_key("thicknes", {"section"}, {"section", "thickness"})
-    ('It is called young here', 'The nearest name is thickness')
+    ('Use young', 'Use thickness')
     """
     meant = [name for name in known if key in _words()["keys"].get(name, ()) or name == new_name(key, known)]
     if meant:
-        return f"It is called {' or '.join(meant)} here"
-    advice = [suggest_nearest(key, names) for names in (unused, known) if names]
-    return next((each for each in advice if not each.startswith("There ")), advice[0] if advice else "There are none")
+        return f"Use {list_choices(meant)}"
+    return suggest_nearest(key, unused, otherwise=suggest_nearest(key, known))

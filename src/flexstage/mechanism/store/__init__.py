@@ -1,4 +1,4 @@
-"""The design file: the serial form of a description, `load(dump(mechanism, path)) == mechanism`."""
+"""Design file: serial form of a description, `load(dump(mechanism, path)) == mechanism`."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ __all__ = [
 
 @check_arguments
 def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
-    """Return the description in a design file.
+    """Read a design file and return the description.
 
-    Raises `DesignError` with everything that is wrong with the file; with `checked` also with the description (see `checks.check`).
-    Relative paths of imported solids and of parts' files are looked for from the file's folder, and whole in the description.
+    Raises `DesignError` with all errors of the file; with `checked` also of the description (see `checks.check`).
+    Relative paths of imported solids and of parts' files are from the file's folder; the description has absolute paths.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -54,7 +54,7 @@ def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
 
 @check_arguments
 def loads(text: str, *, where: str = "text", checked: bool = True, folder: Path | None = None) -> Mechanism:
-    """Return the description in a design file's text; `where` names it in findings, relative paths in it are from `folder`, if given.
+    """Read a design file's text and return the description; `where` names it in errors, relative paths are from `folder`.
 
     >>> loads("format = 'flexstage 1'; name = 'empty'".replace("; ", chr(10)), checked=False).name
     'empty'
@@ -84,8 +84,8 @@ def dump(mechanism: Mechanism, path: str | os.PathLike[str], comments: Mapping[s
 def dumps(mechanism: Mechanism, comments: Mapping[str, str] | None = None) -> str:
     """Return the text of a description's design file.
 
-    Numbers are the shortest texts in the shown units that are read back to the same bits. `comments` stand above tables and values, by
-    address (`parts.neck`, `require`, "" for the whole file). Raises `DesignError` for what a file cannot hold: a batch, a complex number.
+    Numbers are the shortest texts in the display units that are read back to the same bits. `comments` are above tables and values, by
+    address (`parts.neck`, `require`, "" for the whole file). Raises `DesignError` for batches and complex numbers.
 
     >>> print(dumps(Mechanism("empty"), {"": "Nothing yet."}), end="")
     # Nothing yet.

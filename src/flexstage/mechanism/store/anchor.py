@@ -1,4 +1,4 @@
-"""Paths of files that solids and parts are known by: whole in a description, relative to the design file where that is beside or above."""
+"""File paths of solids and parts: absolute in a description, relative within the folder of the design file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from flexstage.parts.shape import Elastic
 
 
 def anchor_paths(mechanism: Mechanism, folder: Path) -> Mechanism:
-    """The description with the relative paths of imported solids and of parts made whole, from the folder of its file.
+    """Return the description with absolute paths of imported solids and of parts, from the folder of its file.
 
     >>> anchor_paths(Mechanism("a"), Path()) == Mechanism("a")
     True
@@ -26,7 +26,7 @@ def anchor_paths(mechanism: Mechanism, folder: Path) -> Mechanism:
 
 
 def beside(mechanism: Mechanism, folder: Path) -> Mechanism:
-    """The description with the paths of imported solids and of parts relative to a folder, where they are within it.
+    """Return the description with paths of imported solids and of parts relative to a folder, if within it.
 
     >>> beside(Mechanism("a"), Path()) == Mechanism("a")
     True
@@ -40,7 +40,7 @@ def beside(mechanism: Mechanism, folder: Path) -> Mechanism:
 
 
 def outline_text(body: str, name: str, solid: Imported, folder: Path) -> str:
-    """The text that states an imported outline in a design file in a folder.
+    """Return the design-file text of an imported outline, for a file in a folder.
 
     >>> from flexstage.parts.body import Inertia
     >>> cube = Imported("steel", "/parts/cube.step", "0", (0.01, 0.01, 0.01), 1e-3, (0.0, 0.0, 0.0), Inertia(1e-6, 1e-6, 1e-6))
@@ -55,7 +55,7 @@ def outline_text(body: str, name: str, solid: Imported, folder: Path) -> str:
 
 
 def part_text(name: str, part: Elastic, folder: Path) -> str:
-    """The text that states a part in a design file in a folder.
+    """Return the design-file text of a part, for a file in a folder.
 
     >>> from flexstage.parts.spring import Spring
     >>> print(part_text("magnet", Spring(stiffness=-2e3), Path()))
@@ -72,6 +72,6 @@ def _table(mechanism: Mechanism, section: str, folder: Path) -> str:
 
 
 def _with_paths(mechanism: Mechanism, change: Callable[[str], str]) -> Mechanism:
-    """The description with the paths of files that its parts and outlines name changed."""
+    """The description with changed file paths of parts and outlines."""
     sections = {name: getattr(mechanism, name) for name in ("parts", "bodies", "units")}
     return replace(mechanism, **{name: renamed(entries, FILES, lambda _, path: change(path)) for name, entries in sections.items()})

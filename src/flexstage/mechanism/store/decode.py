@@ -1,4 +1,4 @@
-"""From the tree of a file to what it means: every finding is collected before any is raised."""
+"""Decoding of a file's tree: all errors are collected before they are raised."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from flexstage.mechanism.store.lines import with_lines
 
 _Record = TypeVar("_Record")
 CATALOGUE = "catalogue"
-"""The key that names a file of the user's own materials, actuators and sensors."""
+"""Key of a file with the user's materials, actuators and sensors."""
 
 
 def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...] = ()) -> Mechanism:
-    """Return the description that a file's tree means; raises `DesignError` with everything that is wrong with it.
+    """Decode a file's tree into a description; raises `DesignError` with all errors.
 
-    Files that it includes, and those of stages that stand on it, are looked for beside the file `where`; `above` are those being read.
+    Included files and files of mounted stages are relative to the folder of the file `where`; `above` are files being read.
 
     >>> mechanism_from({"format": "flexstage 1", "name": "empty"}).name
     'empty'
@@ -49,7 +49,7 @@ def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...]
         reader.note(told)
         mechanism = _mechanism(reader, raw, _Files(where, above), frozenset(included.origin))
     except EnoughError:
-        reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
+        reader.findings.append(Finding("file", f"at least {MOST_FINDINGS} errors", "Correct these first"))
     if reader.findings and STAGES not in raw:
         reader.findings += _unknown_names({name: table for name, table in raw.items() if isinstance(table, dict)})
     require(included.located(list(dict.fromkeys(reader.findings))))
@@ -63,18 +63,18 @@ def _unknown_names(raw: dict[str, dict[str, Any]]) -> Iterator[Finding]:
     for name, link in raw.get("links", {}).items():
         for body in link.get("joins", ()) if isinstance(link, dict) else ():
             if isinstance(body, str) and "/" not in body and isinstance(link["joins"], list) and body not in bodies:
-                yield Finding(f"links.{name}.joins", f'there is no body "{body}"', suggest_nearest(body, bodies))
+                yield Finding(f"links.{name}.joins", f'unknown body "{body}"', suggest_nearest(body, bodies))
 
 
 def read_design(text: str, where: str) -> Mechanism:
-    """Return the description that a file's text means, unchecked."""
+    """Decode a file's text into a description, unchecked."""
     return mechanism_from(parse_toml(text, where), where)
 
 
 def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged: bool = True) -> _Record:
-    """Return the record that a tree means whose `format` is to be `form`; raises `DesignError` with everything that is wrong with it.
+    """Decode a tree of `format` `form` into a record; raises `DesignError` with all errors.
 
-    Its fields are annotated as those of descriptions are. `tagged`: its tables may have tags, which are not kept.
+    Its fields are annotated as in descriptions. `tagged`: its tables may have tags, which are dropped.
 
     >>> from flexstage.parts.rod import Rod
     >>> record_from(Rod, {"format": "rod 1", "material": "steel", "length": "3 mm", "diameter": "1 mm"}, "rod 1").length
@@ -88,7 +88,7 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
         for address, number, node in () if value is BAD else node_of(record).numbers(value):
             reader.note(number_findings(address, number, node))
     except EnoughError:
-        reader.findings.append(Finding("file", f"there are {MOST_FINDINGS} findings or more", "Mend these first"))
+        reader.findings.append(Finding("file", f"at least {MOST_FINDINGS} errors", "Correct these first"))
     require(reader.findings)
     return value
 
@@ -96,42 +96,42 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
 def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:
     found = raw.get("format")
     if found is None:
-        reader.refuse("format", "the file does not say its format", f'The first line of a {_kind_of(form)} is format = "{form}"')
+        reader.refuse("format", "missing", f'Begin the file with format = "{form}"')
     elif found != form:
         other = isinstance(found, str) and re.fullmatch(r"flexstage( [a-z]+)? \d+", found) and _kind_of(found) != _kind_of(form)
-        told = f", a {_kind_of(found)}, where a {_kind_of(form)} is expected" if other else ""
-        reader.refuse("format", f"found {kind(found)}{told}", f'The first line of a {_kind_of(form)} is format = "{form}"')
-        require(reader.findings)  # what else another kind of file holds says nothing
+        told = f", a {_kind_of(found)}, expected a {_kind_of(form)}" if other else ""
+        reader.refuse("format", f"unknown format (got {kind(found)}{told})", f'Begin a {_kind_of(form)} with format = "{form}"')
+        require(reader.findings)  # further errors of another kind of file are irrelevant
 
 
 def _kind_of(form: str) -> str:
-    """What a file of a format is called: "flexstage study 1" is a study file, "flexstage 1" a design file."""
+    """Name of a file format: "flexstage study 1" is a study file, "flexstage 1" a design file."""
     return f"{' '.join(form.split()[1:-1]) or 'design'} file"
 
 
 @dataclass(frozen=True)
 class _Files:
-    """The file that is read, and those whose stages stand on this one."""
+    """The file being read, and files of mounted stages."""
 
     where: str
     above: tuple[Path, ...]
 
     def carried(self, reader: Reader, raw: Any) -> dict[str, tuple[Mount, Mechanism]]:
-        """The stages that a table names, with what their files say."""
+        """Mounted stages of a table, with their descriptions."""
         if not isinstance(raw, dict):
-            reader.refuse(STAGES, f"found {kind(raw)} where a table is expected", 'Write for example fine = { file = "fine.toml" }')
+            reader.refuse(STAGES, f"must be a table (got {kind(raw)})", 'Use e.g. fine = { file = "fine.toml" }')
             return {}
         mounts = {name: reader.read(node_of(Mount), item, f"{STAGES}.{name}") for name, item in raw.items() if name != TAGS}
         found = {name: (item, self.read(reader, name, item)) for name, item in mounts.items() if isinstance(item, Mount)}
         return {name: (item, stage) for name, (item, stage) in found.items() if stage is not None}
 
     def read(self, reader: Reader, name: str, item: Mount) -> Mechanism | None:
-        """The stage in a file; a finding where that cannot be read, or is being read already."""
+        """The stage in a file; an error if unreadable or circular."""
         path, here = (Path(self.where).parent / item.file).resolve(), Path(self.where).resolve()
         address = f"{STAGES}.{name}.file"
         if path in (here, *self.above):
-            what = "it is this file itself" if path == here else f"{item.file} stands on this stage, and this stage on it"
-            reader.refuse(address, what, "Name the file of another stage")
+            what = "it is this file" if path == here else f"circular reference of this file and {item.file}"
+            reader.refuse(address, what, "Use the file of another stage")
             return None
         try:
             text = read_text(path)
@@ -154,7 +154,7 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     reader.note(reader.numbers.findings if reader.numbers is not None else ())
     packages = raw.get("packages")
     if isinstance(packages, list) and (missing := tuple(package_findings(each for each in packages if isinstance(each, str)))):
-        return reader.note(missing)  # what they offer is not known, which says nothing about the rest
+        return reader.note(missing)  # their kinds are unknown, and so other errors are irrelevant
     try:
         raw = _with_likes(reader, raw, catalogue_of(raw.get(CATALOGUE), files.where))
     except DesignError as error:
@@ -184,12 +184,12 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     sources = reader.sources | dict(mechanism.sources)
     tags = {**mechanism.tags, **reader.tags}
     mechanism = replace(mechanism, overrides={**mechanism.overrides, **values}, tags=Table(tags), sources=Table(sources))
-    formulas |= {canonical(mechanism, where): text for where, text in reader.formulas.items()}  # an override, where it is one by now
+    formulas |= {canonical(mechanism, where): text for where, text in reader.formulas.items()}  # the address of an override, if it is one
     return replace(mechanism, formulas=Table(formulas))
 
 
 def _dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    """The entries of a table by their dotted keys: `stroke.x` without quotes is a table `stroke` in TOML."""
+    """Entries of a table by their dotted keys: `stroke.x` without quotes is a table `stroke` in TOML."""
     for key, value in table.items():
         if isinstance(value, dict) and key != TAGS:
             yield from ((f"{key}.{inner}", each) for inner, each in _dotted(value))
@@ -198,21 +198,21 @@ def _dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def catalogue_of(name: Any, where: str) -> Catalogue:
-    """The shipped catalogue with the entries of the user's file of that name, from the folder of the design file."""
+    """The shipped catalogue extended by the user's file of that name, from the folder of the design file."""
     if name is None:
         return shipped_catalogue()
     if not isinstance(name, str):
-        raise refuse(CATALOGUE, f"found {kind(name)} where a file is expected", 'Write catalogue = "lab.toml"')
+        raise refuse(CATALOGUE, f"must be a file (got {kind(name)})", 'Use catalogue = "lab.toml"')
     tree = parse_toml(read_text(Path(where).parent / name), name)
     known = {section.name: dict for section in SECTIONS} | {"sources": str}
     for key, value in tree.items():
         if key not in known or not isinstance(value, dict) or not all(isinstance(each, known[key]) for each in value.values()):
-            raise refuse(f"{CATALOGUE}: {name}: {key}", "this is no section of entries by name", suggest_nearest(key, known))
+            raise refuse(f"{CATALOGUE}: {name}: {key}", "unknown section", suggest_nearest(key, known))
     return shipped_catalogue().extended(tree)
 
 
 def _with_likes(reader: Reader, raw: dict[str, Any], catalogue: Catalogue) -> dict[str, Any]:
-    """The tree with the values of the catalogue's entries that its own entries are like."""
+    """The tree with catalogue entries merged (`like`)."""
     for key in dict.fromkeys(section.key for section in catalogue.sections):
         table = raw.get(key)
         if isinstance(table, dict):
@@ -221,7 +221,7 @@ def _with_likes(reader: Reader, raw: dict[str, Any], catalogue: Catalogue) -> di
 
 
 def _section_of(catalogue: Catalogue, key: str, entry: dict[str, Any]) -> Section | None:
-    """The section that an entry of a table may be like: that of its kind; without a kind the one that has the name."""
+    """Section of an entry with `like`: by its kind, or without a kind by the name."""
     sections = [each for each in catalogue.sections if each.key == key]
     if "kind" in entry:
         return next((each for each in sections if each.kind == entry["kind"]), None)
@@ -229,7 +229,7 @@ def _section_of(catalogue: Catalogue, key: str, entry: dict[str, Any]) -> Sectio
 
 
 def _with_like(reader: Reader, catalogue: Catalogue, key: str, name: str, entry: Any) -> Any:
-    """An entry merged over the entry that `like` names. For an unknown one, missing keys are not reported in addition."""
+    """An entry merged over the catalogue entry of `like`. Missing keys of an unknown entry are not reported."""
     if not isinstance(entry, dict) or LIKE not in entry or (section := _section_of(catalogue, key, entry)) is None:
         return entry
     like, known = entry[LIKE], section.entries
@@ -246,7 +246,7 @@ def _with_like(reader: Reader, catalogue: Catalogue, key: str, name: str, entry:
 def _with_own_values(
     reader: Reader, mechanism: Mechanism, raw: dict[str, Any], included: frozenset[str]
 ) -> tuple[Mechanism, dict[str, Any]]:
-    """The description with the values that its overrides state of included entries, and the other overrides."""
+    """The description with overrides of included entries applied, and the other overrides."""
     rest: dict[str, Any] = {}
     for address, value in raw.items():
         if not _is_of(mechanism, address, included):
@@ -263,7 +263,7 @@ def _with_own_values(
 
 
 def _is_of(mechanism: Mechanism, address: str, entries: frozenset[str]) -> bool:
-    """Whether an address is of a value of one of these entries itself."""
+    """Whether an address is of a value of one of these entries."""
     try:
         place = locate(mechanism, address)
     except DesignError:
@@ -272,7 +272,7 @@ def _is_of(mechanism: Mechanism, address: str, entries: frozenset[str]) -> bool:
 
 
 def _tags_above(raw: dict[str, Any]) -> dict[str, str]:
-    """The tags that stand above all tables."""
+    """Tags above all tables."""
     tags = raw.get(TAGS)
     return {key: tag for key, tag in tags.items() if isinstance(tag, str)} if isinstance(tags, dict) else {}
 
@@ -282,7 +282,7 @@ def _overrides(reader: Reader, mechanism: Mechanism, raw: dict[str, Any]) -> dic
     for address, value in raw.items():
         where = f'overrides."{short(address)}"'
         if address == TAGS:
-            reader.refuse(where, "this is no address", "Tags of overrides stand in [tags], by address")
+            reader.refuse(where, "not an address", "Use [tags] for tags of overrides, by address")
             continue
         try:
             values[address] = reader.read(locate(mechanism, address).node, value, where)

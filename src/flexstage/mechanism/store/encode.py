@@ -1,4 +1,4 @@
-"""From a description to the tree of a design file: plain tables, lists, texts and bare numbers, in the order of the fields."""
+"""Encoding of a description as the tree of a design file: tables, lists, texts and numbers, in the order of the fields."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _LAST = ("overrides", "requirements", "sources", TAGS)
 
 
 def tree_of(mechanism: Mechanism) -> dict[str, Any]:
-    """Return the tree of a description's file.
+    """Encode a description as the tree of its file.
 
-    Values equal to their defaults are left out, but for gravity; of a value that its formula does not give, the formula. Raises
-    `DesignError` for what a file cannot hold: a batch, a complex number.
+    Values equal to their defaults are omitted, except for gravity, and a formula that does not match its value. Raises `DesignError` for
+    batches and complex numbers.
 
     >>> tree_of(Mechanism("empty"))
     {'format': 'flexstage 1', 'name': 'empty', 'gravity': ['0 m/s^2', '0 m/s^2', '-9.80665 m/s^2']}
@@ -43,7 +43,7 @@ def tree_of(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def plain(node: Node, value: Any, where: str, formulas: Mapping[str, str] | None = None) -> Any:
-    """Return the form of a single value in a file, of what has a formula at its address that; raises `DesignError` if it has none.
+    """Encode a single value for a file, as its formula if it has one; raises `DesignError` if impossible.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.mechanism.grammar.node import NumberNode
@@ -57,7 +57,7 @@ def plain(node: Node, value: Any, where: str, formulas: Mapping[str, str] | None
 
 
 def _home(tree: dict[str, Any], address: str) -> tuple[dict[str, Any], str]:
-    """The table that a tag stands in, and its key there: that of the named material, part, unit, ..., or the whole file."""
+    """Table of a tag, and its key there: of the material, part, unit, ..., or of the whole file."""
     steps = address.split(".")
     section = tree.get(steps[0]) if len(steps) > 2 else None
     table = section.get(steps[1]) if isinstance(section, dict) else None

@@ -1,4 +1,4 @@
-"""Files at the border: read with a guard on size and form."""
+"""File input with checks of size and form."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.storage.files import require_regular
 
 FORMAT = "flexstage 1"
-"""What a design file says of its form."""
+"""Format of a design file."""
 LARGEST = 5_000_000
-"""Bytes of the largest file that is read: a thousand times a usual design."""
+"""Size limit of a file [bytes]: a thousand times a usual design."""
 LONGEST_LINE = 4_000
 _LEAST, _MOST = -(2**63), 2**63 - 1
 _OPEN_STREAMS = ("/dev/stdin", "/dev/fd/")
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
-    """Return the text of a design file; raises `DesignError` if it is missing, no regular file, too large or not UTF-8.
+    """Read the text of a design file; raises `DesignError` if missing, not a regular file, too large or not UTF-8.
 
-    What a shell hands over open (`/dev/stdin`, `/dev/fd/63`) is read too; opening a named pipe could wait for ever.
+    Open streams of a shell (`/dev/stdin`, `/dev/fd/63`) are read too; opening a named pipe could wait for ever.
 
     >>> read_text("nowhere/stage.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/stage.toml: there is no such file. Check the path; "flexstage new" writes a design file.
+    flexstage.base.finding.DesignError: nowhere/stage.toml: file not found. Check the path; "flexstage new" writes a design file.
     """
     where = os.fspath(path)
     try:
@@ -48,11 +48,11 @@ def read_text(path: str | os.PathLike[str]) -> str:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw[: error.start].count(b"\n") + 1
-        raise refuse(f"{where}: line {line}", f"byte {error.start} is not UTF-8", "Save the file as UTF-8 text") from None
+        raise refuse(f"{where}:{line}", f"not UTF-8 (byte {error.start})", "Save the file as UTF-8 text") from None
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """Return the tree of a TOML text; raises `DesignError` with line and column if it is none.
+    """Parse a TOML text; raises `DesignError` with line and column if invalid.
 
     >>> parse_toml('name = "a"', "stage.toml")
     {'name': 'a'}
@@ -61,21 +61,21 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
         raise _too_large(where)
     for number, line in enumerate(text.split("\n"), start=1):
         if len(line) > LONGEST_LINE:
-            what = f"it has {len(line)} characters, at most {LONGEST_LINE} are allowed"
-            raise refuse(f"{where}: line {number}", what, "Break it into several lines")
+            what = f"line too long (got {len(line)} characters, expected at most {LONGEST_LINE})"
+            raise refuse(f"{where}:{number}", what, "Break the line")
     try:
         tree = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise _not_toml(where, str(error)) from None
     except (RecursionError, ValueError) as error:
-        reason = "it nests too deeply" if isinstance(error, RecursionError) else "a number in it has too many digits"
+        reason = "nested too deeply" if isinstance(error, RecursionError) else "a number has too many digits"
         raise refuse(where, reason, "Check that this is a design file") from None
-    require(Finding(f"{where}: {key}", "this whole number has more than 64 bits", "Give a smaller one") for key in _vast(tree, ""))
+    require(Finding(f"{where}: {key}", "integer of more than 64 bits", "Use a smaller number") for key in _vast(tree, ""))
     return tree
 
 
 def _vast(value: Any, where: str) -> Iterator[str]:
-    """Keys of whole numbers beyond the 64 bits that TOML promises."""
+    """Keys of whole numbers beyond the 64 bits of TOML."""
     if isinstance(value, int) and not _LEAST <= value <= _MOST:
         yield where
     members = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
@@ -89,21 +89,21 @@ def _reason(error: OSError | ValueError) -> str:
 
 def _unreadable(where: str, error: OSError | ValueError) -> DesignError:
     if isinstance(error, FileNotFoundError):
-        return refuse(where, "there is no such file", 'Check the path; "flexstage new" writes a design file')
+        return refuse(where, "file not found", 'Check the path; "flexstage new" writes a design file')
     if isinstance(error, IsADirectoryError):
-        return refuse(where, "this is a directory", "Name the design file in it")
-    return refuse(where, f"it cannot be read: {_reason(error)}", "Check the path and its permissions")
+        return refuse(where, "not a file but a folder", "Name the design file in it")
+    return refuse(where, f"cannot be read: {_reason(error)}", "Check the path and its permissions")
 
 
 def _too_large(where: str) -> DesignError:
-    what = f"it is larger than {LARGEST / 1e6:g} MB, which no design is"
+    what = f"file too large (expected at most {LARGEST / 1e6:g} MB)"
     return refuse(where, what, "Check that this is a design file")
 
 
 def _not_toml(where: str, message: str) -> DesignError:
     match = re.fullmatch(r"(.*) \(at (line \d+, column \d+|end of document)\)", message, re.DOTALL)
     reason, place = (match[1], match[2]) if match else (message, "")
-    at = f"{where}: {place}" if place else where
+    at = ":".join([where, *re.findall(r"\d+", place)])
     if reason.startswith(("Cannot overwrite", "Cannot declare", "Cannot mutate", "Duplicate")):
-        return refuse(at, f"a name stands twice ({reason})", "Every key and every table stands once; rename or remove one")
-    return refuse(at, f"this is not TOML: {reason}", "Mend that line; texts stand in quotes, tables on one line in braces")
+        return refuse(at, f"duplicate name ({reason})", "Rename or remove one of the two")
+    return refuse(at, f"not TOML: {reason}", "Correct the line; put texts in quotes, and tables on one line in braces")

@@ -1,4 +1,4 @@
-"""Entries of other files: materials, parts, units and whatever else is drawn once, brought into a design by `include`."""
+"""Included files (`include`): materials, parts, units and other reusable entries for a design."""
 
 from __future__ import annotations
 
@@ -15,30 +15,30 @@ from flexstage.mechanism.store.lines import with_lines
 
 INCLUDE = "include"
 SECTIONS = ("numbers", "materials", "parts", "sensors", "units", "sources")
-"""What an included file may hold: what is drawn once and stands nowhere."""
+"""Sections of an included file: reusable entries without a position."""
 _BESIDE = ("format", "name", INCLUDE)
-_LIST = 'Name files in brackets: include = ["stock.toml"]'
+_LIST = 'Use a list of files: include = ["stock.toml"]'
 
 
 @dataclass(frozen=True, eq=False)
 class Included:
-    """The `tree` of a design with the entries of the files it includes.
+    """The `tree` of a design with the entries of included files.
 
-    `origin` says of each of these (`parts.neck`) which file and text it is from.
+    `origin` is the file and text of each included entry (`parts.neck`).
     """
 
     tree: dict[str, Any]
     origin: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
     def located(self, findings: list[Finding]) -> Iterator[Finding]:
-        """The findings, those about included entries with their file and line."""
+        """Errors, with file and line for included entries."""
         for finding in findings:
             file, text = self.origin.get(entry_of(finding.where), ("", ""))
             yield from with_lines([finding], text, file) if file else (finding,)
 
 
 def entry_of(address: str) -> str:
-    """The entry that an address is in.
+    """Return the entry of an address.
 
     >>> entry_of("parts.neck.profile.radius")
     'parts.neck'
@@ -47,17 +47,17 @@ def entry_of(address: str) -> str:
 
 
 def with_included(raw: dict[str, Any], where: str, above: tuple[Path, ...] = ()) -> tuple[Included, list[Finding]]:
-    """The tree with all that its `include` names, from beside the file `where`, and what is wrong with it.
+    """Return the tree with included entries, from the folder of the file `where`, and the errors.
 
-    `above` are the files that are being read. An entry stands in one file: a second one of its name is a finding.
+    `above` are the files being read. A repeated entry in another file is an error.
 
     >>> with_included({"name": "a", "include": "stock.toml"}, "stage.toml")[1][0].what
-    'found "stock.toml" where a list of files is expected'
+    'must be a list of files (got "stock.toml")'
     """
     names = raw.get(INCLUDE, [])
     tree = {key: dict(value) if key in SECTIONS and isinstance(value, dict) else value for key, value in raw.items() if key != INCLUDE}
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        return Included(tree), [Finding(INCLUDE, f"found {kind(names)} where a list of files is expected", _LIST)]
+        return Included(tree), [Finding(INCLUDE, f"must be a list of files (got {kind(names)})", _LIST)]
     origin: dict[str, tuple[str, str]] = {}
     findings: list[Finding] = []
     for name in names:
@@ -67,10 +67,8 @@ def with_included(raw: dict[str, Any], where: str, above: tuple[Path, ...] = ())
             section, entry = address.split(".", 1)
             if entry in tree.setdefault(section, {}):
                 other = origin[address][0] if address in origin else "this file"
-                what = f"{address} stands in {file} and in {other}"
-                findings.append(
-                    Finding(INCLUDE, what, "Rename one or take it out; single values of included entries are changed in [overrides]")
-                )
+                what = f"{address} is both in {file} and in {other}"
+                findings.append(Finding(INCLUDE, what, "Rename or remove one; use [overrides] for single values of included entries"))
                 continue
             tree[section][entry] = value
             origin[address] = (file, text)
@@ -81,11 +79,11 @@ _Entries = dict[str, tuple[Any, str, str]]
 
 
 def _entries(name: str, where: str, above: tuple[Path, ...]) -> tuple[_Entries, list[Finding]]:
-    """The entries of an included file by address, with the file and the text they stand in, and what is wrong with the file."""
+    """Entries of an included file by address, with their file and text, and the errors of the file."""
     here, path = Path(where).resolve(), (Path(where).parent / name).resolve()
     if path in (here, *above):
-        what = f"{name} is this file itself" if path == here else f"{name} includes this file, and this file includes it"
-        return {}, [Finding(INCLUDE, what, "Take one of them out")]
+        what = f"{name} is this file" if path == here else f"circular reference of this file and {name}"
+        return {}, [Finding(INCLUDE, what, "Remove one include")]
     try:
         text = read_text(path)
         raw = parse_toml(text, name)
@@ -104,7 +102,7 @@ def _entries(name: str, where: str, above: tuple[Path, ...]) -> tuple[_Entries, 
 
 
 def _strange(raw: dict[str, Any]) -> Iterator[Finding]:
-    """What an included file may not hold, or lacks."""
+    """Errors of an included file: wrong or missing format, unsupported sections."""
     if raw.get("format") != FORMAT:
         found = f"found {kind(raw['format'])}" if "format" in raw else "the file does not say its format"
         yield Finding("format", found, f'The first line of an included file is format = "{FORMAT}"')
@@ -112,13 +110,13 @@ def _strange(raw: dict[str, Any]) -> Iterator[Finding]:
     for key, value in raw.items():
         if key not in (*SECTIONS, *_BESIDE):
             place = f"{key}.{next(iter(value))}" if isinstance(value, dict) and value else key
-            yield Finding(place, f"an included file holds what is drawn once: {', '.join(SECTIONS)}", "Write the rest in the design")
+            yield Finding(place, f"not allowed in an included file (expected {', '.join(SECTIONS)})", "Move it to the design file")
         elif key in SECTIONS and not isinstance(value, dict):
-            yield Finding(key, f"found {kind(value)} where a table is expected", "Write a table: [name]")
+            yield Finding(key, f"must be a table (got {kind(value)})", "Write a table: [name]")
 
 
 def _with_whole_paths(value: Any, folder: Path) -> Any:
-    """An entry in which paths of files are whole, from the folder of its own file."""
+    """An entry with absolute file paths, from the folder of its file."""
     if isinstance(value, dict):
         return {
             key: str(folder / item)

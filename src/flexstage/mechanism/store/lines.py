@@ -1,4 +1,4 @@
-"""Lines of a TOML text at which its values stand: for findings that say where."""
+"""Line numbers of the values of a TOML text, for errors."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from flexstage.base.finding import Finding
 _HEAD = re.compile(r"\s*\[\[?(?P<name>[^\]]+)\]\]?\s*(#.*)?$")
 _KEY = re.compile(r"\s*(?P<name>(?:[\w-]+|\"[^\"]*\"|'[^']*')(?:\s*\.\s*(?:[\w-]+|\"[^\"]*\"|'[^']*'))*)\s*=")
 _STEP = re.compile(r"[\w-]+|\"[^\"]*\"|'[^']*'")
-_PLACE = re.compile(r"(?P<file>.*?): (?:at )?line (?P<line>\d+)(?:, column (?P<column>\d+))?(?:: (?P<address>.*))?", re.DOTALL)
+_PLACE = re.compile(r"(?P<file>.*?):(?P<line>\d+)(?::(?P<column>\d+))?(?:: (?P<address>.*))?", re.DOTALL)
 _OWNER = re.compile(r"(?P<owner>[^/.\s]+)/(?P<name>[^/.\s]+)(?:\.(?P<rest>.*))?")
 
 
 def with_lines(findings: Iterable[Finding], text: str, where: str) -> Iterator[Finding]:
-    r"""The findings with the file `where` and the line in front of their addresses; of an inline table's entry the table's line.
+    r"""Return the errors with the file `where` and the line before their addresses; for an inline table, its line.
 
     >>> found = with_lines([Finding("placements.B1.unit", "it is lost", "Find it")], "[placements]\nB1 = { unit = 1 }", "stage.toml")
     >>> print(next(found))
-    stage.toml: line 2: placements.B1.unit: it is lost. Find it.
+    stage.toml:2: placements.B1.unit: it is lost. Find it.
     """
     lines = line_numbers(text)
     for finding in findings:
         line = line_of(finding.where, lines)
-        yield replace(finding, where=f"{where}: {finding.where}" if line is None else f"{where}: line {line}: {finding.where}")
+        yield replace(finding, where=f"{where}: {finding.where}" if line is None else f"{where}:{line}: {finding.where}")
 
 
 @dataclass(frozen=True)
 class Spot:
-    """Where a finding points: the address alone, and the line and column of the file if it says them."""
+    """Position of an error: its address, and the line and column in the file if known."""
 
     address: str
     line: int | None = None
@@ -38,9 +38,9 @@ class Spot:
 
 
 def spot_of(finding: Finding, where: str) -> Spot:
-    """Where in the file `where` a finding points; the whole of its own words where that is another file.
+    """Return the position of an error in the file `where`; for another file, its full text as address.
 
-    >>> spot_of(Finding("stage.toml: line 2: placements.B1.unit", "it is lost", "Find it"), "stage.toml")
+    >>> spot_of(Finding("stage.toml:2: placements.B1.unit", "it is lost", "Find it"), "stage.toml")
     Spot(address='placements.B1.unit', line=2, column=None)
     """
     found = _PLACE.fullmatch(finding.where)
@@ -50,7 +50,7 @@ def spot_of(finding: Finding, where: str) -> Spot:
 
 
 def line_of(address: str, lines: Mapping[str, int]) -> int | None:
-    """The line of an address, of the nearest table around it, or of the first key in it; of a link the line that draws it (`None`: none).
+    """Return the line of an address, of its nearest table, or of its first key; of a link, the line that draws it; else `None`.
 
     >>> line_of("B1/front.thickness", {"units": 1, "units.lever.links.front": 4, "placements.B1": 9}), line_of("gravity", {})
     (4, None)
@@ -60,14 +60,14 @@ def line_of(address: str, lines: Mapping[str, int]) -> int | None:
 
 
 def _tables(address: str) -> Iterator[str]:
-    """An address and the tables around it, from the inside out."""
+    """An address and its enclosing tables, innermost first."""
     while address:
         yield address
         address = address.rpartition(".")[0]
 
 
 def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
-    """An address, and for that of a link in a unit or a copy (`B4/pivot.at`) what it may be in the file, the nearest first."""
+    """An address, and for a link in a unit or an instance (`B4/pivot.at`) its possible addresses in the file, nearest first."""
     found = _OWNER.fullmatch(address)
     if found is None:
         yield from (address, address.removeprefix("tags."))
@@ -83,7 +83,7 @@ def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
 
 
 def line_numbers(text: str) -> Mapping[str, int]:
-    r"""Line by address, of every table head and every key that starts a line; of tables in a row the first.
+    r"""Return the line of every table heading and of every key at the start of a line, by address; of an array of tables, the first.
 
     >>> dict(line_numbers("rate = 1\n[floor]\nx.y = 2"))
     {'rate': 1, 'floor': 2, 'floor.x.y': 3}

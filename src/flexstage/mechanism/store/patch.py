@@ -1,4 +1,4 @@
-"""Changing single values in a design file's text: comments, order and everything else stay as they are."""
+"""Changes of single values in a design file's text, with comments and order preserved."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     import tomlkit
     import tomlkit.exceptions
 else:
-    tomlkit = Late("tomlkit")  # reading a file needs none of it
+    tomlkit = Late("tomlkit")  # not required for reading a file
 
 
 def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
-    """Return a design file's text with other values at some addresses, given as texts with units or as SI numbers.
+    """Return a design file's text with other values at some addresses: texts with units, or SI numbers.
 
-    Comments stay. The tags of the old values are taken out: what was stated of them is not true of the new ones.
+    Comments are preserved. Tags of the old values are removed: they do not apply to the new ones.
 
     >>> text = 'format = "flexstage 1"' + chr(10) + 'name = "a"  # a stage' + chr(10) + 'max_mode_frequency = "1 kHz"  # enough'
     >>> print(patch(text, {"max_mode_frequency": "800 Hz"}))
@@ -47,28 +47,28 @@ def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
         mechanism = steps[-1][1]
     try:
         return _write(text, [steps], mechanism, where)
-    except DesignError:  # some layouts bear one change at a time only
+    except DesignError:  # some layouts allow only one change at a time
         return _write(text, [[step] for step in steps], mechanism, where)
 
 
 def _elsewhere(place: Place, tree: dict[str, Any]) -> Iterator[Finding]:
-    """Values of a stage that another file describes; overrides of them may be stated here."""
+    """Errors for values of a mounted stage; only overrides of them are allowed here."""
     name = place.path[1].partition("/")[0] if len(place.path) > 1 and not place.owners and "/" in place.path[1] else ""
     if name in tree.get(STAGES, {}):
-        what = "it stands in the file of a stage that this one carries"
-        yield Finding(place.address, what, f"Change it in {tree[STAGES][name]['file']}, or state an override of one link")
+        what = "it is in the file of a mounted stage"
+        yield Finding(place.address, what, f"Change it in {tree[STAGES][name]['file']}, or use an override of one link")
 
 
 _Step = tuple[Mechanism, Mechanism, str]
-"""The description before and after a change, and its address."""
+"""Description before and after a change, and its address."""
 
 
 def _write(text: str, portions: list[list[_Step]], wanted: Mechanism, where: str) -> str:
-    """The text after all changes, read anew after each portion of them."""
+    """The text after all changes, read again after each portion."""
     for steps in portions:
         text = _patch_steps(text, steps)
     if read_design(text, where) != wanted:
-        raise refuse(where, "its tables are laid out so that single values cannot be changed", "Write it anew with dump")
+        raise refuse(where, "its table layout does not allow changes of single values", "Rewrite it with dump")
     return text
 
 
@@ -79,7 +79,7 @@ def _patch_steps(text: str, steps: list[_Step]) -> str:
             _untag(document, mechanism, changed)
             _set(document, mechanism, changed, address)
         except tomlkit.exceptions.TOMLKitError as error:
-            raise refuse(address, f"the file cannot be changed there: {error}", "Write it anew with dump") from None
+            raise refuse(address, f"the file cannot be changed there: {error}", "Rewrite it with dump") from None
     return tomlkit.dumps(document)
 
 
@@ -97,7 +97,7 @@ def _set(document: Any, mechanism: Mechanism, changed: Mechanism, address: str) 
 
 
 def _is_included(document: Any, place: Place) -> bool:
-    """Whether a value stands in a file that this one includes: what this one says of it stands under `overrides`."""
+    """Whether a value is in an included file: this file changes it in `overrides`."""
     path = place.path
     return INCLUDE in document and len(path) > 1 and path[0] in SECTIONS and path[1] not in document.get(path[0], {})
 
@@ -115,7 +115,7 @@ def _set_overrides(document: Any, mechanism: Mechanism, changed: Mechanism) -> N
 
 
 def _set_at(document: Any, changed: Mechanism, path: tuple[str, ...]) -> None:
-    """Write the changed value at a path, or, where the file does not go that deep, what holds it."""
+    """Write the changed value at a path, or its nearest container in the file."""
     table: Any = document
     node: Node = node_of(Mechanism)
     value: Any = changed
@@ -143,7 +143,7 @@ def _untag(document: Any, mechanism: Mechanism, changed: Mechanism) -> None:
 
 
 def _tagged_tables(table: Any, prefix: str) -> Iterator[tuple[Any, str]]:
-    """The tables that have tags, with the beginning of their addresses."""
+    """Tables with tags, with the prefix of their addresses."""
     if TAGS in table:
         yield table, prefix
     for key, value in table.items():

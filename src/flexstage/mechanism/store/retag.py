@@ -1,4 +1,4 @@
-"""Tags of single values put into a design file's text: comments, order and everything else stay as they are."""
+"""Insertion of tags in a design file's text, with comments and order preserved."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     import tomlkit.exceptions
     import tomlkit.items
 else:
-    tomlkit = Late("tomlkit")  # reading a file needs none of it
+    tomlkit = Late("tomlkit")  # not required for reading a file
 
 
 def set_tags(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
     """Return a design file's text with tags at some addresses, in the tables of the values, those of overrides in `[tags]`.
 
-    Raises `DesignError` where the file's layout does not allow it.
+    Raises `DesignError` if the file's layout does not allow it.
 
     >>> text = 'format = "flexstage 1"' + chr(10) + 'name = "a"' + chr(10) + 'max_mode_frequency = "1 kHz"  # enough' + chr(10)
     >>> print(set_tags(text, {"max_mode_frequency": "derived test"}))
@@ -43,18 +43,18 @@ def set_tags(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
 
 
 def _one_by_one(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: str) -> str:
-    """Each beside its value if the file is laid out so that it can stand there, else in the table of all tags."""
+    """Each next to its value if the file's layout allows it, else in the table of all tags."""
     for address, tag in tags.items():
         ways = (_with_tags(text, mechanism, {address: tag}, where, beside=beside) for beside in (True, False))
         found = next((way for way in ways if way is not None), None)
         if found is None:
-            raise refuse(address, "no tag can be put there: the file's tables are laid out otherwise", "Write it anew with dump")
+            raise refuse(address, "the file's table layout does not allow a tag there", "Rewrite it with dump")
         text = found
     return text
 
 
 def _with_tags(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: str, *, beside: bool) -> str | None:
-    """The text with these tags; nothing if it then says anything else than before beside them."""
+    """The text with these tags; `None` if other values change."""
     try:
         document = tomlkit.parse(text)
         for address, tag in tags.items():
@@ -63,7 +63,7 @@ def _with_tags(text: str, mechanism: Mechanism, tags: Mapping[str, str], where: 
             _put(document, path if beside and not place.owners else (), place.address, tag)
         found = tomlkit.dumps(document)
         now = read_design(found, where)
-    except (tomlkit.exceptions.TOMLKitError, ValueError):  # findings are ValueErrors
+    except (tomlkit.exceptions.TOMLKitError, ValueError):  # a DesignError is a ValueError
         return None
     told = all(tag_of(now, address) == tag for address, tag in tags.items())
     return found if told and now.overrides == mechanism.overrides and _same_physics(now, mechanism) else None
@@ -81,7 +81,7 @@ def _put(document: Any, path: tuple[str, ...], address: str, tag: str) -> None:
         table, depth = table[path[depth]], depth + 1
     key = ".".join(path[depth:]) or address
     old = table.get(TAGS)
-    if depth and (old is None or isinstance(old, tomlkit.items.InlineTable)):  # made anew: what was taken out of the old one left blanks
+    if depth and (old is None or isinstance(old, tomlkit.items.InlineTable)):  # a new one: removals from the old one leave blanks
         table[TAGS] = tomlkit.inline_table()
         table[TAGS].update({**(old or {}), key: tag})
         return

@@ -1,4 +1,4 @@
-"""The JSON Schema (2020-12) of files, for editors: keys, alternatives, units with examples, meanings."""
+"""JSON Schema (2020-12) of files, for editors: keys, alternatives, units with examples, meanings."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from flexstage.mechanism.store.include import INCLUDE
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON Schema of a design file. Each class is a definition; quantities are texts whose unit the example shows.
+    """Return the JSON Schema of a design file. Each class is a definition; quantities are texts with a unit as in the example.
 
     >>> schema()["properties"]["max_mode_frequency"]["examples"]
     ['4 kHz']
     """
     found = schema_of(Mechanism, FORMAT, "flexstage design", formulas=True, tables={STAGES: Mount})
-    said = "Files whose numbers, materials, parts, sensors, units and sources belong to this design, from beside it."
+    said = "Included files with numbers, materials, parts, sensors, units and sources, relative to this file."
     found["properties"] |= {INCLUDE: {"type": "array", "items": {"type": "string"}, "description": said}}
     found["properties"] |= {CATALOGUE: {"type": "string", "description": "A file of further materials, actuators and sensors for `like`."}}
     return found
@@ -31,9 +31,9 @@ def schema() -> dict[str, Any]:
 def schema_of(
     record: type, form: str, title: str, *, tagged: bool = True, formulas: bool = False, tables: Mapping[str, type] = MappingProxyType({})
 ) -> dict[str, Any]:
-    """Return the JSON Schema of a file that holds one record and says `format = form`; `tagged`: its tables may have tags.
+    """Return the JSON Schema of a file with one record and `format = form`; `tagged`: its tables may have tags.
 
-    `formulas`: its numbers may be formulas. `tables` of records stand beside the record's own.
+    `formulas`: its numbers may be formulas. `tables` of records are additional to the record's own.
 
     >>> from flexstage.parts.rod import Rod
     >>> schema_of(Rod, "rod 1", "rod")["properties"]["format"]

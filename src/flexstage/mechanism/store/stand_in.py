@@ -1,4 +1,4 @@
-"""Compliance matrices that replace drawn parts in a design file's text: those are kept under another name, comments stay."""
+"""Replacement of drawn parts by compliance matrices in a design file's text; drawn parts are renamed, comments preserved."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ if TYPE_CHECKING:
     import tomlkit
     import tomlkit.exceptions
 else:
-    tomlkit = Late("tomlkit")  # reading a file needs none of it
+    tomlkit = Late("tomlkit")  # not required for reading a file
 
 KEPT = "-drawn"
 
 
 @dataclass(frozen=True, eq=False)
 class StandIn:
-    """A `compliance_matrix` part that stands for the drawn one its `replaces` names, at the `links` (drawn addresses) that are listed."""
+    """A `compliance_matrix` part that replaces the drawn part named in its `replaces`, at the `links` (drawn addresses)."""
 
     given: ComplianceMatrix
     links: tuple[str, ...]
 
     @property
     def drawn_name(self) -> str:
-        """The name that the drawn part had.
+        """Original name of the drawn part.
 
         >>> StandIn(ComplianceMatrix(((0.0,) * 6,) * 6, (), replaces="neck-drawn"), ()).drawn_name
         'neck'
@@ -42,9 +42,9 @@ class StandIn:
 
 
 def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where: str = "text") -> str:
-    """The text of a design file with compliance matrices, by name, in the places of drawn ones, which are kept as `<name>-drawn`.
+    """Return the text of a design file with compliance matrices by name instead of drawn parts, renamed `<name>-drawn`.
 
-    The new matrices carry `tag`. Raises `DesignError` where links depart from such a part, and where the file's layout does not allow it.
+    The new matrices have the tag `tag`. Raises `DesignError` if links override such a part, or the file's layout does not allow it.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.store import dumps, loads
@@ -65,10 +65,10 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
             _stand_in(document, name, part, tag)
         after = tomlkit.dumps(document)
     except (tomlkit.exceptions.TOMLKitError, KeyError) as error:
-        raise refuse(where, f"the file cannot be changed: {error}", "Write it anew with dump") from None
+        raise refuse(where, f"the file cannot be changed: {error}", "Rewrite it with dump") from None
     found = require_valid(read_design(after, where))
     if any(found.parts.get(name) != part.given for name, part in parts.items()):
-        raise refuse(where, "its tables are laid out so that parts cannot be exchanged", "Write it anew with dump")
+        raise refuse(where, "its table layout does not allow an exchange of parts", "Rewrite it with dump")
     return after
 
 
@@ -76,7 +76,7 @@ def _clashes(mechanism: Mechanism, parts: Mapping[str, StandIn]) -> list[Finding
     drawn = {part.drawn_name for part in parts.values()}
     taken = {name + KEPT: name for name in drawn} | {name: part.drawn_name for name, part in parts.items() if name != part.drawn_name}
     found = [
-        Finding(f"parts.{name}", "there is a part of this name", f"Rename it: the name is needed for the {old} that is calibrated")
+        Finding(f"parts.{name}", "the part name is in use", f"Rename it: the calibrated {old} requires the name")
         for name, old in taken.items()
         if name in mechanism.parts
     ]
@@ -86,8 +86,8 @@ def _clashes(mechanism: Mechanism, parts: Mapping[str, StandIn]) -> list[Finding
     for key in mechanism.overrides:
         ends = [address for address in touched if f"/{key}".partition(".")[0].endswith(f"/{address.rpartition('/')[2]}")]
         if ends:
-            what = f"it departs from {touched[ends[0]]}, whose 6x6 is shared"
-            found.append(Finding(f'overrides."{key}"', what, "Give that link a part of its own, or take the override out"))
+            what = f"it overrides {touched[ends[0]]}, whose 6x6 is shared"
+            found.append(Finding(f'overrides."{key}"', what, "Use a separate part for that link, or remove the override"))
     return found
 
 
@@ -107,7 +107,7 @@ def _stand_in(document: Any, name: str, part: StandIn, tag: str) -> None:
 
 
 def _lines(rows: Any) -> Any:
-    """A matrix with a line for each row."""
+    """A matrix with one line per row."""
     array = tomlkit.array()
     for row in rows:
         array.append(row)
@@ -115,7 +115,7 @@ def _lines(rows: Any) -> Any:
 
 
 def _rename_tags(document: Any, old: str, new: str) -> None:
-    """Tags at the top of the file that were the drawn part's."""
+    """Tags of the drawn part at the top of the file."""
     tags = document.get(TAGS, {})
     for key in [key for key in tags if str(key).startswith(old)]:
         tags[new + str(key).removeprefix(old)] = tags[key]

@@ -1,4 +1,4 @@
-"""Numbers as a person would write them."""
+"""Rounding of numbers for files."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 def round_to_digits(mechanism: Mechanism, digits: int = 12) -> Mechanism:
-    """Return the description with every number rounded to significant digits of its shown unit; tags stay.
+    """Return the description with every number rounded to significant digits in its display unit; tags are kept.
 
-    Products of parameters carry rounding errors (1.54 * mm is 1.5400000000000001 mm) that a starting file should not show.
+    Products of parameters have rounding errors (1.54 * mm is 1.5400000000000001 mm), which a new file should not have.
 
     >>> from flexstage.parts.rod import Rod
     >>> round_to_digits(Mechanism("", parts={"wire": Rod("steel", 1.54 * 1e-3, 0.001)})).parts["wire"].length

@@ -1,4 +1,4 @@
-"""The text of a design file: tidy TOML, each table headed, short tables on one line, comments where they help."""
+"""Text of a design file: TOML with a heading per table, short tables on one line, and comments."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ from flexstage.mechanism.grammar.grammar import TAGS
 _WIDTH = 140
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _HEADED = ("materials", "parts", "bodies", "units", "sensors")
-"""Sections whose entries have a heading each; entries of the others stand on one line where they fit."""
+"""Sections with a heading for each entry; entries of other sections are on one line if they fit."""
 
 HEADINGS: Mapping[str, str] = {
     "numbers": "Numbers by name: formulas anywhere in this file may refer to them.",
     "materials": "Materials: Young's modulus, Poisson's ratio and density; like = \"...\" starts from the catalogue.",
-    "parts": "Parts: one entry per distinct part; links refer to it by name.",
+    "parts": "Parts: one entry per distinct part; links refer to parts by name.",
     "bodies": "Bodies of the stage. The ground is implied; the platform is the moving part.",
-    "links": "Links of the stage itself: what they join, first to second, and where.",
-    "units": "Units: drawn once in their own frame, x = push. A link joins two bodies; bends = axis of the compliant rotation.",
-    "placements": "Copies of the units. first = position angle of the first copy; facing = where its push points.",
-    "sensors": "Gauges of the catalogue or by their data.",
-    "gauges": "Where the gauges read: x of each copy points from the gauge to its target.",
+    "links": "Links of the stage: joined bodies (first, second) and position.",
+    "units": "Units: drawn once in their own frame, x = output direction. A link joins two bodies; bends = axis of compliant rotation.",
+    "placements": "Instances of the units. first = position angle of the first instance; facing = its output direction.",
+    "sensors": "Gauges (displacement sensors) of the catalogue or by their data.",
+    "gauges": "Positions of the gauges: x of each instance points from the gauge to its target.",
     "payloads": "Masses carried by bodies, in the stage's frame.",
     "forces": "Constant forces, in the stage's frame.",
-    "stops": "Gaps at which strokes end: the body may move by gap along x of each copy against its base.",
-    "paths": "Strokes at large displacements, from where the stage rests: what requirements over a stroke are judged along.",
-    "temperatures": "Changes of temperature since the stage was made, by body; all: of what has none of its own.",
-    "overrides": "Overrides: unit/link.field for all copies, copy/link.field for one.",
-    "requirements": "Judged first in every report.",
-    "sources": "Sources that tags name. A value without tag is assumed.",
+    "stops": "Stops: the body may move by gap along x of each instance against its base.",
+    "paths": "Load paths at large displacements, from the static equilibrium, for requirements.",
+    "temperatures": "Temperature changes since manufacture, by body; all: other bodies.",
+    "overrides": "Overrides: unit/link.field for all instances, instance/link.field for one.",
+    "requirements": "Requirements: evaluated first in every report.",
+    "sources": "Sources of tags. A value without a tag is assumed.",
 }
-"""Comments above the sections of a file that has none of its own."""
+"""Default comments above the sections of a file."""
 
 
 def text_of(tree: Mapping[str, Any], comments: Mapping[str, str]) -> str:
-    """Return the TOML text of a file's tree, with comments by address; raises `DesignError` for a comment that has no place.
+    """Return the TOML text of a file's tree, with comments by address; raises `DesignError` for a comment of an unknown address.
 
     >>> print(text_of({"name": "a", "placements": {"B1": {"unit": "u"}}}, {"placements": "copies"}), end="")
     name = "a"
@@ -50,23 +50,23 @@ def text_of(tree: Mapping[str, Any], comments: Mapping[str, str]) -> str:
     writer = _Writer({**{key: text for key, text in HEADINGS.items() if key in tree}, **comments})
     lines = [*writer.comment(""), *writer.table((), tree)]
     if writer.comments:
-        raise refuse(f"comment on {next(iter(writer.comments))}", "the file has nothing under this address", "Address a table or a value")
+        raise refuse(f"comment on {next(iter(writer.comments))}", "unknown address in the file", "Use the address of a table or a value")
     return "\n".join(lines).lstrip("\n") + "\n"
 
 
 class _Writer:
-    """Writes tables and uses up the comments."""
+    """Writer of tables and their comments."""
 
     def __init__(self, comments: Mapping[str, str]) -> None:
         self.comments = dict(comments)
 
     def comment(self, address: str) -> list[str]:
-        """The lines of the comment on an address, if any."""
+        """Comment lines of an address, if any."""
         text = self.comments.pop(address, None)
         return [f"# {_printable(line)}".rstrip() for line in text.splitlines()] if text else []
 
     def table(self, path: tuple[str, ...], table: Mapping[str, Any]) -> Iterator[str]:
-        """The table's own lines, then its headed tables."""
+        """Lines of a table, then its headed tables."""
         headed = _headed_entries(path, table)
         for key, value in table.items():
             if key not in headed:
@@ -76,7 +76,7 @@ class _Writer:
             yield from self.headed_table((*path, key), value)
 
     def headed_table(self, path: tuple[str, ...], table: Mapping[str, Any]) -> Iterator[str]:
-        """A table with its heading; none where it only holds headed tables."""
+        """A table with its heading, unless it has only headed tables."""
         comment = self.comment(".".join(path))
         if comment:
             yield from ["", *comment]
@@ -88,13 +88,13 @@ class _Writer:
 
 
 def _headed_entries(path: tuple[str, ...], table: Mapping[str, Any]) -> dict[str, Any]:
-    """The entries with a heading of their own. Of a table of tables all have one or none: the order of copies and links stays."""
+    """Entries with a heading. In a table of tables all have one or none, to preserve the order of instances and links."""
     headed = {key: value for key, value in table.items() if _is_headed((*path, key), value)}
     return dict(table) if headed and path and all(isinstance(value, dict) for value in table.values()) else headed
 
 
 def _is_headed(path: tuple[str, ...], value: Any) -> bool:
-    """Whether a table has a heading of its own: sections, entries of some, bodies and links of units, and what does not fit on a line."""
+    """Whether a table has a heading: sections, entries of some, bodies and links of units, and tables too long for one line."""
     if not isinstance(value, dict):
         return False
     if len(path) == 1:
@@ -105,7 +105,7 @@ def _is_headed(path: tuple[str, ...], value: Any) -> bool:
 
 
 def _is_long(value: Any) -> bool:
-    """Whether a table holds a matrix, which takes several lines."""
+    """Whether a table has a matrix, which requires several lines."""
     return any(_is_matrix(item) or (isinstance(item, dict) and _is_long(item)) for item in value.values())
 
 
@@ -134,7 +134,7 @@ def _value(value: Any) -> str:
 
 
 def _quote(text: str) -> str:
-    """A TOML basic string: that of JSON, with delete escaped too."""
+    """A TOML basic string: a JSON string with an escaped delete character."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM
-from flexstage.models.linear.eigen import cholesky
+from flexstage.models.linear.eigen import cholesky, eigen
 from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
 
@@ -71,6 +71,11 @@ def compliance_root(model: LinearModel, rows: Array) -> Array:
     10.093
     """
     turned = np.swapaxes(rows, -1, -2)
+    if model.floating is not None:
+        solved = eigen(model)
+        elastic = solved.values > 0.0
+        root = np.swapaxes(rows @ solved.shapes[:, elastic], -1, -2) / np.sqrt(solved.values[elastic])[:, None]
+        return np.concatenate([root, np.zeros((1, len(COMPONENTS)))])
     if model.is_sparse:
         return np.swapaxes(cholesky(rows @ model.solve(turned)), -1, -2)
     return np.linalg.solve(cholesky(model.stiffness_matrix), turned)

@@ -33,9 +33,22 @@ def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
 def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
     """Compute the damping ratio zeta_r (..., k) of each mode: of the law, plus the dampers, phi^T D phi / (2 omega_r).
 
-    The latter is the uncoupled approximation: dampers couple modes, as `transfer` and `state_space` include.
+    The latter is the uncoupled approximation: dampers couple modes, as `transfer` and `state_space` include. Modes at 0 Hz have no ratio:
+    zero.
     """
-    return law_ratios(model, solved, damping) + _diagonal(viscous_coupling(model, solved)) / (2.0 * np.sqrt(solved.values))
+    dampers = _diagonal(viscous_coupling(model, solved)) / (2.0 * np.sqrt(_nonzero(solved.values)))
+    return law_ratios(model, solved, damping) + np.where(solved.values == 0.0, 0.0, dampers)
+
+
+def law_rates(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
+    """Compute 2 zeta_r omega_r (..., k) [1/s] of each mode by a law; at 0 Hz the mass factor of Rayleigh damping, else zero."""
+    rates = 2.0 * law_ratios(model, solved, damping) * np.sqrt(solved.values)
+    own = np.asarray(damping.mass_factor)[..., None] if isinstance(damping, RayleighDamping) else 0.0
+    return np.where(solved.values == 0.0, own, rates)
+
+
+def _nonzero(values: Array) -> Array:
+    return np.where(values == 0.0, 1.0, values)
 
 
 def _diagonal(matrix: Array) -> Array:
@@ -79,7 +92,7 @@ def law_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
     if isinstance(damping, ModalDamping):
         ratio = np.asarray(damping.ratio)[..., None]
         return np.broadcast_to(ratio, np.broadcast_shapes(ratio.shape, solved.values.shape))
-    omega = np.sqrt(solved.values)
+    omega = np.sqrt(_nonzero(solved.values))
     if isinstance(damping, RayleighDamping):
         mass, stiffness = np.asarray(damping.mass_factor)[..., None], np.asarray(damping.stiffness_factor)[..., None]
         return 0.5 * (mass / omega + stiffness * omega)
@@ -87,7 +100,7 @@ def law_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
     for part in model.stiffness.values():
         strain = part.operator @ solved.shapes
         lost = lost + np.asarray(part.loss_factor)[..., None] * np.sum(strain * (part.law @ strain), axis=-2)
-    return 0.5 * lost / solved.values
+    return 0.5 * lost / _nonzero(solved.values)
 
 
 def structural_stiffness(model: LinearModel) -> Array:

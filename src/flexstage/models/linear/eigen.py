@@ -15,6 +15,8 @@ from flexstage.models.linear.model import LinearModel
 
 _MASSLESS = 1e-13
 _CLUSTER = 1e-5
+_BELOW = 1e-2
+"""Eigenvalue of grounded floating motions over the lowest elastic one, so that they are the first."""
 WIDE = 128
 """Number of coordinates above which a triangular solution is faster than numpy's for all matrices at once."""
 ALL_MODES = 900
@@ -58,7 +60,15 @@ def _cached(model: LinearModel) -> Eigen:
 
 
 def _solve(model: LinearModel) -> Eigen:
-    return solve(model.stiffness_matrix, model.inertia_matrix, sign_weights(model.coordinates))
+    weights = sign_weights(model.coordinates)
+    if model.floating is None:
+        return solve(model.stiffness_matrix, model.inertia_matrix, weights)
+    count = model.floating.shape[-1]
+    values = solve(model.grounded(model.scale), model.inertia_matrix, weights).values
+    elastic = np.delete(values, np.argsort(np.abs(values - model.scale))[:count])
+    solved = solve(model.grounded(_BELOW * np.min(elastic, initial=model.scale)), model.inertia_matrix, weights)
+    shapes = np.concatenate([_apply_signs(model.floating, weights), solved.shapes[:, count:]], axis=-1)
+    return Eigen(np.concatenate([np.zeros(count), solved.values[count:]]), shapes)
 
 
 def eigenvalues(model: LinearModel) -> Array:
@@ -69,6 +79,8 @@ def eigenvalues(model: LinearModel) -> Array:
     >>> (eigenvalues(mapped(double_triangle()))[:3] ** 0.5 / (2 * np.pi)).round(2).tolist()
     [110.91, 110.91, 135.15]
     """
+    if model.floating is not None:
+        return eigen(model).values
     lower, scaled = _scaled(model.stiffness_matrix, model.inertia_matrix)
     inverse_values = _massive(np.linalg.eigvalsh(scaled)[..., ::-1], lower, model.inertia_matrix)
     return np.where(np.isnan(lower[..., 0, 0])[..., None], np.nan, 1.0 / inverse_values)

@@ -15,7 +15,7 @@ from flexstage.base.processes.memory import require_memory
 from flexstage.base.record import INNER, VIEW, Axes, Called
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.mechanism.mechanism import Damping, RayleighDamping, StructuralDamping
-from flexstage.models.linear.damping import law_ratios, structural_stiffness
+from flexstage.models.linear.damping import law_rates, structural_stiffness
 from flexstage.models.linear.eigen import Eigen, eigen
 from flexstage.models.linear.model import Channel, LinearModel
 from flexstage.models.linear.port import Ports
@@ -152,7 +152,7 @@ def _law_matrix(model: LinearModel, damping: Damping) -> Array:
         return mass * model.inertia_matrix + stiffness * model.stiffness_matrix
     solved = eigen(model)
     momenta = model.inertia_matrix @ solved.shapes
-    return (momenta * (2.0 * law_ratios(model, solved, damping) * np.sqrt(solved.values))[..., None, :]) @ np.swapaxes(momenta, -1, -2)
+    return (momenta * law_rates(model, solved, damping)[..., None, :]) @ np.swapaxes(momenta, -1, -2)
 
 
 def imposed_on(model: LinearModel, name: str, chosen: Ports) -> Array:
@@ -259,17 +259,16 @@ def residual(model: LinearModel, solved: Eigen, chosen: Ports) -> Array:
     >>> bool(np.abs(residual(model, eigen(model), ports(model, ["platform.x"], ["B"]))) < 1e-9)  # every freedom has inertia
     True
     """
-    stiffness = model.stiffness_matrix
-    batch = np.broadcast_shapes(stiffness.shape[:-2], chosen.force.shape[:-2])
-    motion = np.linalg.solve(stiffness, np.broadcast_to(chosen.force, (*batch, *chosen.force.shape[-2:])))
-    modal = np.swapaxes(solved.shapes, -1, -2) @ chosen.force / solved.values[..., :, None]
+    batch = np.broadcast_shapes(model.stiffness_matrix.shape[:-2], chosen.force.shape[:-2])
+    motion = model.solve(np.broadcast_to(chosen.force, (*batch, *chosen.force.shape[-2:])))
+    elastic = np.where(solved.values == 0.0, np.inf, solved.values)
+    modal = np.swapaxes(solved.shapes, -1, -2) @ chosen.force / elastic[..., :, None]
     return chosen.output @ (motion - solved.shapes @ modal)
 
 
 def _denominators(model: LinearModel, solved: Eigen, omega: Array, damping: Damping) -> Array:
     """omega_r^2 - omega^2 + 2 j zeta_r omega_r omega, (..., f, k)."""
-    natural = np.sqrt(solved.values)
-    rate = 2.0 * law_ratios(model, solved, damping) * natural
+    rate = law_rates(model, solved, damping)
     return solved.values[..., None, :] - (omega**2)[:, None] + 1j * omega[:, None] * rate[..., None, :]
 
 

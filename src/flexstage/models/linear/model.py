@@ -69,6 +69,9 @@ class LinearModel(InNotebook, CheckedFields):
     `idle_output` (..., p, k) are the outputs of the k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground
     acceleration (both absent: none).
 
+    `floating` (n, k) are the mass-normalised motions without stiffness of a platform that only forces drive (absent: none). K is singular
+    then, and `solve` returns the elastic displacement, without momentum in these motions (inertia relief).
+
     The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`). `solve` and `momenta` use no dense
     matrix; K and M are assembled on request.
     """
@@ -94,6 +97,7 @@ class LinearModel(InNotebook, CheckedFields):
     idle_inertia: Array | None = None
     unknown: tuple[str, ...] = ()
     viscous: Mapping[str, Array] = field(default_factory=dict)
+    floating: Array | None = None
 
     @cached_property
     def stiffness_matrix(self) -> Array:
@@ -106,6 +110,13 @@ class LinearModel(InNotebook, CheckedFields):
         """M (..., n, n), read-only. Raises `DesignError` for a large sparse model."""
         self._require_dense()
         return _freeze(assemble(self.inertia, len(self.coordinates)))
+
+    def grounded(self, square: Number = 1.0) -> Array:
+        """K with the floating motions on springs: their eigenvalue is `square` [1/s^2], all others and the shapes are those of K."""
+        if self.floating is None:
+            return self.stiffness_matrix
+        momentum = self.inertia_matrix @ self.floating
+        return self.stiffness_matrix + square * (momentum @ momentum.T)
 
     def _require_dense(self) -> None:
         size = len(self.coordinates)
@@ -134,14 +145,26 @@ class LinearModel(InNotebook, CheckedFields):
 
     def solve(self, load: Array) -> Array:
         """K^-1 load (..., n, k)."""
-        return self.solver.solve(load) if self.is_sparse else np.linalg.solve(self.stiffness_matrix, load)
+        if self.is_sparse:
+            return self.solver.solve(load)
+        if self.floating is None:
+            return np.linalg.solve(self.stiffness_matrix, load)
+        balanced = load - self.inertia_matrix @ (self.floating @ (self.floating.T @ load))
+        return np.linalg.solve(self.grounded(self.scale), balanced)
+
+    @property
+    def scale(self) -> float:
+        """An eigenvalue within the range of the model [1/s^2]: the median of the coordinates' stiffness over inertia."""
+        stiff, heavy = (np.real(np.diag(each)) for each in (self.stiffness_matrix, self.inertia_matrix))
+        used = (stiff > 0.0) & (heavy > 0.0)
+        return float(np.median(stiff[used] / heavy[used])) if used.any() else 1.0
 
     def follow(self, strains: Mapping[str, Array]) -> Array:
         """Compute the motion (..., n, k) of least energy for strains (..., r, k) by part in addition to its own, -K^-1 sum G^T k strain."""
         if self.is_sparse:
             return self.solver.follow(np.concatenate([strains[name] for name in self.stiffness]))
         forces = (_transpose(part.operator) @ (part.law @ strains[name]) for name, part in self.stiffness.items())
-        return np.linalg.solve(self.stiffness_matrix, -sum(forces, np.zeros((len(self.coordinates), 1))))
+        return self.solve(-sum(forces, np.zeros((len(self.coordinates), 1))))
 
     def momenta(self, motion: Array) -> Array:
         """Multiply M by a motion (..., n, k)."""
@@ -206,8 +229,8 @@ def _unknown(name: str, names: Iterable[str], kind: str) -> Finding:
     """The error for a name without a channel or, if all of its components are unknown, for its point."""
     owner, owners = name.rpartition(".")[0], {each.rpartition(".")[0] for each in names} - {""}
     if not owner or owner in owners:
-        return Finding(name, f"the model has no {kind} of this name", suggest_nearest(name, names))
-    return Finding(owner, "the model has no point of this name", suggest_nearest(owner, owners))
+        return Finding(name, f"unknown {kind}", suggest_nearest(name, names))
+    return Finding(owner, "unknown point", suggest_nearest(owner, owners))
 
 
 def assemble(contributions: Contributions, size: int) -> Array:

@@ -112,7 +112,7 @@ def _expand_groups(names: str | Iterable[str], known: tuple[str, ...], kind: str
         elif name in members and name:
             result += dict.fromkeys(members[name])
         else:
-            findings.append(Finding(name, f"the model has no {kind} of this name", suggest_nearest(name, [*known, *filter(None, members)])))
+            findings.append(Finding(name, f"unknown {kind}", suggest_nearest(name, [*known, *filter(None, members)])))
     require(findings)
     return result
 

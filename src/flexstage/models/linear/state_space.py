@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Damping, ModalDamping, RayleighDamping
-from flexstage.models.linear.damping import law_ratios, modal_ratios, viscous_coupling
+from flexstage.models.linear.damping import law_rates, modal_ratios, viscous_coupling
 from flexstage.models.linear.eigen import Eigen, eigen
 from flexstage.models.linear.frequency import imposed_on, modal_forces, residual
 from flexstage.models.linear.model import Channel, LinearModel
@@ -68,8 +68,7 @@ def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int 
     ((12, 12), 'modal damping, exact; modes above the first 6 as a static term')
     """
     solved = _lowest(eigen(model), modes)
-    omega = np.sqrt(solved.values)
-    rate = _square(2.0 * law_ratios(model, solved, damping) * omega) + viscous_coupling(model, solved)
+    rate = _square(law_rates(model, solved, damping)) + viscous_coupling(model, solved)
     force, inertial = modal_forces(solved, chosen)
     output = chosen.output @ solved.shapes
     carried = rate @ inertial + _damped_by_inputs(model, solved, chosen)
@@ -80,7 +79,7 @@ def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int 
         B=np.concatenate(np.broadcast_arrays(carried, lower), axis=-2),
         C=np.concatenate([output, zero], axis=-1),
         D=chosen.feedthrough + residual(model, solved, chosen) - output @ inertial,
-        states=tuple(f"mode{number + 1}{mark}" for mark in ("", "'") for number in range(omega.shape[-1])),
+        states=tuple(f"mode{number + 1}{mark}" for mark in ("", "'") for number in range(solved.values.shape[-1])),
         inputs=chosen.inputs,
         outputs=chosen.outputs,
         ratios=modal_ratios(model, solved, damping),

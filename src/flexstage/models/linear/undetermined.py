@@ -15,6 +15,7 @@ _SEEN = 1e-9
 _TENTH = 0.1
 _METRE = np.array([1.0, 1.0, 1.0, _TENTH, _TENTH, _TENTH])
 """Rotations are compared with translations over 0.1 m."""
+_ALLOWED = "Modes, responses and loops are available; a spring in that motion gives it a stiffness"
 _ADVICE = "Give a link of these bodies stiffness in that freedom, or lock it"
 
 
@@ -56,12 +57,33 @@ def require_unmoved(model: LinearModel, inputs: Iterable[str]) -> None:
     >>> from flexstage.models.lumped import lumped
     >>> require_unmoved(lumped(parallelogram()), ["B", "corner.fx"])
     """
-    driving = _driving(model)
+    driving, names = _driving(model), tuple(inputs)
     require(
         Finding(name, f"drives a free internal mode (zero stiffness): {_names(model)}", f"{_ADVICE}, or load another body")
-        for name in inputs
+        for name in names
         if name in driving
     )
+    require(
+        Finding(name, "drives a motion without stiffness, so that static stiffness and strokes are undefined", _ALLOWED)
+        for name, drives in zip(names, floats(model, names), strict=True)
+        if drives
+    )
+
+
+def floats(model: LinearModel, inputs: tuple[str, ...]) -> list[bool]:
+    """Whether each input drives a motion without stiffness of the platform.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> floats(lumped(parallelogram()), ("B",))
+    [False]
+    """
+    if model.floating is None:
+        return [False] * len(inputs)
+    force = np.abs(model.input_matrix)
+    work = np.abs(model.floating.T @ model.input_matrix)
+    most = np.abs(model.floating).T @ force
+    return np.any(work > _SEEN * most, axis=0)[model.input_index(inputs)].tolist()
 
 
 def require_held(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> None:
@@ -90,6 +112,10 @@ def require_balanced(model: LinearModel, where: str, load: Array, rows: list[int
     >>> from flexstage.models.lumped import lumped
     >>> require_balanced(lumped(parallelogram()), "gravity", np.array([0.0, 0.0, -9.8, 0.0, 0.0, 0.0]))
     """
+    if model.floating is not None:
+        force = model.base_inertia @ load if rows is None else np.swapaxes(model.output[rows], -1, -2) @ load
+        if np.any(np.abs(model.floating.T @ force) > _SEEN * (np.abs(model.floating).T @ np.abs(force))):
+            raise refuse(where, "drives a motion without stiffness, so that no equilibrium exists", "Turn gravity, or add a spring")
     if model.idle_output is None or model.idle_inertia is None:
         return
     load = np.real(first_design(load, 1))

@@ -1,1 +1,1 @@
-"""What all commands share: options and their values, opening a design, answers, progress, output files, exit codes."""
+"""Common parts of all commands: options and their values, design files, results, progress, output files, exit codes."""

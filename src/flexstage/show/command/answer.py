@@ -1,4 +1,4 @@
-"""Answers: one result as a JSON document, as tables on the terminal, or both."""
+"""Results of commands: a JSON document, tables on the terminal, or both."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import typer
 from rich.console import Console
 
 from flexstage.analysis.caveats import Caveats, caveats
-from flexstage.base.finding import Finding
+from flexstage.base.finding import Finding, combine_warnings
 from flexstage.base.storage.document import Document, as_text
 from flexstage.base.text import printable
 from flexstage.mechanism.mechanism import Mechanism
@@ -35,13 +35,15 @@ from flexstage.show.workbook import to_xlsx
 _UNFOLDED = 1000
 _LONGEST = 200
 _HANG = 2
+_MAPPING = "mapping: 0 strokes"
+"""Reason of results that need the mapping of strokes to motions."""
 
 
 @dataclass(frozen=True)
 class CommandResult:
     """The result of a command: `body` of its document, `tables`, and `report` as HTML, each computed on request.
 
-    `mechanism` is the description (`None`: a record alone), `model` the theory. `warnings` concern the result and follow those about the
+    `mechanism` is the description (`None`: a record only), `model` the theory. `warnings` concern the result and follow those about the
     description.
     """
 
@@ -52,7 +54,7 @@ class CommandResult:
     model: Model | None = None
     warnings: tuple[Finding, ...] = ()
     kind: str | None = None
-    """The kind of the document, where it is not the name of the command."""
+    """The kind of the document, if it differs from the name of the command."""
     failed: bool = False
     """Whether the command ends with exit code 1: it ran, and the answer is no."""
 
@@ -65,10 +67,10 @@ _Given = ParamSpec("_Given")
 def command(*files: str) -> Callable[[Callable[_Given, CommandResult | None]], Callable[_Given, None]]:
     """Make a command of a function that returns a `CommandResult`.
 
-    The command writes the requested documents, or prints the tables. A parameter of a dataclass type stands for the options among its
-    fields; a `Mechanism` is read from its file. `files` are the options of further output files: those that the function writes, and
+    The command writes the requested documents, or prints the tables. A parameter of a dataclass type is replaced by the options among
+    its fields; a `Mechanism` is read from its file. `files` are the options of further output files: those that the function writes, and
     `report`. All outputs are checked before the function is called. If one is stdout, no tables are printed, and warnings go to stderr.
-    A function that returns nothing has written all it has to.
+    A function without a result has written its outputs itself.
     """
 
     def decorate(function: Callable[_Given, CommandResult | None]) -> Callable[_Given, None]:
@@ -135,14 +137,14 @@ def write_result(kind: str, found: CommandResult, outputs: Mapping[str, Any], cs
             return
         announce(f"Wrote {json}")
     if STDOUT in map(str, outputs.values()):
-        for each in (*(() if found.mechanism is None else caveats(found.mechanism).warnings), *found.warnings):
+        for each in combine_warnings((*(() if found.mechanism is None else caveats(found.mechanism).warnings), *found.warnings)):
             print_warning(str(each))
         return
-    show((*list_caveats(kind, found.mechanism, found.warnings), *found.tables()))
+    show((*found.tables(), *list_caveats(kind, found.mechanism, found.warnings)))
 
 
 def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
-    """Write the parts of a result into a folder, if one is named: `modes.csv` what is single, `modes.twists.csv` what is at `twists`."""
+    """Write the parts of a result into a folder, if requested: `modes.csv` the single values, `modes.twists.csv` those of `twists`."""
     if folder is None:
         return
     make_folder(folder)
@@ -156,30 +158,31 @@ def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
 
 
 def write_workbook(target: Path | None, body: Callable[[], Any], about: Callable[[], Document]) -> None:
-    """Write the parts of a result as an Excel workbook, if one is named; its last sheet says what the document's envelope says."""
+    """Write the parts of a result as an Excel workbook, if requested; the last sheet contains the envelope of the document."""
     if target is not None:
         save(target, to_xlsx(body(), {key: value for key, value in about().items() if value not in (None, [])}), "--xlsx")
 
 
 def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
-    """Warnings about a description (none: a record alone) and `more` about the result, and what this kind of result takes by default."""
+    """Warnings about a description (`None`: a record only) and `more` about the result, and default values of this kind of result."""
     found = Caveats() if mechanism is None else caveats(mechanism)
-    for title, findings in (("Warnings", (*found.warnings, *more)), ("Taken by default", found.defaults_of(kind))):
+    for title, findings in (("warning", combine_warnings((*found.warnings, *more))), ("default", found.defaults_of(kind))):
         if findings:
-            yield "\n".join([title, "", *(f"  {each}" for each in findings)])
+            yield "\n".join(f"{title}: {each}" for each in findings)
 
 
-def print_missing(missing: Mapping[str, str]) -> None:
-    """Say on stderr which results are not given, and why; a reason that several share once."""
+def print_missing(missing: Mapping[str, str], *, forced: bool = False) -> None:
+    """Print the results not computed and their reasons to stderr, a line for each reason; `forced`: forces drive the stage."""
     for reason in dict.fromkeys(missing.values()):
         names = ", ".join(name.replace("_", " ") for name, each in missing.items() if each == reason)
-        print_note(f"not given: {names}: {reason}")
+        text = reason.partition(". ")[0].rstrip(".")
+        print_note(f"not computed for force-driven stages: {names}" if forced and _MAPPING in text else f"not computed: {names} ({text})")
 
 
 def show(shown: Iterable[Table | str | None]) -> None:
-    """Print tables, and lines as they are, to stdout, with an empty line between; what is absent is left out.
+    """Print tables, and lines unchanged, to stdout, separated by empty lines; `None` is left out.
 
-    Tables have the terminal's width; where the output is no terminal they are not folded and have no escape codes.
+    Tables have the width of the terminal. If the output is not a terminal, they are not folded and have no escape codes.
     """
     console = Console(file=sys.stdout, highlight=False, markup=False)
     width = console.width if console.is_terminal else _UNFOLDED
@@ -190,7 +193,7 @@ def show(shown: Iterable[Table | str | None]) -> None:
 
 
 def _fold_lines(text: str, width: int) -> list[str]:
-    """Lines of a text, on a terminal no wider than it, what follows of one further in."""
+    """Lines of a text no wider than the terminal; continuation lines are indented."""
     lines = printable(text, keep="\n").splitlines()
     return lines if width == _UNFOLDED else [part for line in lines for part in _hang(line, width)]
 

@@ -1,4 +1,4 @@
-"""Opening a design for a command: outputs tried, file read and checked, `--set` applied; its model and the points of it that are named."""
+"""Design of a command: outputs checked, file read and checked, `--set` applied; its model and named points."""
 
 from __future__ import annotations
 
@@ -23,29 +23,29 @@ from flexstage.spatial.frame import COMPONENTS
 
 @dataclass(frozen=True)
 class DesignOptions:
-    """The design file of a command, and the changes of its values."""
+    """The design file of a command, and its changed values."""
 
     design: Design
     changes: Changes = None
 
     def open(self) -> Mechanism:
-        """The description with its changes. Raises `DesignError` with all findings."""
+        """The changed description. Raises `DesignError` with all errors."""
         return open_design(self.design, self.changes)
 
 
 def open_design(path: Path, changes: Sequence[str] | None = None, outputs: Sequence[tuple[str, str | Path | None]] = ()) -> Mechanism:
-    """The description in a file, with changes, after the outputs (option and path) were found writable.
+    """Read a description with changes, after a check that the outputs (option and path) are writable.
 
-    Raises `DesignError` with all findings.
+    Raises `DesignError` with all errors.
     """
     require_writable(outputs, [path])
     return change(load(path), changes or ())
 
 
 def change(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
-    """The description after all assignments, checked anew; raises `DesignError` with all that is wrong with any of them.
+    """The description after all assignments, checked; raises `DesignError` with all errors of all assignments.
 
-    A formula that an assignment takes the place of is told on stderr.
+    Prints a note to stderr for each formula that an assignment replaces.
     """
     findings: list[Finding] = []
     result = mechanism
@@ -58,13 +58,13 @@ def change(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
     for address, text in mechanism.formulas.items():
         if address not in result.formulas:
             numbers = " or ".join(f"numbers.{name}" for name in sorted(parse_expression(text).names))
-            advice = f"; to move all that depends on it, set {numbers}" if numbers else ""
-            print_note(f'note: {address} is set by itself, its formula "{text}" is not kept{advice}')
+            advice = f"; to change all dependent values, set {numbers}" if numbers else ""
+            print_note(f'note: the value of {address} replaces its formula "{text}"{advice}')
     return _valid(result, changes) if changes else mechanism
 
 
 def _valid(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
-    """The description checked, where what is wrong with a number that was assigned names the assignment."""
+    """The checked description; errors of an assigned number name the assignment."""
     assigned = {text.partition("=")[0].strip(): text for text in changes}
     places = {place: text for address, text in assigned.items() for place in (address, f'overrides."{address}"')}
     try:
@@ -75,13 +75,13 @@ def _valid(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
 
 
 def _where(text: str, inner: str) -> str:
-    """The assignment, and the place a finding names where that says more than the assignment does."""
+    """The assignment, and the location of an error if it adds information."""
     said = {text.partition("=")[0].strip(), f'"{text}"'}
     return f"--set {text}" if inner in said else f"--set {text}: {inner}"
 
 
 def elastic_model(mechanism: Mechanism, model: Model, *, loaded: bool = False) -> LinearModel:
-    """The linear model of a stage, or if `loaded` that of the stage under its dead load; the ideal model is refused."""
+    """The linear model of a stage, if `loaded` under its permanent load; refuses the ideal model."""
     linear = felt(mechanism, model) if loaded else read(mechanism, model)
     if linear is None:
         raise refuse("--model ideal", "rigid bodies have no stiffness, no lost motion and no modes", "Use --model lumped or mapped")
@@ -89,9 +89,9 @@ def elastic_model(mechanism: Mechanism, model: Model, *, loaded: bool = False) -
 
 
 def known_point(model: LinearModel, name: str, option: str) -> str:
-    """The name, if it is one of a body or point whose twist the model gives; else refused with the nearest ones."""
+    """Return the name of a body or point whose twist the model computes; else refuse it with the nearest names."""
     outputs = {channel.name for channel in model.outputs}
     places = {each.rpartition(".")[0] for each in outputs if each.rpartition(".")[2] in COMPONENTS}
     if name not in places:
-        raise refuse(option, f"there is no body or point {name}", suggest_nearest(name, places))
+        raise refuse(option, f"unknown body or point {name}", suggest_nearest(name, places))
     return name

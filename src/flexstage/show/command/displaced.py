@@ -1,4 +1,4 @@
-"""Options of stages away from their drawn position: loads that stay, and coordinates that are brought somewhere."""
+"""Options for operating points: constant loads, and prescribed or fixed coordinates."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from flexstage.analysis.loaded.operating_point import OperatingPoint
     from flexstage.models.nonlinear import stage as displaced
     from flexstage.models.nonlinear.stage import Nonlinear
-else:  # few commands are asked about another place than the drawn one
+else:  # few commands have an operating point
     operating_points, displaced = Late("flexstage.analysis.loaded.operating_point"), Late("flexstage.models.nonlinear.stage")
 
 Load: TypeAlias = Annotated[
@@ -50,7 +50,7 @@ Temperature: TypeAlias = Annotated[str | None, temperature_option("0 K")]
 
 @dataclass(frozen=True)
 class Place:
-    """Where a stage is to be looked at, in the words of the command line; `bool()` says whether anywhere but as drawn."""
+    """Operating point from the options of a command; true unless it is the undeformed configuration."""
 
     at: At = None
     load: Load = None
@@ -62,37 +62,38 @@ class Place:
 
     @property
     def warmth(self) -> float:
-        """The change of temperature [K]."""
+        """Temperature change [K]."""
         return 0.0 if self.temperature is None else parse(self.temperature, TEMPERATURE, where="--temperature")
 
     @property
     def locked(self) -> tuple[str, ...]:
-        """The fixed coordinates. Raises `DesignError` for a value among them, and for what is given twice."""
+        """The fixed coordinates. Raises `DesignError` for a coordinate with a value, and for repeated coordinates."""
         fixed = tuple(name.strip() for name in self.fixed or ())
         require(
             Finding(f"--fixed {name}", "a fixed coordinate has no value here", f'Use --at "{name}" --fixed {name.partition("=")[0]}')
             for name in fixed
             if "=" in name
         )
-        require(Finding(f"--fixed {name}", "it is given twice", "Say it once") for name in dict.fromkeys(fixed) if fixed.count(name) > 1)
+        require(Finding(f"--fixed {name}", "given twice", "Give it once") for name in dict.fromkeys(fixed) if fixed.count(name) > 1)
         return fixed
 
     def brought(self, model: Nonlinear) -> dict[str, float]:
-        """Where the stage is brought, in SI units."""
+        """Prescribed coordinates in SI units."""
         return read_pairs(self.at or (), "--at", lambda name, value, where: parse(value, quantity_of(model, name), where=where))
 
     @property
     def options(self) -> str:
-        """The options that were given."""
+        """The options in use."""
         given = {"--at": self.at, "--load": self.load, "--fixed": self.fixed, "--temperature": self.temperature}
         return ", ".join(option for option, value in given.items() if value)
 
 
 @dataclass(frozen=True, eq=False)
 class Footing:
-    """The stage of a command: at an `operating_point`, or as drawn, its dead load with an `effect`; and its `model`.
+    """The stage of a command: at an `operating_point`, or in the undeformed configuration with the `effect` of its permanent load.
 
-    `linear` is small motions about it, `links` the same link by link, for lost motion and drift.
+    `model` is the theory; `linear` is the linear model about the operating point, `links` the same with separate links, for lost motion and
+    drift.
     """
 
     mechanism: Mechanism
@@ -102,25 +103,25 @@ class Footing:
 
     @property
     def linear(self) -> LinearModel:
-        """Small motions about where the stage stands; as drawn by the model that is asked for, under its dead load where that is felt."""
+        """Linear model about the operating point; undeformed, of the requested model, with a significant permanent load."""
         return elastic_model(self.mechanism, self.model, loaded=True) if self.operating_point is None else self.operating_point.linear
 
     @property
     def links(self) -> LinearModel:
-        """The same link by link."""
+        """The linear model with separate links."""
         if self.operating_point is not None:
             return self.operating_point.links
         loaded = None if self.effect is None else self.effect.links
         return elastic_model(self.mechanism, self.model) if loaded is None else loaded
 
     def body(self, result: Any) -> Any:
-        """A result, and beside it how the stage stands: brought somewhere, or what its dead load changes."""
+        """A result with its operating point, or with the effect of the permanent load."""
         if self.operating_point is not None:
             return SideBySide((result, {"operating_point": self.operating_point}))
         return result if self.effect is None else SideBySide((result, {"loaded": self.effect}))
 
     def tables(self) -> Iterator[Table | str]:
-        """Where the stage stands, before what is told about it."""
+        """Tables of the operating point, printed before the result."""
         if self.effect is not None and self.effect.model is not None:
             yield self.effect.text
         if self.operating_point is not None:
@@ -128,16 +129,16 @@ class Footing:
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """What is doubtful where the stage stands."""
+        """Warnings about the operating point."""
         return () if self.operating_point is None else self.operating_point.warnings
 
 
 def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> Footing:
-    """How the stage stands where it is asked for. A place is refused with a model that knows no large displacements."""
+    """The stage at the requested operating point. Refuses an operating point with a model without large displacements."""
     if not asked:
         return Footing(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
     if model is not Model.LUMPED:
-        raise refuse(asked.options, f"the {model.value} model is that of the drawn position", "Leave out --model, or the operating point")
+        raise refuse(asked.options, f"the {model.value} model has no operating points", "Leave out --model, or the operating point")
     known = displaced.nonlinear(mechanism)
     there = operating_points.operating_point(
         mechanism, asked.brought(known), loads=loads_of(known, asked.load or ()), fixed=asked.locked, temperature=asked.warmth
@@ -146,12 +147,12 @@ def footing(mechanism: Mechanism, asked: Place, model: Model = Model.LUMPED) -> 
 
 
 def _operating_point_tables(found: OperatingPoint) -> Iterator[Table]:
-    yield matrix_table("Sag under weight, loads and heat, from as drawn", found.sag)
+    yield matrix_table("Static deflection under weight, loads and heat", found.sag)
     if found.moved is not None:
-        yield matrix_table("From there it is brought by", found.moved)
+        yield matrix_table("Displacement from static equilibrium", found.moved)
     if found.held is not None:
         kept = f" ({', '.join(found.locked)} fixed)" if found.locked else ""
-        yield matrix_table(f"Held by, counted from the sagged position{kept}", found.held)
+        yield matrix_table(f"Prescribed coordinates, relative to static equilibrium{kept}", found.held)
 
 
 def loads_of(model: Nonlinear, texts: Sequence[str], option: str = "--load") -> dict[str, float]:
@@ -160,14 +161,14 @@ def loads_of(model: Nonlinear, texts: Sequence[str], option: str = "--load") -> 
 
     def read(name: str, value: str, where: str) -> float:
         if name not in units:
-            raise refuse(f"{option} {name}", f'there is no load "{name}"', suggest_nearest(name, units))
+            raise refuse(f"{option} {name}", f'unknown load "{name}"', suggest_nearest(name, units))
         return parse(value, quantity_of_unit(units[name]), where=where)
 
     return read_pairs(texts, option, read)
 
 
 def quantity_of(model: Nonlinear, drive: str) -> Quantity:
-    """What a drive is measured in: an input's unit, or that of a coordinate."""
+    """The quantity of a drive: that of an input, or of a coordinate."""
     units = {channel.name: channel.unit for channel in model.inputs}
     if drive in units:
         return quantity_of_unit(units[drive])

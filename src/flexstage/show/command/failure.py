@@ -1,4 +1,4 @@
-"""Exit codes, and what is said of failures: bad input finding by finding, a fault of flexstage without a traceback."""
+"""Exit codes and messages of failures: an error of the input in one line, a fault of flexstage without a traceback."""
 
 from __future__ import annotations
 
@@ -16,11 +16,10 @@ from flexstage.base.storage.store import remove_temporary_leftovers
 from flexstage.show.command.output import pending_outputs
 from flexstage.show.command.terminal import print_note, print_warning, streams
 
-DONE, MISSED, BAD_INPUT, INTERRUPTED, FAULT = 0, 1, 2, 2, 70
+DONE, MISSED, BAD_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 70, 130
 SIGNALLED = 128
-"""To this the number of a signal is added that ended the command."""
+"""Exit code of a command ended by a signal: this plus the number of the signal."""
 ENDINGS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
-_FRAMEWORKS_INTERRUPTED = 130
 _DISKS = {getattr(errno, name, None) for name in ("ENAMETOOLONG", "EACCES", "EPERM", "ENOTDIR", "ELOOP", "EROFS", "EIO", "ENOSPC")}
 _DEBUG = "FLEXSTAGE_DEBUG"
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -28,14 +27,14 @@ _KEPT = "Kept are only finished finite elements, in the cache, and designs of a 
 
 
 def run_guarded(action: Callable[[], object]) -> int:
-    """Run an action and turn however it ends into an exit code; messages go to stderr."""
+    """Run an action and return its exit code; messages go to stderr."""
     with streams():
         return _exit_code(action)
 
 
 def _exit_code(action: Callable[[], object]) -> int:
     remove_temporary_leftovers()
-    for name in _THREADS:  # many small matrices: a second thread costs more than it gives. Read when numpy is loaded.
+    for name in _THREADS:  # many small matrices: a second thread is slower. Read when numpy is loaded.
         os.environ.setdefault(name, "1")
     try:
         with _print_warnings(), pending_outputs():
@@ -48,10 +47,10 @@ def _exit_code(action: Callable[[], object]) -> int:
         return _missing(error)
     except BrokenPipeError:
         return DONE  # `| head`
-    except KeyboardInterrupt:
-        return _interrupted()
+    except KeyboardInterrupt as interruption:
+        return _interrupted(interruption)
     except MemoryError as error:
-        return _bad_input(refuse("memory", f"there is not enough for this: {error}", "Ask for less at once, or free memory"))
+        return _bad_input(refuse("memory", f"there is not enough for this: {error}", "Request less at once, or free memory"))
     except Exception as error:  # noqa: BLE001 (the last resort: a message instead of a traceback)
         return _fault(error)
     return DONE
@@ -59,9 +58,9 @@ def _exit_code(action: Callable[[], object]) -> int:
 
 def _code_of_exit(end: SystemExit) -> int:
     """The exit code of a command that left early."""
-    if end.code == _FRAMEWORKS_INTERRUPTED:  # the command line's framework turns the interruption into this
-        return _interrupted()
-    if isinstance(end.__context__, BrokenPipeError):  # and a reader that has gone into a code of failure
+    if end.code == INTERRUPTED:  # of the command-line framework, for an interruption
+        return _interrupted(end.__context__)
+    if isinstance(end.__context__, BrokenPipeError):  # and a failure for a closed pipe
         return DONE
     if end.code in {SIGNALLED + each for each in ENDINGS}:
         print_note(f"Ended by a signal. {_KEPT}")
@@ -69,7 +68,7 @@ def _code_of_exit(end: SystemExit) -> int:
 
 
 def _run_and_flush(action: Callable[[], object]) -> None:
-    """The action, until its reader has all of it, however it ends."""
+    """Run the action and flush its output, also after a failure."""
     try:
         action()
     except SystemExit:
@@ -78,24 +77,24 @@ def _run_and_flush(action: Callable[[], object]) -> None:
     sys.stdout.flush()
 
 
-def _interrupted() -> int:
-    print_note(f"Interrupted; nothing was written. {_KEPT}")
+def _interrupted(interruption: BaseException | None) -> int:
+    """The exit code; an interruption may name the best result so far."""
+    best = f"{interruption} " if isinstance(interruption, KeyboardInterrupt) and interruption.args else ""
+    print_note(f"Interrupted; nothing was written. {best}{_KEPT}")
     return INTERRUPTED
 
 
 def _bad_input(error: DesignError) -> int:
-    count = len(error.findings)
-    print_note(f"error: {count} finding{'s' * (count > 1)}")
     for finding in error.findings:
-        print_note(f"  {finding}")
+        print_note(f"error: {finding}")
     return BAD_INPUT
 
 
 def _fault(error: Exception) -> int:
     if isinstance(error, OSError) and error.filename and error.errno in _DISKS:
-        return _bad_input(refuse(os.fsdecode(error.filename), f"the system refuses it: {error.strerror}", "Name another file or folder"))
+        return _bad_input(refuse(os.fsdecode(error.filename), f"refused by the system: {error.strerror}", "Name another file or folder"))
     if isinstance(error, FileNotFoundError) and _folder_is_gone():
-        what = "it has been removed, so that no file can be named from here"
+        what = "it has been removed"
         return _bad_input(refuse("the folder this runs in", what, "Change to another folder"))
     if os.environ.get(_DEBUG):
         raise error

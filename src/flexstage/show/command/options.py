@@ -1,4 +1,4 @@
-"""Arguments and options that several commands share, and the forms of those of one command: a text, or one of a few words."""
+"""Arguments and options of several commands; options that are texts or choices."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Annotated, Any, TypeAlias, TypeVar
 
 import typer
 
+from flexstage.base.finding import list_choices
 from flexstage.models.theory import Model
 from flexstage.show.command.failure import BAD_INPUT
 from flexstage.show.command.output import check_folder
@@ -21,17 +22,17 @@ _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 def text_option(name: str, metavar: str, about: str, default: str = "") -> Any:
-    """An option that is a text; its default is stated in words, if at all."""
+    """A text option; its help states a default, if any."""
     return typer.Option(name, metavar=metavar, help=f"{about} Default: {default}." if default else about, show_default=False)
 
 
 def output_option(metavar: str, about: str) -> Any:
-    """The option of the file that a command writes."""
+    """The option for the output file of a command."""
     return typer.Option("--output", "-o", metavar=metavar, help=about, show_default=False)
 
 
 def word_option(name: str, kind: type[Enum], about: str, *, otherwise: Mapping[str, str] = _NOTHING, show_default: bool = True) -> Any:
-    """An option that is one of a few words; `otherwise` says what to do instead for words that one might expect."""
+    """A choice of a few words; `otherwise` maps likely wrong words to hints."""
     words = [str(each.value) for each in kind]
     return typer.Option(
         name,
@@ -44,14 +45,14 @@ def word_option(name: str, kind: type[Enum], about: str, *, otherwise: Mapping[s
 
 
 def _reader(option: str, kind: type[_Kind], otherwise: Mapping[str, str]) -> Callable[[str | _Kind], _Kind]:
-    """A reader of an option's word, which refuses others in one line."""
+    """A reader of the choices of an option; refuses others in one line."""
 
     def read(word: str | _Kind) -> _Kind:
         for each in kind:
-            if word in (each, each.value):  # each: the default
+            if word in (each, each.value):  # the member: a default
                 return each
         advice = f" {otherwise[str(word)]}." if word in otherwise else ""
-        print_note(f'error: {option}: "{word}" is none of {", ".join(str(each.value) for each in kind)}.{advice}')
+        print_note(f"error: {option}: must be {list_choices([str(each.value) for each in kind])} (got {word}).{advice}")
         raise typer.Exit(BAD_INPUT)
 
     return read
@@ -64,7 +65,7 @@ MODEL = word_option(
     "--model",
     Model,
     "Model of the stage: rigid bodies, axial springs, or lumped 6x6 hinges.",
-    otherwise={"solid": "Solids have commands of their own: flexstage solid, flexstage verify"},
+    otherwise={"solid": "For solids, use flexstage solid or flexstage verify"},
 )
 ModelName: TypeAlias = Annotated[Model, MODEL]
 
@@ -136,6 +137,8 @@ STEPS = typer.Option(
 )
 
 Seed: TypeAlias = Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")]
+
+Full: TypeAlias = Annotated[bool, typer.Option("--full", help="All tables and notes, instead of the short form.")]
 
 FEA = typer.Option("--fea", help="Finite elements of the stage, computed unless they are in the cache.")
 

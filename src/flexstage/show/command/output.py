@@ -1,4 +1,4 @@
-"""Output files: found unwritable before anything is computed, all written whole, or none."""
+"""Output files: checked before the computation, and written completely or not at all."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ENDED_WELL = (None, 0, 1)
 
 
 class _Pending:
-    """Outputs of one command that wait for its end, and what is told once they are there."""
+    """Outputs of a command until its end, and notes printed after they are written."""
 
     def __init__(self) -> None:
         self.files: list[PendingFile] = []
@@ -34,19 +34,19 @@ class _Pending:
         for each in self.files:
             each.drop()
         for folder in self.folders:
-            with suppress(OSError):  # it holds the files that were put
+            with suppress(OSError):  # it contains files that were written
                 folder.rmdir()
 
 
-# The command that runs decides when its outputs appear, however deep in it they are written: one value for the time of one command.
+# One value for each running command: the command writes all outputs at its end.
 _PENDING: ContextVar[_Pending | None] = ContextVar("outputs that wait", default=None)
 
 
 @contextmanager
 def pending_outputs() -> Generator[None]:
-    """All files written inside appear together at its end, or none where it fails.
+    """Write all files inside together at the end, or none after a failure.
 
-    A command that ends by saying what was missed, or whose reader has gone, has not failed.
+    A command that ends with an unmet requirement, or whose reader closed the pipe, has not failed.
     """
     pending = _Pending()
     token = _PENDING.set(pending)
@@ -66,7 +66,7 @@ def pending_outputs() -> Generator[None]:
 
 
 def announce(text: str) -> None:
-    """Say that a file was written, once it is there."""
+    """Print a note about a written file, after it is written."""
     pending = _PENDING.get()
     if pending is None:
         print_note(text)
@@ -75,7 +75,7 @@ def announce(text: str) -> None:
 
 
 def require_writable(wanted: Sequence[tuple[str, str | Path | None]], read: Iterable[Path] = ()) -> None:
-    """Refuse outputs, pairs of an option and its path, that cannot be written or are a file that is `read`."""
+    """Refuse outputs, pairs of an option and its path, that cannot be written or that are also `read`."""
     require(_problems(wanted, read))
 
 
@@ -99,22 +99,22 @@ def _problems(wanted: Iterable[tuple[str, str | Path | None]], read: Iterable[Pa
 
 
 def check_folder(folder: Path | None) -> Path | None:
-    """The folder that `--csv` names, new or there; raises a `DesignError` where nothing can be written into it."""
+    """The folder of `--csv`, new or existing; raises a `DesignError` if it is not writable."""
     if folder is not None and (problem := _problem(folder, _folder_problem)) is not None:
         raise refuse("--csv", f"{folder} cannot be written into: {problem}", "Choose another folder")
     return folder
 
 
 def _real_path(path: Path) -> Path:
-    """The path without links, where they do not end in a loop."""
+    """The path without links, unless they form a loop."""
     return Path(os.path.realpath(path))
 
 
 def _problem(path: Path, refused: Callable[[Path], str | None]) -> str | None:
-    """Why a file or folder cannot be written; tried, not concluded from its mode."""
+    """Reason why a file or folder cannot be written, from a trial and not from its mode."""
     try:
         return refused(path)
-    except OSError as error:  # a name that is too long, a loop of links, a folder that may not be looked into
+    except OSError as error:  # a name that is too long, a loop of links, a folder that may not be read
         return error.strerror or str(error)
 
 
@@ -127,7 +127,7 @@ def _file_problem(path: Path) -> str | None:
         return None
     folder = _real_path(path).parent
     if not folder.is_dir():
-        return f"there is no folder {path.parent}"
+        return f"folder {path.parent} not found"
     with tempfile.TemporaryFile(dir=folder):
         return None
 
@@ -143,7 +143,7 @@ def _is_device(path: Path) -> bool:
 
 
 def make_folder(folder: Path) -> None:
-    """Make the folder for outputs where there is none; a command that fails leaves no empty one."""
+    """Make the folder for outputs if it does not exist; a failed command leaves no empty folder."""
     pending = _PENDING.get()
     if pending is not None and not folder.exists():
         pending.folders.append(folder)
@@ -151,7 +151,7 @@ def make_folder(folder: Path) -> None:
 
 
 def write(target: str | Path, content: str | bytes, option: str) -> None:
-    """Write to a file, which is in its place at the end of the command, or to stdout for `-`; raises where the disk refuses."""
+    """Write to a file at the end of the command, or to stdout for `-`; raises if the disk refuses."""
     data = content.encode() if isinstance(content, str) else content
     if str(target) == STDOUT:
         print_bytes(data)
@@ -170,7 +170,7 @@ def write(target: str | Path, content: str | bytes, option: str) -> None:
 
 
 def save(target: str | Path, content: str | bytes, option: str) -> None:
-    """Write to a file and say so once it is there, or to stdout for `-`."""
+    """Write to a file and print a note afterwards, or to stdout for `-`."""
     write(target, content, option)
     if str(target) != STDOUT:
         announce(f"Wrote {target}")

@@ -1,4 +1,4 @@
-"""The progress bar of a long computation on stderr: what is done, how far, how long still. Nothing where stderr is no terminal."""
+"""Progress bar of a long computation on stderr: step, fraction, remaining time. Nothing if stderr is not a terminal."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flexstage.base.text import printable
 
 
 class ProgressBar:
-    """A bar that shows the steps it is called with; `left` are the seconds of the last one."""
+    """A bar that shows the steps it is called with; `left` is the remaining time of the last step [s]."""
 
     def __init__(self, shown: Any | None) -> None:
         self._shown = shown
@@ -31,7 +31,7 @@ class ProgressBar:
         self._show(step.text, step.fraction)
 
     def share(self, text: str, share: float) -> None:
-        """Show the share of a work that is done, and how long the rest takes at its pace."""
+        """Show the completed share of a computation, and the remaining time at this rate."""
         self.step(Step(text, share, seconds_left(share, time.monotonic() - self._begun)))
 
     def _show(self, text: str, fraction: float) -> None:
@@ -41,7 +41,7 @@ class ProgressBar:
 
 
 class ProgressLines(ProgressBar):
-    """Tells each step as a line on stderr, for a program that shows it: `progress`, the fraction, seconds left or a dash, the text."""
+    """Prints each step as a line on stderr for other programs: `progress`, the fraction, remaining seconds or a dash, the text."""
 
     def __init__(self) -> None:
         super().__init__(None)
@@ -58,7 +58,7 @@ def _clock(seconds: float) -> str:
 
 @contextmanager
 def progress_bar() -> Generator[ProgressBar]:
-    """A bar that is gone when the work is done; lines where the environment asks for them (`FLEXSTAGE_PROGRESS=lines`)."""
+    """A bar that is removed at the end; lines if the environment requests them (`FLEXSTAGE_PROGRESS=lines`)."""
     if os.environ.get(LINES):
         yield ProgressLines()
         return

@@ -1,4 +1,4 @@
-"""Lines on the terminal: results to stdout, all else to stderr; and what becomes of what cannot be written there, or must not."""
+"""Lines on the terminal: results to stdout, everything else to stderr; control characters and write errors."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def print_result(text: str = "") -> None:
 
 
 def print_note(text: str) -> None:
-    """Print a line that is not the result (progress, where a file was written) to stderr."""
+    """Print a line other than a result (progress, the path of a written file) to stderr."""
     sys.stderr.write(f"{text}\n")
 
 
@@ -34,7 +34,7 @@ def print_warning(text: object) -> None:
 
 
 def print_styled(text: str) -> None:
-    """Print a result to stdout in which escape sequences are this program's own: what others wrote in it is printable."""
+    """Print a result with escape sequences of this program to stdout; control characters of users are escaped before."""
     encoding = sys.stdout.encoding or "utf-8"
     print_bytes(text.encode(encoding, "backslashreplace"))
 
@@ -48,10 +48,10 @@ def print_bytes(data: bytes) -> None:
 
 @contextmanager
 def streams() -> Generator[None]:
-    """Stdout and stderr as a command needs them.
+    """Stdout and stderr of a command.
 
-    What would steer the terminal is written as its escape. What stdout refuses (a full disk, a closed stream) is a finding; a reader that
-    has gone is a `BrokenPipeError`, once. What stderr refuses is lost: nobody is there to be told.
+    Control characters are written as escapes. A refused write to stdout (a full disk, a closed stream) is an error; a closed pipe is one
+    `BrokenPipeError`. A refused write to stderr is ignored.
     """
     _fill()
     before = sys.stdout, sys.stderr
@@ -66,12 +66,12 @@ def streams() -> Generator[None]:
 
 
 def _fill() -> None:
-    """Put something in the place of standard streams that are closed, which files that are opened would take. Stdout fails still."""
+    """Open replacements for closed standard streams, so that files do not get their numbers. Stdout still fails."""
     for number, mode in enumerate((os.O_RDONLY, os.O_RDONLY, os.O_WRONLY)):
         try:
             os.fstat(number)
         except OSError:
-            os.open(os.devnull, mode)  # takes the lowest number that is free
+            os.open(os.devnull, mode)  # takes the lowest free number
 
 
 def _stream(given: TextIO | None, number: int) -> TextIO:
@@ -87,31 +87,31 @@ def _stream(given: TextIO | None, number: int) -> TextIO:
 
 
 class _Raw(io.FileIO):
-    """A stream's bytes. After the first refusal they go nowhere; where `told`, it is a finding, or the reader has gone."""
+    """Bytes of a stream. After the first refusal they are discarded; if `told`, it raises an error, or `BrokenPipeError`."""
 
     def __init__(self, number: int, *, told: bool) -> None:
         super().__init__(number, "w", closefd=False)
         self._told, self._refused = told, False
 
     def write(self, data: Buffer, /) -> int:
-        """Write some of the bytes; how many."""
+        """Write some of the bytes; returns their number."""
         try:
             while not self._refused:
                 count = super().write(data)
                 if count is not None:
                     return count
-                time.sleep(0.01)  # the reader's end is full, and does not block
+                time.sleep(0.01)  # the pipe is full and does not block
         except OSError as error:
             self._refused = True
             if self._told and isinstance(error, BrokenPipeError):
                 raise
             if self._told:
-                raise refuse("stdout", f"it cannot be written to: {error.strerror}", "Free space, or send it elsewhere") from None
+                raise refuse("stdout", f"it cannot be written to: {error.strerror}", "Free space, or redirect the output") from None
         return memoryview(data).nbytes
 
 
 class _Printable(io.TextIOWrapper):
-    """A stream of text without anything that steers a terminal."""
+    """A text stream without terminal control characters."""
 
     def write(self, text: str, /) -> int:
         """Write text."""

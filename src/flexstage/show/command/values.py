@@ -1,4 +1,4 @@
-"""Values in the texts of options: quantities with units, motions of the platform, random inputs."""
+"""Values in the texts of options: quantities with units, platform motions, random inputs."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from flexstage.spatial.frame import COMPONENTS
 
 _Value = TypeVar("_Value")
 _Name = TypeVar("_Name")
-_ASD_EXAMPLE = 'Write for example --input-asd "ground.z=1 nm/Hz^0.5", or an acceleration, "ground.z=1e-5 m/s^2/Hz^0.5"'
+_ASD_EXAMPLE = 'Use e.g. --input-asd "ground.z=1 nm/Hz^0.5", or an acceleration, "ground.z=1e-5 m/s^2/Hz^0.5"'
 
 
 class Values:
-    """Reads texts and gathers what is wrong with them, so that all of it is told together."""
+    """Reads texts and collects their errors, so that all are reported together."""
 
     def __init__(self) -> None:
         self.findings: list[Finding] = []
 
     def attempt(self, action: Callable[[], _Value]) -> _Value | None:
-        """What an action gives; nothing, and its findings noted, where it fails."""
+        """The result of an action; `None` with its errors collected if it fails."""
         try:
             return action()
         except DesignError as error:
@@ -34,7 +34,7 @@ class Values:
             return None
 
     def value(self, option: str, text: str | None, quantity: Quantity) -> float | None:
-        """The value of a text in SI units; nothing where it is absent or wrong."""
+        """The value of a text in SI units; `None` if it is absent or wrong."""
         return None if text is None else self.attempt(lambda: parse(text, quantity, where=option))
 
 
@@ -44,7 +44,7 @@ def names(texts: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def first_that_parses(text: str, known: Mapping[_Name, Quantity]) -> tuple[_Name, float] | None:
-    """The name of the first quantity that a text is of, and its value in SI units; nothing where it is of none."""
+    """The name of the first quantity whose unit a text has, and its value in SI units; `None` if no quantity fits."""
     for name, quantity in known.items():
         try:
             return name, parse(text, quantity)
@@ -54,20 +54,20 @@ def first_that_parses(text: str, known: Mapping[_Name, Quantity]) -> tuple[_Name
 
 
 def amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
-    """What `--amplifier` says, each by its unit."""
+    """Values of `--amplifier`, assigned by their units."""
     known = {"bandwidth": FREQUENCY, "resistance": RESISTANCE, "current": CURRENT}
     found: dict[str, float] = {}
     for text in texts:
         if (fit := first_that_parses(text, known)) is None:
             what = f'found "{text}", which is no frequency, resistance or current'
-            values.findings.append(Finding("--amplifier", what, 'Write for example "500 Hz", "50 ohm" or "0.2 A"'))
+            values.findings.append(Finding("--amplifier", what, 'Use e.g. "500 Hz", "50 ohm" or "0.2 A"'))
         else:
             found[fit[0]] = fit[1]
     return found
 
 
 def read_pairs(texts: Sequence[str], option: str, read: Callable[[str, str, str], _Value]) -> dict[str, _Value]:
-    """Read texts NAME=VALUE of an option by `read(name, value, where)`; refuse all that are wrong at once.
+    """Read texts NAME=VALUE of an option by `read(name, value, where)`; report all errors together.
 
     >>> read_pairs(["x=5 um"], "--at", lambda name, value, where: parse(value, DISPLACEMENT, where=where))
     {'x': 5e-06}
@@ -76,7 +76,7 @@ def read_pairs(texts: Sequence[str], option: str, read: Callable[[str, str, str]
     for text in texts:
         name, _, value = (part.strip() for part in text.partition("="))
         if name in found:
-            values.findings.append(Finding(f"{option} {name}", "it is given twice", "Say one value"))
+            values.findings.append(Finding(f"{option} {name}", "given twice", "Give one value"))
         elif (one := values.attempt(partial(read, name, value, f"{option} {text}"))) is not None:
             found[name] = one
     require(values.findings)
@@ -84,12 +84,12 @@ def read_pairs(texts: Sequence[str], option: str, read: Callable[[str, str, str]
 
 
 def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]:
-    """Amounts [m, rad] by motion of the platform from texts AXIS=VALUE of an option; all mistakes are reported together."""
+    """Amounts [m, rad] by platform motion from texts AXIS=VALUE of an option; all errors are reported together."""
 
     def read(name: str, value: str, where: str) -> float:
         if name not in COMPONENTS or not value:
-            advice = f"Write for example z=150um; {suggest_nearest(name, COMPONENTS)}"
-            raise refuse(where, "this names no motion and value", advice)
+            advice = f"Use e.g. z=150um; {suggest_nearest(name, COMPONENTS)}"
+            raise refuse(where, "must be a motion and a value", advice)
         return abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=where))
 
     return read_pairs(texts, option, read)
@@ -110,9 +110,9 @@ def band_limits(band: tuple[str, str] | None) -> tuple[float, float] | None:
 
 
 def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]:
-    """White spectra by input from texts INPUT=AMPLITUDE DENSITY of `--input-asd`, of the input or of its first or second rate.
+    """White spectra by input from texts INPUT=AMPLITUDE DENSITY of `--input-asd`, of the input or of its first or second derivative.
 
-    All mistakes are told together.
+    All errors are reported together.
     """
     return read_pairs(densities, "--input-asd", partial(_spectrum, model))
 

@@ -21,14 +21,14 @@ _Shares = Mapping[str, Mapping[str, float]]
 
 
 def loss_figure(lost: LostMotion) -> Any:
-    """The lost motion of every actuator as a bar of its parts."""
+    """The lost motion of every actuator as a stacked bar."""
     budgets = {name: named_budget(lost, name) for name in lost.loss.rows}
     totals = [percent(sum(shares.values()), 3) for shares in budgets.values()]
     return _bar_figure([(_percents(budgets), totals, "lost motion [% of the stroke]")])
 
 
 def energy_figure(lost: LostMotion) -> Any:
-    """Where the stroke goes: the strain energy of the parts when one actuator expands and nothing else acts."""
+    """Strain energy of the parts when one actuator expands without other loads."""
     totals = first_design(lost.energy.values, 2).sum(axis=0)
     texts = [to_typography(f"{number(1e-6 * float(total), 3)} uJ/um^2") for total in totals]
     return _bar_figure([(_percents(energy_shares(lost)), texts, "share of the strain energy [%]")])
@@ -57,7 +57,7 @@ def _percents(shares: _Shares) -> _Shares:
 
 
 def _bar_figure(groups: Sequence[tuple[_Shares, Sequence[str], str]]) -> Any:
-    """Bars of parts, a panel a group: bars by name, the text at the end of each, and the label of the axis."""
+    """Stacked bars, one panel for each group: bars by name, the text at the end of each, and the label of the axis."""
     parts = _largest_parts({f"{place} {name}": each for place, (shares, _, _) in enumerate(groups) for name, each in shares.items()})
     across = max(1, int(FULL / (text_width(parts, 7.5) + 0.24)))
     with style_context():
@@ -66,7 +66,7 @@ def _bar_figure(groups: Sequence[tuple[_Shares, Sequence[str], str]]) -> Any:
         row = panels(figure, 1, len(groups), Margins(left=left, top=top, across=left))[0]
         for axes, group in zip(row, groups, strict=True):
             _stack_bars(axes, *group, parts)
-        if parts:  # massless axial springs lose nothing: there is nothing to name
+        if parts:  # massless axial springs have no lost motion
             handles, labels = row[0].get_legend_handles_labels()
             style = {"handlelength": 0.9, "handleheight": 0.9, "columnspacing": 1.4, "borderaxespad": 0.0}
             figure.legend(handles, labels, loc="upper left", ncols=across, **style)
@@ -94,7 +94,7 @@ def _stack_bars(axes: Any, shares: _Shares, totals: Sequence[str], label: str, p
 
 
 def _largest_parts(shares: _Shares) -> dict[str, Any]:
-    """The largest parts and links of other units, the rest last, with their colours."""
+    """The largest parts and links of other units, the sum of the others last, with their colours."""
     parts = dict.fromkeys(part for each in shares.values() for part, share in each.items() if share)
     size = {part: max(abs(each.get(part, 0.0)) for each in shares.values()) for part in parts}
     least = 2e-3 * max(size.values(), default=0.0)

@@ -18,7 +18,7 @@ _ISOTROPIC = 1e-6
 
 
 def directional_figure(statics: Statics) -> Any:
-    """Stiffness in the plane by direction, other freedoms free and held, with principal axes, as a matplotlib Figure [N/um].
+    """Stiffness in the plane by direction, other DOFs free and fixed, with principal axes, as a matplotlib Figure [N/um].
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -30,8 +30,8 @@ def directional_figure(statics: Statics) -> Any:
     with style_context():
         figure = canvas(HALF, 1.12 * HALF)
         axes = figure.add_axes((0.13, 0.2, 0.74, 0.74 / 1.12), projection="polar")
-        both = (("others held", statics.held, SERIES[0]), ("others free", statics.free, SERIES[1]))
-        curves = [curve for curve in both if not np.isnan(curve[1].principal).any()]  # none where the model locks the plane
+        both = (("others fixed", statics.held, SERIES[0]), ("others free", statics.free, SERIES[1]))
+        curves = [curve for curve in both if not np.isnan(curve[1].principal).any()]  # no curve if the model locks the plane
         for name, stiffness, colour in curves:
             radius = 1e-6 * _along(stiffness)
             axes.plot(_ANGLES, radius, color=colour, label=f"{name}: {_values(stiffness)}")

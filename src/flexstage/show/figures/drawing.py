@@ -1,4 +1,4 @@
-"""A figure as a file of its own: SVG, PDF or PNG by the name's ending."""
+"""A figure as a separate file: SVG, PDF or PNG by the ending of the name."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ FORMATS = (".svg", ".pdf", ".png")
 
 
 def format_of(name: str) -> str:
-    """The format a file name asks for. Raises `DesignError` for an unknown ending.
+    """The format of a file name. Raises `DesignError` for an unknown ending.
 
     >>> format_of("plan.SVG")
     '.svg'
     """
     ending = PurePath(name).suffix.lower()
     if ending not in FORMATS:
-        raise refuse(name, f'the ending "{ending}" is no format a drawing can have', f"End the name in {', '.join(FORMATS)}")
+        raise refuse(name, f'unknown format "{ending}"', f"End the name in {', '.join(FORMATS)}")
     return ending
 
 
 def drawing(figure: Any, ending: str) -> bytes:
-    """The figure as a file's content; the same figure always gives the same bytes.
+    """The figure as a file's content; equal figures have equal bytes.
 
     >>> from flexstage.show.figures.style import canvas
     >>> drawing(canvas(1.0, 1.0), ".svg")[:5]

@@ -1,4 +1,4 @@
-"""Writing figures: SVG that stands inside a page and takes its colours and font from it; PNG for everything else."""
+"""Writing figures: SVG with the colours and font of the page around it; PNG for everything else."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from flexstage.show.figures.style import THEME, style_context
 
 _TAG = re.compile(r"<[^<>]+>")
 _ITS_OWN = re.compile(r' id="[\w.]+_\d+"|xlink:(?=href)|; font-family: [^;"]+| style="image-rendering[^"]+"|\n')
-"""In a tag of matplotlib's what a page has no use for: numbers of groups, an old name space, a font, lines."""
+"""Parts of matplotlib's tags without use in a page: numbers of groups, an old name space, a font, lines."""
 _DIGITS = re.compile(r"(?<=\.\d)\d+(?=[ \"])")
-"""Those beyond a tenth of a point."""
+"""Digits beyond a tenth of a point."""
 _BETWEEN = re.compile(r">\s*(?:<defs>\s*<style.*?</defs>)?\s*(?=<|$)", re.DOTALL)
-"""Between tags white space, and a style of all that is on a page."""
+"""White space between tags, and a style that the page has already."""
 
 
 def to_svg(figure: Any, name: str, description: str) -> str:
-    """The figure as an SVG element to stand inside a page; `name` keeps its identifiers apart from those of other figures.
+    """The figure as an SVG element for a page; `name` makes its identifiers unique.
 
-    The same figure always gives the same text. Colours of ink, rules and paper are the page's variables, with the style's own as default.
-    `description` is read to those who cannot see the picture.
+    Equal figures have equal texts. Colours of ink, rules and paper are the page's variables, with the style's own as default.
+    `description` is the text for screen readers.
 
     >>> from flexstage.show.figures.style import canvas
     >>> to_svg(canvas(1.0, 1.0), "empty", "nothing")[:33]
@@ -40,7 +40,7 @@ def to_svg(figure: Any, name: str, description: str) -> str:
 
 
 def _tag_of_page(found: re.Match[str]) -> str:
-    """A tag in the page's colours and font."""
+    """A tag with the page's colours and font."""
     tag = _ITS_OWN.sub("", found[0])
     if tag.startswith("<image"):
         return tag

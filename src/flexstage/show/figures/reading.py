@@ -1,4 +1,4 @@
-"""What a cursor over a figure in a page reads: its panels and curves as data beside the picture, which stands as it is in print."""
+"""Data for the cursor over a figure in a page: its panels and curves, next to a picture that also prints."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _DIGITS = 5
 
 @dataclass(frozen=True)
 class Spot:
-    """A place of a figure that is named: `text` at `x` and, in the panel number `panel`, `y`; `plays` is a motion of the page's viewer.
+    """A named point of a figure: `text` at `x` and, in the panel number `panel`, `y`; `plays` is a motion of the page's viewer.
 
-    Without a y it is said where a reading comes near it.
+    Without a y its text appears if the cursor is close to x.
     """
 
     x: float
@@ -31,10 +31,10 @@ class Spot:
 
 
 def reading(figure: Any, spots: Iterable[Spot] = ()) -> str:
-    """The panels of a drawn figure as JSON: where they stand in points, their axes, and the curves that have a label.
+    """The panels of a drawn figure as JSON: their positions in points, their axes, and the curves that have a label.
 
-    A curve without a label has that of the curve that looks like it in the same column, and is left out where there is none; a panel
-    without a name has that of the one beside it. What curves stand over is said once, as `over`; the x of a curve is its number there.
+    A curve without a label takes that of the curve with equal style in the same column, and is left out if there is none. A panel
+    without a name takes that of the neighbouring panel. Abscissae are listed once, as `over`; the x of a curve is its number there.
 
     >>> from flexstage.show.figures.style import canvas
     >>> figure = canvas(1.0, 1.0)
@@ -61,7 +61,7 @@ def _is_named(line: Any) -> bool:
 
 
 def _look(axes: Any, line: Any) -> tuple[float, str, str]:
-    """What a reader tells the curves of a column apart by."""
+    """Style that distinguishes the curves of a column."""
     return round(float(axes.get_position().x0), 6), str(line.get_color()), str(line.get_linestyle())
 
 

@@ -1,4 +1,4 @@
-"""Frequency responses: magnitude and phase over frequency, the platform's modes marked."""
+"""Frequency responses: magnitude and phase over frequency, with the platform's modes marked."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _DECADES = 1e-4
 
 
 def response_figure(response: Response, modes: Modes | None = None) -> Any:
-    """For the first outputs the response to the input that moves each most: magnitude and phase, as a matplotlib Figure.
+    """Responses of the first outputs to the input with the largest effect on each: magnitude and phase, as a matplotlib Figure.
 
     Curves of the same unit share a column. The phase is that of e^{+j omega t}, unwrapped from the lowest frequency.
 
@@ -106,7 +106,7 @@ def _mode_marks(axes: Any, modes: Modes | None, response: Response) -> None:
 
 
 def _plain_ticks(axis: Any, steps: tuple[float, ...]) -> None:
-    """Ticks of a logarithmic axis as plain numbers at these multiples of powers of ten, and no others."""
+    """Ticks of a logarithmic axis as plain numbers, only at these multiples of powers of ten."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
     axis.set_major_locator(LogLocator(subs=steps, numticks=12))
@@ -115,7 +115,7 @@ def _plain_ticks(axis: Any, steps: tuple[float, ...]) -> None:
 
 
 def _start(response: Response, modes: Modes | None) -> float:
-    """The lowest frequency shown: a decade below the first mode, what lies below is flat."""
+    """The lowest frequency shown: a decade below the first mode; lower responses are constant."""
     low = float(response.frequencies[0])
     return low if modes is None else max(low, 0.12 * float(first_design(modes.frequencies, 1)[0]))
 

@@ -1,4 +1,4 @@
-"""What a stage does over its stroke, drawn: a panel a quantity."""
+"""Results over a stroke: a panel for each quantity."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from flexstage.show.viewer.motions import Curve
 _ACROSS = 3
 _HEIGHT = 1.45
 _LEAST_SPAN = 1e-3
-"""Of the largest value: what changes by less is drawn as the nearly straight line that it is."""
+"""Smallest span relative to the largest value: smaller changes are drawn as a nearly straight line."""
 
 
 def stroke_figure(curves: Sequence[Curve], beyond: Array) -> Any:
-    """Curves over the first one, as a matplotlib Figure; points that are `beyond` (p,) a limit are shaded.
+    """Curves over the first one, as a matplotlib Figure; points `beyond` (p,) a limit are shaded.
 
     >>> curves = (Curve("platform.x", "mm", np.array([0.0, 1.0])), Curve("force", "N", np.array([0.0, 2.0])))
     >>> len(stroke_figure(curves, np.array([False, True])).axes)
@@ -58,6 +58,6 @@ def _span(limits: tuple[float, float]) -> tuple[float, float]:
 
 
 def _around(place: Array, point: int) -> tuple[float, float]:
-    """Half-way to the neighbours."""
+    """The interval up to half-way to the neighbours."""
     before, after = place[max(point - 1, 0)], place[min(point + 1, len(place) - 1)]
     return 0.5 * float(place[point] + before), 0.5 * float(place[point] + after)

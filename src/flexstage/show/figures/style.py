@@ -1,4 +1,4 @@
-"""The one style of all figures: colours that the colour-blind can tell apart, quiet axes, fonts of the page they stand in."""
+"""The common style of all figures: colours for colour-blind readers, light axes, fonts of the page."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ PAPER = "#fefefe"
 DRIVE = "#8a5200"
 GAUGE = "#9c1f42"
 ALONG, ABOUT = "#1d5fd1", "#b3261e"
-"""Motions: along an axis, about one."""
+"""Colours of translations along an axis and rotations about one."""
 THEME = {INK: "ink", MUTED: "muted", GRID: "rule", PAPER: "paper", DRIVE: "drive", GAUGE: "gauge", ALONG: "along", ABOUT: "about"}
 """Colours that are variables of a page."""
 SERIES = ("#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377", "#997700", "#bbbbbb")
-"""Paul Tol's vibrant scheme (personal.sron.nl/~pault), one dark yellow added."""
+"""Paul Tol's vibrant scheme (personal.sron.nl/~pault), with a dark yellow added."""
 
 PASS, FAIL, WARN = "#2e8540", "#cc3311", "#b7791f"
 FULL, HALF, THIRD = 7.2, 3.5, 3.0
@@ -28,7 +28,7 @@ _RC: dict[Any, Any] = {
     "font.family": ["DejaVu Sans"],
     "font.size": 8.0,
     "text.color": INK,
-    "text.parse_math": False,  # names are the user's: a dollar sign is a dollar sign
+    "text.parse_math": False,  # names of users may contain dollar signs
     "axes.edgecolor": MUTED,
     "axes.labelcolor": INK,
     "axes.linewidth": 0.6,
@@ -64,9 +64,9 @@ _RC: dict[Any, Any] = {
 
 @contextmanager
 def style_context(salt: str = "flexstage") -> Generator[None]:
-    """The style, while a figure is drawn and written; matplotlib's settings are as before afterwards.
+    """The style, while a figure is drawn and written; matplotlib's settings are restored afterwards.
 
-    Identifiers of SVG that is written differ where its `salt` does.
+    Identifiers of written SVG depend on its `salt`.
 
     >>> with style_context():
     ...     from matplotlib import rcParams
@@ -80,7 +80,7 @@ def style_context(salt: str = "flexstage") -> Generator[None]:
 
 
 def canvas(width: float, height: float) -> Any:
-    """An empty `matplotlib.figure.Figure` of that size in inches.
+    """An empty `matplotlib.figure.Figure` of this size in inches.
 
     >>> canvas(2.0, 1.0).get_size_inches().tolist()
     [2.0, 1.0]
@@ -92,7 +92,7 @@ def canvas(width: float, height: float) -> Any:
 
 @dataclass(frozen=True)
 class Margins:
-    """Room around and between the panels of a figure, in inches. Stated, not searched for: a search draws everything twice."""
+    """Room around and between the panels of a figure, in inches. Fixed values: an automatic layout draws everything twice."""
 
     left: float = 0.5
     right: float = 0.1
@@ -124,7 +124,7 @@ def panels(figure: Any, rows: int, columns: int, margins: Margins, *, heights: S
 
 
 def _limit_margins(margins: Margins, size: tuple[float, float], count: tuple[int, int]) -> Margins:
-    """Margins that leave the panels a fifth of the figure at least: names that are too long for it are cut off."""
+    """Margins that leave the panels at least a fifth of the figure: longer names are cut off."""
     wide = margins.left + margins.right + (count[1] - 1) * margins.across
     high = margins.bottom + margins.top + (count[0] - 1) * margins.down
     x, y = min(1.0, 0.8 * size[0] / wide), min(1.0, 0.8 * size[1] / high)
@@ -132,7 +132,7 @@ def _limit_margins(margins: Margins, size: tuple[float, float], count: tuple[int
 
 
 def text_width(texts: Iterable[str], size: float = 8.0) -> float:
-    """About how wide the longest of some texts is, in inches.
+    """Approximate width of the longest of some texts, in inches.
 
     >>> round(text_width(["B1", "pivot.rz"]), 2)
     0.53

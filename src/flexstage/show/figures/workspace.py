@@ -1,4 +1,4 @@
-"""The workspace: what the platform reaches, projected on pairs of coordinates."""
+"""The workspace: reachable poses of the platform, projected on pairs of coordinates."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _CROSS: Mapping[str, Any] = {"color": SERIES[1], "markersize": 5, "linewidth": 1
 def workspace_figure(workspace: Workspace) -> Any | None:
     """Reachable poses, single-axis strokes and the commanded box, projected on pairs of coordinates, as a matplotlib Figure.
 
-    `None` for stages of one freedom, or whose reachable poses are not known.
+    `None` for stages with one DOF, or without known reachable poses.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -56,7 +56,7 @@ def _pairs(coordinates: tuple[str, ...]) -> list[tuple[str, str]]:
 
 @dataclass(frozen=True)
 class _Shown:
-    """A coordinate along one side of a panel, and the unit that it is shown in."""
+    """A coordinate of a panel, and its display unit."""
 
     name: str
     unit: DisplayUnit

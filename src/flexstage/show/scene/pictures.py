@@ -1,4 +1,4 @@
-"""Pictures of a stage: from three sides and above the corner, at rest or moved."""
+"""Pictures of a stage: from three sides and isometric, undeformed or displaced."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from flexstage.show.viewer.motions import Motion
 
 _MOVED = (Kind.PLATFORM, Kind.BODY, Kind.HINGE, Kind.DRIVE)
 _REACH = 0.11
-"""The largest motion in the picture of a mode, of the stage's diagonal."""
+"""Largest motion in the picture of a mode, relative to the stage's diagonal."""
 _ARM, _ARROW, _SMALL, _ALONE = 0.25, 0.24, 0.4, 0.9
 _IN_PLANE, _OUT_OF_PLANE = [0, 1, 5], [2, 3, 4]
 
@@ -39,10 +39,10 @@ def stage_picture(data: StageData, *, side: Side = Side.ISOMETRIC, width: float 
 
 
 def mode_picture(data: StageData, motion: Motion, *, width: float = FULL) -> Any | None:
-    """The stage moved as far as to be seen, over the platform's outline at rest, without gauges, as a matplotlib Figure.
+    """The stage displaced visibly, over the undeformed platform's outline, without gauges, as a matplotlib Figure.
 
-    Seen from above where the platform stays in its plane, else from above a corner. Arrows are the platform's motion: blue along, red
-    about; `None` where nothing moves.
+    Seen from above if the platform stays in its plane, else isometric. Arrows are the platform's motion: blue translation, red
+    rotation; `None` without a motion.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import stage_data
@@ -77,12 +77,12 @@ def _platform_twist(data: StageData, motion: Motion) -> tuple[Array, Array]:
 
 
 def _sizes(twist: Array, size: float) -> Array:
-    """How much a twist (6,) moves what lies at an arm's length of its reference, on a stage of that size."""
+    """Displacements by a twist (6,) at an arm's length from its reference, on a stage of this size."""
     return np.abs(twist) * np.array([1.0] * 3 + [_ARM * size] * 3)
 
 
 def _arrows(axes: Any, start: Array, twist: Array, size: float, seen: View) -> None:
-    """The platform's translation and rotation, each where it is not small beside the other, named where it is along one axis."""
+    """The platform's translation and rotation, each if not small compared with the other, named if along one axis."""
     sizes, foot = _sizes(twist, size), seen.project(start)
     for part, names, colour in ((slice(0, 3), "xyz", ALONG), (slice(3, 6), ("rx", "ry", "rz"), ABOUT)):
         own = float(np.linalg.norm(sizes[part]))
@@ -99,7 +99,7 @@ def _arrows(axes: Any, start: Array, twist: Array, size: float, seen: View) -> N
 
 
 def _turn(axes: Any, middle: Array, radius: float, sense: float, axis: str) -> None:
-    """A turn about the direction of sight: an arc with a head."""
+    """A rotation about the direction of sight: an arc with an arrowhead."""
     angles = np.sign(sense) * np.linspace(-0.75 * np.pi, 0.5 * np.pi, 40)
     arc = middle + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     axes.plot(*arc.T, color=ABOUT, linewidth=1.8)

@@ -1,4 +1,4 @@
-"""What each part and each outline of a body looks like: a skin in its own frame."""
+"""Shapes of parts and outlines of bodies: each a skin in its own frame."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def first_value(value: Number | None, default: float = 0.0) -> float:
 
 
 def part_length(part: Part) -> float:
-    """Length of a part along its x axis [m]; 0 where it has none (given matrices, joints).
+    """Length of a part along its x axis [m]; 0 if it has none (compliance matrices, joints).
 
     >>> from flexstage.parts.rod import Rod
     >>> part_length(Rod("steel", length=0.03, diameter=0.001))
@@ -41,7 +41,7 @@ def part_length(part: Part) -> float:
 
 
 def part_section(part: Part) -> tuple[float, float]:
-    """Extents of a part's end section along its y and z axes [m]; 0 where it has none.
+    """Extents of a part's end section along its y and z axes [m]; 0 if it has none.
 
     >>> from flexstage.parts.rod import Rod
     >>> part_section(Rod("steel", length=0.03, diameter=0.001))
@@ -57,7 +57,7 @@ def part_section(part: Part) -> tuple[float, float]:
 def part_skin(part: Part, marker: float, *, steps: int = 1) -> DrawnSurface:
     """The skin of a part in its link frame; a part without a shape of its own is a cube of edge `marker` [m].
 
-    No ring of it is farther from the next one than the part's length over `steps`.
+    The distance between rings is at most the part's length over `steps`.
 
     >>> from flexstage.parts.rod import Rod
     >>> len(part_skin(Rod("steel", length=0.03, diameter=0.001), 0.01).triangles)
@@ -83,7 +83,7 @@ def part_skin(part: Part, marker: float, *, steps: int = 1) -> DrawnSurface:
 
 
 def _more_rings(rings: Array, shares: Array, steps: int) -> tuple[Array, Array]:
-    """Rings (s, k, 3) at their shares (s,) and, where two are farther apart than 1 / steps, rings between them; and all shares."""
+    """Rings (s, k, 3) at their shares (s,), with further rings at distances of at most 1 / steps; and all shares."""
     counts = np.maximum(1, np.ceil(np.diff(shares) * steps - 1e-9)).astype(int)
     places = np.concatenate([number + np.arange(count) / count for number, count in enumerate(counts)] + [[len(counts)]])
     first = np.minimum(places.astype(int), len(counts) - 1)
@@ -92,7 +92,7 @@ def _more_rings(rings: Array, shares: Array, steps: int) -> tuple[Array, Array]:
 
 
 def simplification(solid: Solid) -> str:
-    """How an outline is drawn that is not drawn as it is; empty of all others.
+    """The simplification of a drawn outline; empty if it is drawn exactly.
 
     >>> simplification(Block("steel", (0.1, 0.1, 0.01)))
     ''
@@ -101,7 +101,7 @@ def simplification(solid: Solid) -> str:
 
 
 def solid_skin(solid: Solid) -> DrawnSurface:
-    """The skin of an outline in its own frame: its centre at the origin, a cylinder's axis along x; of holes their edges alone.
+    """The skin of an outline in its own frame: its centre at the origin, a cylinder's axis along x; of holes only their edges.
 
     >>> len(solid_skin(Block("steel", (0.1, 0.1, 0.01))).triangles)
     12

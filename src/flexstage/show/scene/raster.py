@@ -1,4 +1,4 @@
-"""A raster of the nearest triangles and of the lines that they leave in sight: a depth buffer of all pixels at once."""
+"""A raster of the nearest triangles and of the visible lines: a depth buffer of all pixels at once."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import numpy as np
 from flexstage.base.number import Array
 
 _BIAS = 1.0
-"""How far a line may lie behind the farthest of the pixels around it and be seen still [pixels]."""
+"""Distance of a line behind the farthest of the pixels around it up to which it is visible [pixels]."""
 
 
 def nearest(corners: Array, shape: tuple[int, int]) -> tuple[Array, Array]:
-    """The nearest of triangles at the middle of each pixel, by number, -1 where there is none, and its depth.
+    """The nearest triangle at the middle of each pixel, by number, -1 without one, and its depth.
 
-    `corners` (t, 3, 3) are in pixels to the right, down, and towards the viewer; a triangle without area in the picture is not seen.
+    `corners` (t, 3, 3) are in pixels to the right, down, and towards the viewer; a triangle without projected area is not visible.
 
     >>> far = np.array([[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0]])
     >>> nearest(np.stack([far, 0.5 * far + [0.0, 0.0, 1.0]]), (1, 5))[0].tolist()
@@ -43,7 +43,7 @@ def nearest(corners: Array, shape: tuple[int, int]) -> tuple[Array, Array]:
 
 
 def normals(corners: Array) -> Array:
-    """Outward unit normals (t, 3), to the right, up and towards the viewer, of triangles in pixels; zero where there is no area.
+    """Outward unit normals (t, 3), to the right, up and towards the viewer, of triangles in pixels; zero without area.
 
     >>> normals(np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]]))[0, 2]
     np.float64(1.0)
@@ -54,7 +54,7 @@ def normals(corners: Array) -> Array:
 
 
 def planes(corners: Array, values: Array) -> Array:
-    """Coefficients (t, 3) of right, down and one in the values (t, 3) at triangles' corners, linear between; 0 where there is no area.
+    """Coefficients (t, 3) of right, down and one in the values (t, 3) at triangles' corners, linear between; 0 without area.
 
     >>> planes(np.array([[[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]]]), np.array([[1.0, 3.0, 5.0]])).tolist()
     [[1.0, 2.0, 1.0]]
@@ -87,12 +87,12 @@ def visible_lines(ends: Array, depth: Array) -> Array:
 
 
 def _runs(low: Array, high: Array, count: int) -> tuple[Array, Array]:
-    """The pixels of a line of so many whose middles lie from `low` on and below `high`: whose each is, and which."""
+    """The pixels of lines with this count whose middles are in [`low`, `high`): index of the line, and of the pixel."""
     first, last = (np.clip(np.ceil(each - 0.5), 0, count).astype(np.int32) for each in (low, high))
     return _ranges(first, np.maximum(last - first, 0))
 
 
 def _ranges(first: Array, counts: Array) -> tuple[Array, Array]:
-    """As many numbers as there are `counts` from the `first` on: whose each is, and which."""
+    """Consecutive numbers from `first`, `counts` of each: index of the range, and the number."""
     own = np.repeat(np.arange(len(counts), dtype=np.int32), counts)
     return own, (first - np.cumsum(counts) + counts)[own] + np.arange(len(own), dtype=np.int32)

@@ -1,4 +1,4 @@
-"""Skins: the triangles and sharp edges that pictures and the viewer are made of, and the primitives that are built of them."""
+"""Skins: triangles and sharp edges for pictures and the viewer, and their primitives."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.spatial.frame import Frame
 
 
 class Kind(Enum):
-    """What is shown; a style gives each kind its colour."""
+    """Kind of a drawn part; a style gives each kind its colour."""
 
     PLATFORM = "platform"
     BODY = "body"
@@ -24,14 +24,14 @@ class Kind(Enum):
 
 
 ROUND = slice(0)
-"""Steps between rings of a round section, along which no edge is sharp."""
+"""Steps between rings of a round section: no edge is sharp."""
 
 
 @dataclass(frozen=True, eq=False)
 class DrawnSurface:
     """A surface: `points` (n, 3) [m], `triangles` (t, 3) of them, counter-clockwise from outside, and sharp `edges` (e, 2).
 
-    Where two bodies carry it, point k follows the first by 1 - `share`[k] and the second by `share`[k].
+    If two bodies carry it, point k follows the first by 1 - `share`[k] and the second by `share`[k].
     """
 
     points: Array
@@ -40,12 +40,12 @@ class DrawnSurface:
     share: Array
 
     def placed(self, frame: Frame) -> DrawnSurface:
-        """The skin of a frame in the one that the frame is placed in."""
+        """The skin transformed from a frame into its parent frame."""
         return replace(self, points=self.points @ frame.rotation.T + frame.position)
 
 
 def join(skins: Sequence[DrawnSurface]) -> DrawnSurface:
-    """Skins as one.
+    """Merge skins.
 
     >>> bar = line(np.zeros((2, 3)))
     >>> join([bar, bar]).edges.tolist()
@@ -70,8 +70,8 @@ def loft(
 ) -> DrawnSurface:
     """The skin through rings (s, k, 3) of points, counter-clockwise seen from the last ring towards the first; end faces where `closed`.
 
-    The bodies' `shares` (s,) run from 0 at the first ring to 1 at the last, evenly if they are not given. Sharp are the rings that are
-    `ringed`, and the edges `along` the skin of these steps between rings (`ROUND`: of none).
+    The bodies' `shares` (s,) are 0 at the first ring and 1 at the last, by default evenly spaced. Sharp edges are the `ringed` rings,
+    and the edges `along` the skin at these steps between rings (`ROUND`: none).
 
     >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     >>> box = loft(np.stack([square, square + [0, 0, 1.0]]))

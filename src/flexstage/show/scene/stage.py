@@ -1,4 +1,4 @@
-"""The scene of a stage: the skins of its bodies, links, grounds and gauges, and the names to write beside them."""
+"""The scene of a stage: the skins of its bodies, links, grounds and gauges, and their labels."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Label:
 
 @dataclass(frozen=True, eq=False)
 class DrawnPiece:
-    """A skin in the stage's frame, the name (`B1/front`, `platform.plate`) and kind of what it shows, the bodies that carry it."""
+    """A skin in the stage's frame, its name (`B1/front`, `platform.plate`) and kind, and the bodies that carry it."""
 
     name: str
     kind: Kind
@@ -48,7 +48,7 @@ class DrawnPiece:
 class Scene:
     """Pieces and labels in the stage's frame [m]; `size` is the diagonal of the box around everything.
 
-    `references` are the bodies' reference points (3,), about which their twists turn them.
+    `references` are the bodies' reference points (3,) for their rotations.
     """
 
     pieces: tuple[DrawnPiece, ...]
@@ -58,10 +58,10 @@ class Scene:
 
 
 def scene(mechanism: Mechanism, *, steps: int = 1) -> Scene:
-    """The scene of the first design of a description; hinges are divided into `steps` along their length, so that they can be bent.
+    """The scene of the first design of a description; hinges are divided into `steps` along their length, to show bending.
 
-    Bodies without outlines are bars between their joints; where a joint lies off its body's outline a thin line joins them. Ground is shown
-    at each link that is fixed to it. Superelements are bars between their ports.
+    Bodies without outlines are bars between their joints; a thin line connects a joint off its body's outline with the body. Ground is
+    drawn at each link that is fixed to it. Superelements are bars between their ports.
 
     >>> scene(Mechanism("", bodies={})).pieces
     ()
@@ -95,7 +95,7 @@ def _span(points: Array) -> float:
 
 
 _Ends = tuple[Array, Array]
-"""Where a link meets its first and its second body, by the convention that x goes from the first to the second."""
+"""End points of a link at its first and its second body, by the convention that x goes from the first to the second."""
 
 
 def _ends(link: PlacedLink) -> _Ends:
@@ -116,7 +116,7 @@ def _joints(assembly: Assembly, ends: Mapping[str, _Ends]) -> dict[str, list[Arr
 
 
 def _body(body: PlacedBody, joints: list[Array], size: float) -> Iterator[DrawnPiece]:
-    """A body's outlines, or bars between its joints, and lines from joints that lie off the outlines to their nearest box point."""
+    """A body's outlines, or bars between its joints, and lines from joints off the outlines to their nearest box point."""
     kind = Kind.PLATFORM if body.name == PLATFORM else Kind.BODY
     solids = _solids(body.solids, kind, body.name)
     yield from solids
@@ -144,7 +144,7 @@ def _bars(joints: Sequence[Array], thickness: float) -> list[DrawnSurface]:
 
 
 def _drawn_bars(ends: Iterable[tuple[Array, Array]], thickness: float) -> list[DrawnSurface]:
-    """Bars of a square section; none between points that are one."""
+    """Bars of a square section; none between equal points."""
     return [_bar(first, second, thickness) for first, second in ends if np.linalg.norm(second - first) >= 1e-9]
 
 
@@ -190,7 +190,7 @@ def _gauge(name: str, sight: Sight, size: float) -> DrawnPiece:
 
 
 def _sights(assembly: Assembly) -> Iterator[tuple[str, Sight]]:
-    """What single gauges look at, by name; sums are their members."""
+    """Measured points of single gauges by name; sums are replaced by their members."""
     yield from ((name, gauge.single) for name, gauge in assembly.gauges.items() if gauge.single is not None)
 
 

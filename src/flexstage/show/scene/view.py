@@ -1,4 +1,4 @@
-"""Views: parallel projection of a stage from a direction, its image on matplotlib axes, and what is written over it."""
+"""Views: parallel projection of a stage, its image on matplotlib axes, and labels."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _DOTS = 160.0
 
 
 class Side(Enum):
-    """From where the stage is seen; the value is the direction towards the viewer and the direction that is up in the picture."""
+    """View direction of the stage; the value is the direction towards the viewer and the upward direction in the picture."""
 
     TOP = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
     FRONT = ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0))
@@ -76,7 +76,7 @@ def view(side: Side) -> View:
 def picture_axes(points: Array, seen: View, width: float, *, gap: float = 0.05, tallest: float = 1.1, below: float = 0.0) -> Any:
     """Axes in mm without a frame that fill a new figure of that `width` [inch], in which points (n, 3) [m] have room.
 
-    `gap` is the room around them, a share of the larger extent; `tallest` the largest height over the width; `below` [inch] is left free.
+    `gap` is the margin relative to the larger extent; `tallest` the largest height over the width; `below` [inch] is left free.
 
     >>> picture_axes(np.zeros((1, 3)), view(Side.TOP), 2.0).viewLim.intervalx.tolist()
     [-1.0, 1.0]
@@ -90,7 +90,7 @@ def picture_axes(points: Array, seen: View, width: float, *, gap: float = 0.05, 
 
 
 def fit(axes: Any, low: Array, high: Array) -> Any:
-    """The axes without a frame, one scale both ways, around a box from `low` to `high` (2,) [mm].
+    """The axes without a frame, with equal scales, around a box from `low` to `high` (2,) [mm].
 
     >>> fit(canvas(2.0, 1.0).add_axes((0.0, 0.0, 1.0, 1.0)), np.array([0.0, 0.0]), np.array([1.0, 1.0])).viewLim.intervalx.tolist()
     [-0.5, 1.5]
@@ -108,12 +108,12 @@ def _paper(axes: Any) -> Array:
 
 
 def _per_point(axes: Any) -> float:
-    """Length per point of paper, both ways alike."""
+    """Length per point of paper, equal in both directions."""
     return float(np.max(axes.viewLim.size / _paper(axes)))
 
 
 def pixels(axes: Any, points: Array, seen: View) -> tuple[Array, tuple[int, int]]:
-    """Points (n, 3) [m] in pixels of an image of the axes, to the right, down and towards the viewer; and how many rows and columns it has.
+    """Points (n, 3) [m] in pixels of an image of the axes, to the right, down and towards the viewer; and its rows and columns.
 
     >>> axes = fit(canvas(1.0, 1.0).add_axes((0.0, 0.0, 1.0, 1.0)), np.array([0.0, 0.0]), np.array([1.0, 1.0]))
     >>> pixels(axes, np.array([[1e-3, 0.0, 0.0]]), view(Side.TOP))
@@ -125,15 +125,15 @@ def pixels(axes: Any, points: Array, seen: View) -> tuple[Array, tuple[int, int]
 
 
 def show_image(axes: Any, image: Array) -> None:
-    """Show an image (h, w, 4) of as many pixels as `pixels` says on all of the axes: red, green, blue, opacity up to 255."""
+    """Show an image (h, w, 4) of the size from `pixels` on all of the axes: red, green, blue, opacity up to 255."""
     extent = (*axes.get_xlim(), *axes.get_ylim())
     axes.imshow(image, extent=extent, interpolation="none", aspect="auto")
 
 
 def draw(axes: Any, data: StageData, seen: View, points: Array | None = None, kinds: Container[Kind] = tuple(Kind)) -> None:
-    """Draw what is of these kinds as an image on axes of `fit`, its vertices at `points` (n, 3) [m] if they are given.
+    """Draw the parts of these kinds as an image on axes of `fit`, with vertices at `points` (n, 3) [m] if specified.
 
-    The platform is translucent, so that what is under it shows.
+    The platform is translucent, so that parts under it are visible.
     """
     from matplotlib.colors import to_rgba
 
@@ -157,13 +157,13 @@ def draw(axes: Any, data: StageData, seen: View, points: Array | None = None, ki
 
 
 def _over(colours: Array, ground: Array) -> Array:
-    """Colours (n, 4) up to 255 over a ground that is opaque or empty."""
+    """Colours (n, 4) up to 255 over an opaque or empty ground."""
     share = np.where(ground[:, 3:] > 0, colours[:, 3:] / 255.0, 1.0)
     return np.column_stack([share * colours[:, :3] + (1.0 - share) * ground[:, :3], np.maximum(colours[:, 3], ground[:, 3])])
 
 
 def _lines(part: Array, edges: Array) -> Array:
-    """The pixels (h, w) of edges, and those where one part ends and the next begins."""
+    """The pixels (h, w) of edges, and those at the boundary of two parts."""
     drawn = edges.copy()
     drawn[:, :-1] |= part[:, :-1] != part[:, 1:]
     drawn[:-1] |= part[:-1] != part[1:]
@@ -171,7 +171,7 @@ def _lines(part: Array, edges: Array) -> Array:
 
 
 def _tones(normal: Array) -> Array:
-    """How light faces are by their normals (t, 3): less the more they turn away from the light."""
+    """Brightness of faces by their normals (t, 3): lower for larger angles to the light."""
     return 0.62 + 0.38 * np.maximum(0.0, normal @ _LIGHT)
 
 
@@ -189,7 +189,7 @@ def edges_of(data: StageData, seen: View, kind: Kind) -> Array:
 
 
 def solid_parts(data: StageData, kind: Kind) -> list[int]:
-    """The numbers of the parts of a kind that are more than lines.
+    """The numbers of the parts of a kind with triangles.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import still_data
@@ -200,7 +200,7 @@ def solid_parts(data: StageData, kind: Kind) -> list[int]:
 
 
 def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
-    """Write names beside their points, moved apart where they would cover one another.
+    """Write names next to their points, moved apart to avoid overlaps.
 
     >>> axes = canvas(1.0, 1.0).add_subplot()
     >>> write(axes, (Label("B1", (0.0, 0.0, 0.0), Kind.DRIVE),), view(Side.TOP))
@@ -214,17 +214,17 @@ def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
 
 
 def name(axes: Any, place: Array, text: str, colour: str) -> None:
-    """Write a name at a place (2,), on a lighter ground."""
+    """Write a name at a position (2,), on a lighter ground."""
     box = {"boxstyle": "round,pad=0.18", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
     axes.text(*place, text, ha="center", va="center", fontsize=7, color=colour, fontweight="bold", bbox=box if text else None)
 
 
 _LETTER, _ROUND, _LINE = 5.0, 4.0, 11.5
-"""Width of a letter of a name, what its box adds, and the box's height [pt]."""
+"""Width of a letter of a name, additional width and height of its box [pt]."""
 
 
 def _spread(places: Array, sizes: Array) -> Array:
-    """Places (n, 2) pushed apart, a little a round, until boxes of those sizes (n, 2) no longer overlap."""
+    """Positions (n, 2) moved apart in small steps until boxes of those sizes (n, 2) no longer overlap."""
     places, size = np.array(places), 0.5 * (sizes[:, None] + sizes[None, :])
     for _ in range(60):
         gap = places[:, None] - places[None, :]
@@ -239,7 +239,7 @@ def _spread(places: Array, sizes: Array) -> Array:
 
 
 def triad(axes: Any, seen: View) -> None:
-    """The stage's axes as a small sign in the lower left corner.
+    """The stage's axes as a small symbol in the lower left corner.
 
     >>> axes = canvas(1.0, 1.0).add_subplot()
     >>> triad(axes, view(Side.TOP))
@@ -255,7 +255,7 @@ def triad(axes: Any, seen: View) -> None:
 
 
 def arrows(axes: Any, starts: Sequence[Array], reaches: Sequence[Array], colour: str, width: float) -> None:
-    """Arrows from points by so much; `width` of their shafts in points."""
+    """Arrows from points by these vectors; `width` of their shafts in points."""
     (x, y), (across, up) = np.transpose(starts), np.transpose(reaches)
     axes.quiver(
         x,

@@ -1,1 +1,1 @@
-"""The sections of a report, one file a theme: each takes a complete analysis and returns a section, or None without its results."""
+"""The sections of a report, one file for each subject: each takes a complete analysis and returns a section, or `None`."""

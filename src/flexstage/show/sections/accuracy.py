@@ -21,15 +21,15 @@ def drift_section(analysis: Analysis) -> Section | None:
     if drift is None:
         return None
     text = (
-        "Free growth of all bodies and parts, redistributed by the elasticity of the links, per kelvin of uniform change and per gradient "
-        "of 1 K/m."
+        "Free expansion of all bodies and parts, redistributed by the elasticity of the links, per kelvin of uniform change and "
+        "per gradient of 1 K/m."
     )
     gauges = gauge_drift_table(drift)
-    return section("Thermal drift", [Prose(text), drift_table(drift), fold("What the gauges read", gauges)])
+    return section("Thermal drift", [Prose(text), drift_table(drift), fold("Gauge readings", gauges)])
 
 
 def error_section(analysis: Analysis) -> Section | None:
-    """Every source of pose error on one line an axis; `None` without it.
+    """Every source of pose error, one line for each axis; `None` without it.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

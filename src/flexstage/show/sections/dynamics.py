@@ -24,8 +24,8 @@ from flexstage.show.viewer.motions import Group
 _SHAPES = 6
 _LEAST, _NAMED = 0.01, 4
 SHAPES = (
-    "The amplitude is arbitrary. Dashed: the platform at rest. Arrows: how it moves, blue along and red about. Seen from above where it "
-    "stays in its plane."
+    "The amplitude is arbitrary. Dashed: the undeformed platform. Arrows: its motion, blue translation, red rotation. Seen from above if "
+    "it stays in its plane."
 )
 
 
@@ -42,8 +42,8 @@ def mode_section(analysis: Analysis, data: StageData) -> Section | None:
     if modes is None or not modes.names:
         return None
     text = (
-        "Undamped modes, strokes held. A mode is the platform's if the platform has a large share of the kinetic energy; modes of single "
-        "units that lie near the platform's are listed as local neighbours."
+        "Undamped modes, actuators fixed. In platform modes the platform has a large kinetic-energy fraction. Local modes of single units "
+        "near the platform modes are listed too."
     )
     shapes = tuple(_shapes(modes, data))
     gallery = [Abreast(shapes, narrow=True), Prose(SHAPES)] if shapes else []
@@ -60,7 +60,7 @@ def _shapes(modes: Modes, data: StageData) -> Iterator[Picture]:
 
 
 def _shares(modes: Modes, index: int) -> str:
-    """Whose the kinetic energy of a mode is: the platform, units and other bodies from a hundredth on."""
+    """Kinetic-energy fractions of a mode: the platform, units and other bodies above one per cent."""
     shares: dict[str, float] = {}
     for name, energy in zip(modes.bodies, first_design(modes.energies, 2)[:, index], strict=True):
         owner = name.partition("/")[0]
@@ -71,7 +71,7 @@ def _shares(modes: Modes, index: int) -> str:
 
 
 def response_section(analysis: Analysis) -> Section | None:
-    """Frequency responses to the strokes and to the ground; `None` where neither is known.
+    """Frequency responses to the strokes and to the ground; `None` without either.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -49,8 +49,8 @@ def kinematics_section(analysis: Analysis) -> Section | None:
     """
     kinematics = analysis.kinematics
     text = (
-        "The ideal stage: rigid bodies, hinges free about the axes they are meant to turn about and locked about all others. What follows "
-        "is for small motions about the drawn position, in the platform's reference point."
+        "The ideal stage: rigid bodies, hinges free about their intended axes and locked about all others. Mappings are for small motions "
+        "about the undeformed configuration, at the platform's reference point."
     )
     return section(
         "Kinematics",
@@ -85,11 +85,11 @@ def stiffness_section(analysis: Analysis) -> Section | None:
         return None
     polar = to_svg(directional_figure(statics), "polar", "Stiffness by direction in the plane")
     sag = () if analysis.deflection is None else (deflection_table(analysis.deflection),)
-    caption = "Stiffness in the plane by direction of the force. Free: what a push test measures. Held: all other motions are prevented."
+    caption = "Stiffness in the plane by direction of the force. Others free: as in a push test. Others fixed: no other motions."
     return section(
         "Stiffness",
         [
-            Prose("Stiffness of the platform with the strokes held, as seen at its reference point."),
+            Prose("Stiffness of the platform at its reference point, actuators fixed."),
             stiffness_table(statics),
             *([] if analysis.freedoms is None else [freedom_stiffness_table(analysis.freedoms)]),
             principal_table(statics),
@@ -107,7 +107,7 @@ def stiffness_section(analysis: Analysis) -> Section | None:
 
 
 def lost_motion_section(analysis: Analysis) -> Section | None:
-    """Gains, losses, their budget by part and the corrected mapping; `None` where there are none.
+    """Transmission ratios, losses, their budget by part and the corrected mapping; `None` without any.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -118,14 +118,14 @@ def lost_motion_section(analysis: Analysis) -> Section | None:
     if lost is None:
         return None
     text = (
-        "What elasticity takes from the ideal motion. The budget is exact: by virtual work every link contributes the force it carries "
-        "times the deformation it has in the ideal motion, and the contributions add up to the loss."
+        "Loss of the ideal motion by elasticity. The budget is exact: by virtual work every link contributes its force times its "
+        "deformation in the ideal motion. The contributions add up to the loss."
     )
     loss = to_svg(loss_figure(lost), "loss", "Lost motion by actuator and part")
     energy = to_svg(energy_figure(lost), "energy", "Strain energy by actuator and part")
     pictures = [
         Picture(loss, "Lost motion of each actuator by part and axis of its unit."),
-        Picture(energy, "Where the stroke goes: strain energy by part when one actuator expands and nothing else acts."),
+        Picture(energy, "Strain energy by part when one actuator expands without other loads."),
     ]
     return section(
         "Lost motion",

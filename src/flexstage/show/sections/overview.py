@@ -1,4 +1,4 @@
-"""The first page of a report: verdicts on the requirements, and the stage in a few numbers."""
+"""The first page of a report: verdicts on the requirements, and a summary of the stage."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.show.tables.requirements import is_met, verdict_table, verdict_te
 
 
 def headline(analysis: Analysis) -> Headline:
-    """How many requirements are met, and the worst margin.
+    """The number of met requirements, and the smallest margin.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -26,7 +26,7 @@ def headline(analysis: Analysis) -> Headline:
 
 
 def requirement_section(analysis: Analysis) -> Section | None:
-    """Verdicts with their values, those that fail before the others; `None` without requirements.
+    """Verdicts with their values, failed ones first; `None` without requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -35,12 +35,12 @@ def requirement_section(analysis: Analysis) -> Section | None:
     """
     if not analysis.verdicts:
         return None
-    note = "Judged by the lumped model, whichever model the rest of this report uses."
+    note = "Judged by the lumped model, for any model of this report."
     return section("Requirements", [verdict_table(sorted(analysis.verdicts, key=is_met), explained=True), Prose(note)])
 
 
 def change_section(analysis: Analysis, compared: Comparison | None) -> Section | None:
-    """The values that were set, and the key figures before and after; `None` where nothing was set.
+    """The changed values, and the key figures before and after; `None` without changes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -8,12 +8,12 @@ from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.workspace import workspace_figure
 from flexstage.show.page import Block, Picture, Prose, Section, fold, section
 from flexstage.show.table import result_table
-from flexstage.show.tables.force_workspace import force_workspace_tables
+from flexstage.show.tables.force_workspace import drive_force_tables, force_workspace_tables
 from flexstage.show.tables.workspace import gauge_tables, load_tables, stroke_tables, weakest_first
 
 
 def workspace_section(analysis: Analysis) -> Section | None:
-    """What the platform reaches and what that asks of actuators and gauges; `None` where strokes do not determine the platform.
+    """Workspace of the platform, and use of actuators and gauges; `None` if the strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -22,9 +22,9 @@ def workspace_section(analysis: Analysis) -> Section | None:
     """
     reach = analysis.workspace
     if reach is None:
-        return (
-            None if analysis.force_workspace is None else section("Force workspace", list(force_workspace_tables(analysis.force_workspace)))
-        )
+        forced = analysis.force_workspace
+        tables = [] if forced is None else [*force_workspace_tables(forced), *drive_force_tables(analysis.drive_force)]
+        return section("Force workspace", tables)
     figure = workspace_figure(reach)
     caption = "Reachable poses, projected on pairs of coordinates."
     picture = None if figure is None else Picture(to_svg(figure, "reach", caption), caption)
@@ -40,7 +40,7 @@ def workspace_section(analysis: Analysis) -> Section | None:
 
 
 def strength_section(analysis: Analysis) -> Section | None:
-    """Forces, stress, buckling, loads and clearance; `None` where none is known.
+    """Forces, stress, buckling, loads and clearance; `None` if none is known.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -49,17 +49,14 @@ def strength_section(analysis: Analysis) -> Section | None:
     """
     reach = analysis.workspace
     if reach is not None:
-        return section("Forces, strength and clearance", _strength(reach))
-    return (
-        None
-        if analysis.buckling is None
-        else section("Buckling", [result_table(analysis.buckling.stage), weakest_first(analysis.buckling)])
-    )
+        return section("Forces, strength and clearance", [weakest_first(analysis.stress), *_strength(reach)])
+    buckled = [] if analysis.buckling is None else [result_table(analysis.buckling.stage), weakest_first(analysis.buckling)]
+    return section("Strength", [weakest_first(analysis.stress), *buckled])
 
 
 def _strength(reach: Workspace) -> list[Block | None]:
     stressed = reach.stress is not None and bool(reach.stress.links)
-    text = "Stress, buckling and loads count from the stage relaxed without voltage, over all corners of the strokes, dead load included."
+    text = "Stress, buckling and loads are relative to the stage without voltage, over all corners of the strokes, with permanent load."
     return [
         Prose(text) if stressed else None,
         weakest_first(reach.stress),

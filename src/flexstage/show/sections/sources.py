@@ -1,4 +1,4 @@
-"""What a report rests on: the description with its provenance, known limits, references."""
+"""Sources of a report: the description with its provenance, known limits, references."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flexstage.spatial.frame import COMPONENTS
 
 _LIMITS = {
     Model.IDEAL: (
-        "Ideal model: rigid bodies and perfect hinges, small motions about the drawn position. It knows no stiffness, load or mode."
+        "Ideal model: rigid bodies and perfect hinges, small motions about the undeformed configuration. No stiffness, loads or modes."
     ),
     Model.MAPPED: (
         "Mapped model, as in the paper: springs along the strokes under a rigid platform, massless units, no bending of hinges. It has "
@@ -25,7 +25,7 @@ _LIMITS = {
     ),
     Model.LUMPED: (
         "Lumped model: rigid bodies joined by 6x6 beam-theory hinges, small displacements, frequencies below the first resonance of the "
-        "parts themselves. The bodies' own elasticity is left out: a real plate or lever makes the stage softer."
+        "parts themselves. Bodies are rigid: a real plate or lever makes the stage softer."
     ),
 }
 _PAPER = "Shin & Moon, Static and Dynamic Analyses of a 6-DOF Ultra-Precision Parallel Mechanism: mappings, unit stiffness, Eq. 28."
@@ -39,7 +39,7 @@ _DAMPING = "E. E. Ungar, E. M. Kerwin, J. Acoustical Society of America 34, 1962
 
 
 def description_section(mechanism: Mechanism) -> Section | None:
-    """Every value with its unit and where it comes from.
+    """Every value with its unit and source.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> description_section(double_triangle()).title
@@ -60,7 +60,7 @@ def description_section(mechanism: Mechanism) -> Section | None:
 
 
 def limit_section(analysis: Analysis) -> Section | None:
-    """What the model leaves out, and results that could not be given, with the reasons.
+    """Simplifications of the model, and missing results with the reasons.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -69,7 +69,7 @@ def limit_section(analysis: Analysis) -> Section | None:
     """
     blocks: list[Block | None] = [Prose(_LIMITS[analysis.model])]
     if not part_warnings(analysis.mechanism):
-        blocks.append(Prose("No part lies outside the range that beam theory was compared with."))
+        blocks.append(Prose("All parts are inside the range compared with beam theory."))
     blocks.append(_missing_table(analysis))
     accuracy = error_of_theory_table(analysis.mechanism) if analysis.model is not Model.IDEAL else None
     return section("Limits", [*blocks, accuracy])
@@ -83,7 +83,7 @@ def _missing_table(analysis: Analysis) -> Table | None:
 
 
 def error_of_theory_table(mechanism: Mechanism) -> Table | None:
-    """The error of beam theory to expect in the compliance of each part, against 3-D elasticity; `None` where nothing is known.
+    """Expected error of beam theory in the compliance of each part, against 3-D elasticity; `None` if unknown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> error_of_theory_table(double_triangle()).texts()[0]
@@ -101,7 +101,7 @@ def error_of_theory_table(mechanism: Mechanism) -> Table | None:
 
 
 def reference_section(analysis: Analysis) -> Section | None:
-    """The publications whose equations were used.
+    """References of the equations.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -1,4 +1,4 @@
-"""The stage in pictures: above the corner, from three sides, and as a dimensioned plan."""
+"""The stage in pictures: isometric, from three sides, and as a dimensioned plan."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ _SIDES = (
 
 
 def stage_section(data: StageData, *, motion: str | None = None, ghost: str = "", said: str = "") -> Section | None:
-    """The stage as it is seen first: the page's data "stage", and those called `ghost` behind it.
+    """The animated stage: the page's data "stage", with the data of the keys `ghost` behind it.
 
-    It begins with a `motion`, its first one if none is given; `said` is what stands below it.
+    It begins with a `motion`, by default its first one; `said` is the text below it.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.viewer.data import still_data
     >>> stage_section(still_data(double_triangle())).title
     'The stage'
     """
-    caption = "Rigid bodies as described, the platform translucent; where a hinge lies off the outline of its body, a thin line joins them."
+    caption = "Rigid bodies as described, the platform translucent. A thin line connects a hinge off the outline of its body."
     picture = Picture(to_svg(stage_picture(data), "corner", "The stage from above its front corner"), caption)
     viewer = Viewer("stage", (picture,), first_motion(data) if motion is None else motion, ghost)
     return section("The stage", [viewer, Legend(legend(data)), Prose(said) if said else None])
@@ -50,7 +50,7 @@ def platform_modes(data: StageData) -> tuple[Motion, ...]:
 
 
 def joined_viewers(partners: Sequence[tuple[str, str]]) -> Joined | None:
-    """Two viewers of the stage that play partners of each other, beginning with the first; `None` without any.
+    """Two viewers of the stage with paired motions, beginning with the first pair; `None` without any.
 
     >>> joined_viewers([]) is None
     True
@@ -62,7 +62,7 @@ def joined_viewers(partners: Sequence[tuple[str, str]]) -> Joined | None:
 
 
 def first_motion(data: StageData) -> str:
-    """The motion that a viewer begins with: the lowest mode of the platform, else what there is, else none.
+    """The first motion of a viewer: the lowest mode of the platform, else the first available, else none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.viewer.data import stage_data
@@ -74,7 +74,7 @@ def first_motion(data: StageData) -> str:
 
 
 def drawing_section(mechanism: Mechanism, data: StageData) -> Section | None:
-    """The stage from three sides, its plan, and what it consists of.
+    """The stage from three sides, its plan, and its parts.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.viewer.data import still_data
@@ -98,7 +98,7 @@ def drawing_section(mechanism: Mechanism, data: StageData) -> Section | None:
 
 
 def _ring_texts(mechanism: Mechanism) -> list[str]:
-    """Where the units and gauges on circles stand."""
+    """Radii and angles of the units and gauges on circles."""
     result: list[str] = []
     for ring in rings(mechanism):
         names = " to ".join(dict.fromkeys((*ring.names[:1], *ring.names[-1:])))

@@ -9,7 +9,7 @@ from flexstage.show.table import Table, row_table
 
 
 def warning_table(found: Sequence[Finding], title: str = "Warnings") -> Table | None:
-    """Warnings, or values taken by default, each with its object and advice; `None` without any.
+    """Warnings, or default values, each with its object and advice; `None` without any.
 
     >>> warning_table([Finding("B4/pivot", "it is thin", "Thicken it")]).texts()
     [['where', 'what', 'advice'], ['B4/pivot', 'it is thin', 'Thicken it']]

@@ -1,4 +1,4 @@
-"""Tables of changes: what was set, and what it did."""
+"""Tables of changes: changed values, and their effects."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.show.table import Cell, Column, Mark, Table, make_table
 
 
 def set_table(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> Table:
-    """What was set: every value before and after, in the unit a design file shows it in.
+    """Every changed value before and after, in its display unit.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.addresses.address import assign

@@ -1,4 +1,4 @@
-"""Table of the deflection under dead load."""
+"""Table of the deflection under permanent load."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _NOISE = 1e-9
 
 
 def deflection_table(deflection: Deflection) -> Table:
-    """Deflection of a point by cause: own weight, each payload, each stated force.
+    """Deflection of a point by cause: own weight, each payload, each specified force.
 
     Rounding noise, against the largest translation or rotation, is shown as 0.
 
@@ -26,5 +26,5 @@ def deflection_table(deflection: Deflection) -> Table:
     values = np.array(first_design(deflection.by_cause.values, 2))
     for block in (values[:3], values[3:]):
         block[np.abs(block) < _NOISE * np.max(np.abs(block), initial=0.0)] = 0.0
-    note = "Strokes held. In closed loop the gauges see it and the strokes take it back."
-    return matrix_table(f"Dead load, {deflection.point}", replace(deflection.by_cause, values=values), notes=[note])
+    note = "Actuators fixed. In closed loop the controller compensates the deflection measured by the gauges."
+    return matrix_table(f"Permanent load, {deflection.point}", replace(deflection.by_cause, values=values), notes=[note])

@@ -1,4 +1,4 @@
-"""Tables of a description: what the stage consists of, and every value with its unit and where it comes from."""
+"""Tables of a description: the parts of the stage, and every value with its unit and source."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ TITLES = {
     "forces": "Forces",
     "stops": "Stops",
     "temperatures": "Temperatures",
-    "overrides": "Overrides of single copies",
+    "overrides": "Overrides of single instances",
     "": "Stage",
 }
 _TAGS = {"stated": Mark.STATED, "derived": Mark.DERIVED, "assumed": Mark.ASSUMED}
@@ -40,7 +40,7 @@ _NUMBER_DIGITS = 6
 
 
 def composition_table(mechanism: Mechanism) -> Table | None:
-    """How many bodies, links, actuators and gauges the stage has, and of which kinds.
+    """Numbers and kinds of the bodies, links, actuators and gauges of the stage.
 
     >>> composition_table(Mechanism("")).texts()[1]
     ['bodies', '0', '']
@@ -65,7 +65,7 @@ def _counts_text(counts: Mapping[str, int]) -> str:
 
 
 def kind_name(part: Part) -> str:
-    """What a part is called.
+    """The name of a part's kind.
 
     >>> from flexstage.parts.compliance_matrix import Joint
     >>> kind_name(Joint())
@@ -93,13 +93,13 @@ def link_table(mechanism: Mechanism) -> Table | None:
 
 
 _Numbers: TypeAlias = Mapping[str, tuple[Number, Quantity]]
-"""Numbers that stand in a description by address; overrides have their values where they are made."""
+"""Numbers of a description by address; overrides at the address of the override."""
 
 
 def value_tables(mechanism: Mechanism, most: int | None = None) -> tuple[Table, ...]:
-    """Every number of the description with unit, tag (stated, derived, assumed) and source; one table a kind of thing.
+    """Every number of the description with unit, tag (stated, derived, assumed) and source; one table for each kind of entry.
 
-    With `most` tables have so many rows, and a note counts the rest.
+    With `most`, tables are limited to that number of rows, and a note counts the others.
 
     >>> value_tables(Mechanism(""))[0].texts()[1]
     ['gravity', '(0, 0, -9.80665)', 'm/s^2', 'assumed', '']
@@ -124,7 +124,7 @@ def value_tables(mechanism: Mechanism, most: int | None = None) -> tuple[Table, 
 
 
 def provenance_table(mechanism: Mechanism) -> Table:
-    """How many numbers of the description are stated, derived and assumed.
+    """Numbers of stated, derived and assumed values in the description.
 
     >>> provenance_table(Mechanism("")).texts()
     [['tag', 'numbers'], ['assumed', '3']]
@@ -132,11 +132,11 @@ def provenance_table(mechanism: Mechanism) -> Table:
     counts = Counter(tag.split()[0] if tag.split() else "assumed" for tag in provenance(mechanism).values())
     order = [*_TAGS, *sorted(set(counts) - set(_TAGS))]
     rows = [(Cell(tag, _TAGS.get(tag, Mark.PLAIN)), str(counts[tag])) for tag in order if counts[tag]]
-    return make_table("Where the numbers come from", ["tag", Column("numbers")], rows)
+    return make_table("Provenance of the numbers", ["tag", Column("numbers")], rows)
 
 
 def source_table(mechanism: Mechanism) -> Table | None:
-    """The sources that tags refer to, materials', parts' and gauges' own included; `None` without any.
+    """The sources of tags, materials, parts and gauges; `None` without any.
 
     >>> source_table(Mechanism("")) is None
     True
@@ -147,7 +147,7 @@ def source_table(mechanism: Mechanism) -> Table | None:
 
 
 def requirement_lines(mechanism: Mechanism) -> Table | None:
-    """The requirements as they are written in the description; `None` without any.
+    """The requirements as written in the description; `None` without any.
 
     >>> requirement_lines(Mechanism("", requirements={"stroke.x": "at least 50 um"})).texts()[1]
     ['stroke.x', 'at least 50 um']
@@ -156,7 +156,7 @@ def requirement_lines(mechanism: Mechanism) -> Table | None:
 
 
 def _join_components(addresses: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-    """Addresses of a vector's components together, others alone."""
+    """Addresses of a vector's components together, others separately."""
     gathered: list[str] = []
     for address in addresses:
         owner, _, last = address.rpartition(".")
@@ -172,7 +172,7 @@ def _join_components(addresses: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
 
 
 def _group_of(mechanism: Mechanism, addresses: tuple[str, ...]) -> tuple[str, str]:
-    """The kind of thing an address belongs to, and the name within it."""
+    """The kind of entry of an address, and the name within it."""
     address = next(iter(addresses))
     address = address.rpartition(".")[0] if len(addresses) > 1 else address
     first, _, rest = address.partition(".")

@@ -29,18 +29,18 @@ def drift_table(drift: Drift) -> Table:
     'uniform [K]'
     """
     at = ", ".join(number(1e3 * float(value)) for value in first_design(drift.datum, 1))
-    notes = [f"Strokes held. {ground_text(drift.ground)}; its point ({at}) mm stays."]
+    notes = [f"Actuators fixed. {ground_text(drift.ground)}; its point ({at}) mm is fixed."]
     return matrix_table("Thermal drift", drift.motion, units=_NANO, notes=notes, provenance=drift.provenance)
 
 
 def ground_text(ground: Ground) -> str:
-    """What the ground was taken to be of, and why.
+    """Material of the ground, and its source.
 
     >>> ground_text(Ground("steel", "as stated")), ground_text(Ground("steel", "all links that stand on it are of it"))
     ('Ground made of steel', 'Ground taken as steel: all links that stand on it are of it')
     """
     if ground.material is None:
-        return "Ground does not grow"
+        return "Ground without expansion"
     return f"Ground made of {ground.material}" if ground.stated else f"Ground taken as {ground.material}: {ground.source}"
 
 
@@ -83,7 +83,7 @@ def _budget_table(title: str, matrix: Matrix, sums: Array, budget: ErrorBudget) 
 
 
 def gauge_drift_table(drift: Drift) -> Table | None:
-    """What the gauges read per kelvin; `None` without gauges.
+    """Gauge readings per kelvin; `None` without gauges.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

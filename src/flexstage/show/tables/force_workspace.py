@@ -1,17 +1,39 @@
-"""Tables of a force workspace: travel, its limits, and current, voltage and heat of holding it."""
+"""Tables of a force workspace: travel, its limits, and continuous current, voltage and heat."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
+from flexstage.analysis.linear_statics.drive_force import DriveForce
 from flexstage.analysis.workspace.force_workspace import ForceWorkspace
-from flexstage.show.table import Table, column_table, result_table
+from flexstage.show.table import Table, column_table, make_table, merge_rows, result_table
+from flexstage.show.tables.lost_motion import share_rows
 
 
 def force_workspace_tables(found: ForceWorkspace) -> Iterator[Table | None]:
-    """The travel along each coordinate with its limits; the inputs of every coil that hold it."""
+    """The travel along each coordinate with its limits; the continuous inputs of every coil there."""
     yield result_table(found)
     if found.current.columns:
         yield column_table(
-            "Holding the reach", found.holding, head="along, coil", notes=["At the travel held without time limit, dead load not counted."]
+            "Coil inputs at the travel", found.holding, head="along, coil", notes=["At the continuous travel, without permanent load."]
         )
+
+
+def drive_force_tables(found: DriveForce | None) -> Iterator[Table | None]:
+    """Force per displacement with its excess over the ideal guide, and both by flexure.
+
+    >>> list(drive_force_tables(None))
+    []
+    """
+    if found is None:
+        return
+    yield result_table(found)
+    columns = {
+        f"{name}{text}": dict(zip(matrix.rows, np.real(matrix.values[:, place]).tolist(), strict=True))
+        for place, name in enumerate(found.shares.columns)
+        for text, matrix in (("", found.shares), (", excess", found.excess))
+    }
+    notes = ["Share of each flexure in the drive force, and its part of the excess over the ideal guide."]
+    yield merge_rows(make_table("Drive force by flexure", ["part", *columns], share_rows(columns, "all"), notes=notes))

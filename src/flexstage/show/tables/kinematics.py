@@ -11,7 +11,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 
 def mobility_table(kinematics: Kinematics) -> Table | None:
-    """Freedoms of the platform, strokes, and how they match.
+    """DOFs of the platform, strokes, and their numbers.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -26,13 +26,13 @@ def mobility_table(kinematics: Kinematics) -> Table | None:
     }
     rows = {name: (str(len(each)), ", ".join(each)) for name, each in named.items() if each or name != "force actuators"}
     rows["free internal modes"] = str(len(kinematics.idle)), "move neither platform nor stroke"
-    rows["redundant constraints"] = str(len(kinematics.redundant)), "stress the stage where parts do not fit exactly"
+    rows["redundant constraints"] = str(len(kinematics.redundant)), "stress the stage if parts do not fit exactly"
     notes = [actuation_text(kinematics)]
     return text_table("Mobility", ["", Column("number"), "which"], rows, notes=notes, provenance=kinematics.provenance)
 
 
 def actuation_text(kinematics: Kinematics) -> str:
-    """In one sentence or two, whether the strokes determine the platform, and what forces can command.
+    """State in one or two sentences whether the strokes determine the platform, and which motions forces command.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -46,7 +46,7 @@ def actuation_text(kinematics: Kinematics) -> str:
     if kinematics.thrusts and not kinematics.actuated:
         return f"{counted}: the strokes do not determine the platform, and the mapping R_a is refused. {_command_text(kinematics)}"
     if not kinematics.actuated:
-        held = f", but the links hold {', '.join(kinematics.immobile)}" if kinematics.immobile and mobility else ""
+        held = f", but the links lock {', '.join(kinematics.immobile)}" if kinematics.immobile and mobility else ""
         return f"{counted}{held}: the strokes do not determine the platform, and the mapping R_a is refused."
     if strokes > mobility:
         return f"{counted}: redundant actuation, commands outside the range of R_a only stress the stage."
@@ -54,17 +54,17 @@ def actuation_text(kinematics: Kinematics) -> str:
 
 
 def _command_text(kinematics: Kinematics) -> str:
-    """Which ideal motions forces, with the strokes, can command."""
+    """Ideal motions that forces, with the strokes, can command."""
     known = kinematics.commanded
     left = [name for name in kinematics.coordinates if name not in known]
     reach = f"with any strokes they push along {', '.join(known)}" if known else "they push along no coordinate alone"
     rest = f", not along {', '.join(left)} alone" if known and left else ""
     forces = count_text(len(kinematics.thrusts), "force actuator")
-    return f"{forces}: forces determine no motion; {reach}{rest}. The elastic model gives how far."
+    return f"{forces}: forces determine no motion; {reach}{rest}. The elastic model computes the travel."
 
 
 def force_table(kinematics: Kinematics) -> Table | None:
-    """V^T W: what a unit of each force actuator's input exerts along the ideal motions; `None` without force actuators.
+    """V^T W: generalised forces of a unit input of each force actuator along the ideal motions; `None` without force actuators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -74,7 +74,7 @@ def force_table(kinematics: Kinematics) -> Table | None:
     if not kinematics.thrusts or not kinematics.mobility:
         return None
     whole = kinematics.mobility == len(COMPONENTS)
-    note = "The platform's wrench at its reference point." if whole else "The work in each ideal motion: of the wrench no more is known."
+    note = "The platform's wrench at its reference point." if whole else "Generalised forces of the ideal motions only."
     found = kinematics.force_map
     rows = tuple(f"{name} [{WRENCH_UNITS[FORCES.index(name)]}]" for name in found.rows)
     columns = tuple(f"{name} [{unit}]" for name, unit in zip(found.columns, kinematics.thrust_inputs, strict=True))
@@ -82,7 +82,7 @@ def force_table(kinematics: Kinematics) -> Table | None:
 
 
 def mapping_table(kinematics: Kinematics) -> Table:
-    """R_a = da/dxi: what each actuator must expand for each motion of the platform. Refused for under-actuated stages.
+    """R_a = da/dxi: stroke of each actuator for each motion of the platform. Refuses under-actuated stages.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -93,7 +93,7 @@ def mapping_table(kinematics: Kinematics) -> Table:
 
 
 def gauge_table(kinematics: Kinematics) -> Table:
-    """R_s = ds/dx: what each gauge reads for each motion of the platform.
+    """R_s = ds/dx: reading of each gauge for each motion of the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -104,7 +104,7 @@ def gauge_table(kinematics: Kinematics) -> Table:
 
 
 def jacobian_table(kinematics: Kinematics) -> Table:
-    """J = dx/da: what the platform does when one actuator expands.
+    """J = dx/da: motion of the platform for the stroke of one actuator.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -115,7 +115,7 @@ def jacobian_table(kinematics: Kinematics) -> Table:
 
 
 def motion_table(kinematics: Kinematics) -> Table | None:
-    """V: the platform's ideal motions where it has fewer than six; the entries outside the named coordinates are parasitic.
+    """V: the platform's ideal motions if it has fewer than six; entries outside the named coordinates are parasitic.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -132,7 +132,7 @@ def motion_table(kinematics: Kinematics) -> Table | None:
 
 
 def freedom_table(kinematics: Kinematics) -> Table:
-    """Which freedoms were taken as free at each link; links alike in copies of a unit share a row.
+    """Free DOFs of each link in the ideal model; equal links in instances of a unit share a row.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -140,6 +140,4 @@ def freedom_table(kinematics: Kinematics) -> Table:
     ['back (B1, B2, B3)', 'rx, ry, rz']
     """
     free = {link: ", ".join(freedom.value for freedom in freedoms) or "none" for link, freedoms in kinematics.free.items()}
-    return merge_rows(
-        make_table("DOFs taken as free", ["link", "free"], free.items(), notes=["In each link's own frame, x along the part."])
-    )
+    return merge_rows(make_table("DOFs taken as free", ["link", "free"], free.items(), notes=["In each link's frame, x along the part."]))

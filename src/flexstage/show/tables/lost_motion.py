@@ -1,4 +1,4 @@
-"""Tables of lost motion: gains, the budget by part, crosstalk, parasitic motion, and where the stroke's energy goes."""
+"""Tables of lost motion: transmission ratios, the budget by part, crosstalk, parasitic motion, and strain energy."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_t
 _SHOWN = 1e-4
 _LARGEST = 3
 _NAMED, _MOST_NAMED = 0.02, 16
-"""Links of other units are named from this share of an actuator's loss on, and at most so many."""
+"""Smallest share of an actuator's loss for which links of other units are named, and their largest number."""
 
 
 def loss_table(lost: LostMotion) -> Table:
-    """Gain and loss of every actuator, with the links that cost most.
+    """Transmission ratio and loss of every actuator, with the largest contributions of links.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -28,8 +28,8 @@ def loss_table(lost: LostMotion) -> Table:
     ['B4', '0.96632', '3.368 %']
     """
     rows = [_loss_row(lost, name) for name in lost.loss.rows]
-    heads = ["actuator", Column("gain"), Column("loss"), Column("crosstalk received"), "largest contributions"]
-    note = "Gain: ideal motion reached per commanded one. Crosstalk received: the largest response to another actuator's command."
+    heads = ["actuator", Column("gain"), Column("loss"), Column("coupling from others"), "largest contributions"]
+    note = "Gain: transmission ratio, actual over ideal motion. Coupling: the largest response to another actuator's command."
     return make_table("Lost motion", heads, rows, notes=[note], provenance=lost.provenance)
 
 
@@ -57,9 +57,9 @@ def _zero_if_noise(share: float) -> float:
 
 
 def budget_table(lost: LostMotion) -> Table | None:
-    """Every actuator's loss divided among links: its unit's by axis, other units' by name; each column adds up to its loss.
+    """Every actuator's loss by link: its own unit's by axis, other units' by name; each column adds up to its loss.
 
-    `None` of a stage about a displaced state, whose model has no budget.
+    `None` for a stage about an operating point, whose model has no budget.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -70,8 +70,8 @@ def budget_table(lost: LostMotion) -> Table | None:
     if not lost.budget:
         return None
     budgets = {name: named_budget(lost, name) for name in lost.loss.rows}
-    notes = [f"{_OWN_AND_OTHERS}, all axes together. Negative ones give back what others take."]
-    return make_table("Lost-motion budget", ["link", *(Column(name) for name in budgets)], _share_rows(budgets, "loss"), notes=notes)
+    notes = [f"{_OWN_AND_OTHERS}, all axes together. Negative ones increase the gain."]
+    return make_table("Lost-motion budget", ["link", *(Column(name) for name in budgets)], share_rows(budgets, "loss"), notes=notes)
 
 
 _OWN_AND_OTHERS = "Links without a unit's name are those of the actuator's own unit, those with one another unit's"
@@ -92,7 +92,7 @@ def named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
 
 
 def name_links(shares: Mapping[str, float], actuator: str, link: Callable[[str], str]) -> dict[str, float]:
-    """Shares by name, the actuator's own copy left out of the names, those of other copies added up by `link`.
+    """Shares by name, without the name of the actuator's own instance; those of other instances are added up by `link`.
 
     >>> name_links({"B1/front.rz": 1.0, "B2/front.ry": 2.0, "B2/front.rz": 3.0, "guide.y": 4.0}, "B1", lambda name: name.partition(".")[0])
     {'front.rz': 1.0, 'B2/front': 5.0, 'guide.y': 4.0}
@@ -106,8 +106,8 @@ def name_links(shares: Mapping[str, float], actuator: str, link: Callable[[str],
     return result
 
 
-def _share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[tuple[Cell, ...]]:
-    """Rows by link, largest first, columns by actuator, what matters nowhere summed and counted, the sum last."""
+def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[tuple[Cell, ...]]:
+    """Rows by link, largest first, columns by actuator, negligible links summed and counted, the sum last."""
     parts = list(dict.fromkeys(part for shares in columns.values() for part in shares))
     size = {part: max(abs(shares.get(part, 0.0)) for shares in columns.values()) for part in parts}
     ranked = sorted(parts, key=lambda part: -round(size[part], 9))
@@ -123,7 +123,7 @@ def _share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[
 
 
 def foreign_links(ranked: Iterable[str], columns: Mapping[str, Mapping[str, float]]) -> list[str]:
-    """The links of other units that are named, of all by size, with the shares by actuator.
+    """The named links of other units, from all links by size, with the shares by actuator.
 
     >>> foreign_links(["front.rz", "B2/front", "B2/back"], {"B1": {"front.rz": 0.02, "B2/front": 0.01, "B2/back": 0.0002}})
     ['B2/front']
@@ -132,7 +132,7 @@ def foreign_links(ranked: Iterable[str], columns: Mapping[str, Mapping[str, floa
 
 
 def _matters(part: str, columns: Mapping[str, Mapping[str, float]]) -> bool:
-    """Whether a link takes so much of some actuator's whole that it is named."""
+    """Whether a link has a significant share of an actuator's loss."""
     return any(abs(shares.get(part, 0.0)) >= max(_SHOWN, _NAMED * abs(sum(shares.values()))) for shares in columns.values())
 
 
@@ -148,7 +148,7 @@ def _share_cell(share: float) -> Cell:
 
 
 def gain_table(lost: LostMotion) -> Table:
-    """T = dx/da: what the elastic platform does when one actuator expands.
+    """T = dx/da: motion of the elastic platform for the stroke of one actuator.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -160,7 +160,7 @@ def gain_table(lost: LostMotion) -> Table:
 
 
 def crosstalk_table(lost: LostMotion) -> Table:
-    """R_a V^+ T: how far each commanded motion is reached (diagonal), and what it stirs of the others.
+    """R_a V^+ T: achieved share of each commanded motion (diagonal), and coupling to the others.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -168,12 +168,12 @@ def crosstalk_table(lost: LostMotion) -> Table:
     >>> crosstalk_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][4]
     '0.96632'
     """
-    note = "Row: what an actuator's motion is reached as. Column: the actuator that is commanded. Ideal: the unit matrix."
+    note = "Row: motion in actuator strokes. Column: commanded actuator. Ideal: the identity matrix."
     return matrix_table("Gain and crosstalk, R_a V+ T", lost.transfer, notes=[note])
 
 
 def parasitic_table(lost: LostMotion) -> Table | None:
-    """The platform's motion outside its ideal ones per stroke; `None` where there is none.
+    """The platform's motion outside its ideal ones per stroke; `None` without any.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -191,7 +191,7 @@ def parasitic_table(lost: LostMotion) -> Table | None:
 
 
 def correction_table(lost: LostMotion) -> Table:
-    """The strokes that reach a wanted motion in spite of elasticity, a = (R_a V^+ T)^-1 R_a xi.
+    """The strokes for a required motion, corrected for elasticity, a = (R_a V^+ T)^-1 R_a xi.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -199,11 +199,11 @@ def correction_table(lost: LostMotion) -> Table:
     >>> correction_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][3]
     '0.34422'
     """
-    return matrix_table("Corrected mapping: strokes that reach the wanted motion", lost.correction, units=("mrad",))
+    return matrix_table("Corrected mapping: strokes per required motion", lost.correction, units=("mrad",))
 
 
 def energy_table(lost: LostMotion) -> Table:
-    """Where the stroke goes: strain energy by part when one actuator expands and nothing else acts, as a share of its total.
+    """Strain energy by part when one actuator expands without other loads, as a share of its total.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -213,14 +213,14 @@ def energy_table(lost: LostMotion) -> Table:
     """
     energies = energy_shares(lost)
     totals = first_design(lost.energy.values, 2).sum(axis=0)
-    rows = _share_rows(energies, "all")
+    rows = share_rows(energies, "all")
     whole = [Cell("energy [uJ/um^2]", Mark.STRONG), *(Cell(number(1e-6 * float(total), 4)) for total in totals)]
     heads = ["part", *(Column(name) for name in lost.energy.columns)]
-    return make_table("Where the stroke goes: strain energy", heads, [*rows, tuple(whole)], notes=[f"{_OWN_AND_OTHERS}."])
+    return make_table("Strain energy by part", heads, [*rows, tuple(whole)], notes=[f"{_OWN_AND_OTHERS}."])
 
 
 def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:
-    """By actuator and part of its unit or another one, the share of strain energy.
+    """The share of strain energy by actuator and part, of its own unit or another one.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -7,10 +7,8 @@ from flexstage.models.batch.choice import THRESHOLD
 from flexstage.show.display import percent
 from flexstage.show.table import Table, batch_note, result_table
 
-PLATFORM_MODES = (
-    f"With a platform mode, one more direction of the platform has {percent(THRESHOLD, 2)} of its compliance from the modes so far."
-)
-"""Which modes are the platform's."""
+PLATFORM_MODES = f"Each platform mode completes {percent(THRESHOLD, 2)} of the compliance in one more direction of the platform."
+"""Criterion for platform modes."""
 
 _FURTHER = 3
 
@@ -41,7 +39,7 @@ def listed_modes(modes: Modes) -> tuple[int, ...]:
 
 
 def _partial(modes: Modes) -> list[str]:
-    most = f"The lowest {len(modes.names)} modes of {len(modes.coordinates):,} freedoms were computed: the platform's are those among them."
+    most = f"Only the lowest {len(modes.names)} modes of {len(modes.coordinates):,} DOFs were computed."
     return [most] if modes.partial else []
 
 

@@ -1,4 +1,4 @@
-"""The short form of an analysis, one screen: the platform axis by axis, its modes, lost motion, and the verdict with what to look at."""
+"""The short form of an analysis, one screen: the platform axis by axis, its modes, lost motion, the verdict and its reasons."""
 
 from __future__ import annotations
 
@@ -12,7 +12,12 @@ from flexstage.analysis.assessment.measures import MeasureKind
 from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.complete import Analysis
 from flexstage.analysis.dynamics.modes import Modes
+from flexstage.analysis.workspace.strength import HingeStress
+from flexstage.base.labelled import NOISE
 from flexstage.base.number import first_design
+from flexstage.models.batch.choice import platform_rows
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.undetermined import floats
 from flexstage.parts.profile import single
 from flexstage.show.display import NO_VALUE, format_value, number, percent
 from flexstage.show.table import Cell, Column, Mark, Table, first_rows, make_table, merge_rows, result_table
@@ -24,11 +29,11 @@ _DIGITS = 4
 _ROWS = 8
 _LOSS = 3
 """Columns of the table of lost motion up to the loss."""
-_NOTHING_ASKED = "No requirements are stated, so nothing is judged: write them under [requirements] in the design file."
+_NO_REQUIREMENTS = "no requirements. Add a table [requirements] to the design file."
 
 
 def stage_text(analysis: Analysis) -> str:
-    """What was analysed: the stage, the model, its freedoms and what drives and reads it, in a line.
+    """The analysed stage in one line: model, DOFs, actuators and gauges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -44,7 +49,7 @@ def stage_text(analysis: Analysis) -> str:
 
 
 def load_line(analysis: Analysis) -> str | None:
-    """What weight, payloads and forces change; `None` where nothing is known of it or nothing loads the stage.
+    """The effect of weight, payloads and forces; `None` if unknown or without a load.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -54,8 +59,26 @@ def load_line(analysis: Analysis) -> str | None:
     return None if analysis.loaded is None else analysis.loaded.text or None
 
 
+def floating_line(model: LinearModel | None) -> str | None:
+    """Motions of the platform without stiffness, and the actuators that drive them; `None` of a stage without any.
+
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> from flexstage.models.lumped import lumped
+    >>> floating_line(lumped(double_triangle())) is None
+    True
+    """
+    if model is None or model.floating is None:
+        return None
+    twist = np.abs(platform_rows(model) @ model.floating).T
+    axes = [name for name, moved in zip(COMPONENTS, np.any(twist > NOISE * np.max(twist), axis=0), strict=True) if moved]
+    driving = [name for name, drives in zip(model.actuators, floats(model, model.actuators), strict=True) if drives]
+    modes = "a mode" if len(twist) == 1 else f"{len(twist)} modes"
+    where = f"No stiffness along {', '.join(axes)}, driven by {', '.join(driving)}"
+    return f"{where}: {modes} at 0 Hz; static stiffness and strokes at force are undefined there."
+
+
 def small_line(analysis: Analysis) -> str | None:
-    """By how much linear kinematics is off over the strokes; `None` where no motion is known.
+    """The error of linear kinematics over the strokes; `None` without a known motion.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -66,7 +89,7 @@ def small_line(analysis: Analysis) -> str | None:
 
 
 def count_text(count: int, thing: str) -> str:
-    """How many there are of a thing.
+    """A count with its noun.
 
     >>> count_text(2, "gauge")
     '2 gauges'
@@ -81,34 +104,35 @@ def overview_tables(analysis: Analysis) -> Iterator[Table | str | None]:
 
 
 def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | str | None]:
-    """The platform's axes and modes, lost motion, and what its parts bear; the first table `explained` by notes.
+    """The platform's axes and modes, lost motion, and strength; the first table `explained` by notes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> [each.title for each in summary_tables(analyse(double_triangle(), Model.IDEAL), explained=True) if isinstance(each, Table)]
     ['Platform']
     """
-    yield load_line(analysis)
-    yield small_line(analysis)
+    yield floating_line(analysis.linear)
     axes = axis_table(analysis)
     yield axes if explained or axes is None else replace(axes, notes=())
     yield None if analysis.modes is None else _platform_modes(analysis.modes)
     yield None if analysis.modes is None else lowest_mode(analysis.modes)
     yield None if analysis.lost_motion is None else _first_rows(loss_table(analysis.lost_motion))
     yield _strength_text(analysis)
+    yield load_line(analysis)
+    yield small_line(analysis)
 
 
 def axis_table(analysis: Analysis) -> Table | None:
-    """The platform axis by axis: stroke and what ends it, stiffness, resolution; `None` where the model gives none of it.
+    """The platform axis by axis: stroke and its limit, stiffness, resolution; `None` if the model has none of them.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> axis_table(analyse(double_triangle(), Model.MAPPED)).texts()[3]
-    ['z', '300 um', 'B4', '10.09 N/um', '10 nm']
+    ['z', '+-300 um', 'B4', '10.09 N/um', '10 nm']
     """
     strokes, stiffness, resolution = _strokes(analysis), _stiffness(analysis), _resolution(analysis)
     columns = {
-        "stroke, both ways": {name: text for name, (text, _) in strokes.items()},
+        "stroke": {name: text for name, (text, _) in strokes.items()},
         "limited by": {name: cause for name, (_, cause) in strokes.items()},
         "stiffness": stiffness,
         "resolution": resolution,
@@ -137,7 +161,7 @@ def _axis_note(analysis: Analysis) -> str:
 
 
 def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
-    """Stroke both ways and what ends it, by coordinate."""
+    """Stroke in both directions and its limit, by coordinate."""
     if analysis.workspace is not None:
         single = analysis.workspace.corrected or analysis.workspace.single_axis
         names, values, causes = single.coordinates, first_design(single.symmetric, 1), analysis.workspace.single_axis.limiting
@@ -150,13 +174,13 @@ def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
     else:
         return {}
     return {
-        name: (NO_VALUE if np.isnan(value) else _shown(value, name, TWIST_UNITS), cause or "no limit stated")
+        name: (NO_VALUE if np.isnan(value) else f"+-{_shown(value, name, TWIST_UNITS)}", cause or "no limit stated")
         for name, value, cause in zip(names, np.real(values), causes, strict=True)
     }
 
 
 def _stiffness(analysis: Analysis) -> Mapping[str, str]:
-    """One over the diagonal of the compliance, by axis; nothing where an axis gives way freely."""
+    """One over the diagonal of the compliance, by axis; nothing for an axis without stiffness."""
     if analysis.statics is None:
         return {}
     compliance = np.diagonal(np.real(first_design(analysis.statics.compliance.values, 2)))
@@ -191,7 +215,7 @@ def _platform_modes(modes: Modes) -> Table | None:
 
 
 def lowest_mode(modes: Modes) -> str | None:
-    """The lowest mode of the whole stage, and the body that moves most in it; `None` where there is no mode.
+    """The lowest mode of the whole stage, and the body with the largest motion; `None` without a mode.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -206,7 +230,7 @@ def lowest_mode(modes: Modes) -> str | None:
 
 
 def _first_rows(table: Table) -> Table:
-    """Actuator, gain, loss and largest contribution; equal ones in one row. A note counts the rows that are left out."""
+    """Actuator, transmission ratio, loss and largest contribution; equal ones in one row. A note counts the rows left out."""
     rows = [(*row[:_LOSS], replace(row[-1], text=row[-1].text.partition(", ")[0])) for row in table.rows]
     shown = make_table(table.title, [*table.columns[:_LOSS], "largest contribution"], rows, provenance=table.provenance)
     return first_rows(merge_rows(shown), _ROWS)
@@ -215,16 +239,21 @@ def _first_rows(table: Table) -> Table:
 def _strength_text(analysis: Analysis) -> str | None:
     reach = analysis.workspace
     buckling = analysis.buckling if reach is None else reach.buckling
-    said: list[str] = []
-    if reach is not None and reach.stress is not None and reach.stress.links:
-        said.append(f"least safety factor {number(single(reach.stress.min_safety), 4)} against yield, in {reach.stress.weakest}")
+    strengths = (analysis.stress, None if reach is None else reach.stress)
+    said = [_weakest_text(each) for each in strengths if each is not None and each.links]
     if buckling is not None:
-        said.append(f"load factor of buckling {number(single(buckling.min_factor), 4)}")
-    return f"Strength: {', '.join(said)}." if said else None
+        said.append(f"Buckling load factor: {number(single(buckling.min_factor), 4)}.")
+    return "\n".join(said) or None
+
+
+def _weakest_text(found: HingeStress) -> str:
+    """The least safety factor at the worst corner of some strokes, the hinge and the place in it."""
+    place = f", {found.places[found.links.index(found.weakest)]}" if found.places else ""
+    return f"Least safety factor at the worst corner {found.condition}: {number(single(found.min_safety), 4)}, in {found.weakest}{place}."
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
-    """The verdict: how many requirements are met, the least margin, what to look at, and what else there is to see.
+    """The verdict: the number of met requirements, the smallest margin, its cause, and further options.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -237,7 +266,7 @@ def closing_text(analysis: Analysis, *, whole: bool) -> str:
         "" if whole else "\n  All tables: --full. With pictures, in one page: --report FILE."
     )
     if not analysis.verdicts:
-        return f"Verdict: {_NOTHING_ASKED}{more}"
+        return f"Verdict: {_NO_REQUIREMENTS}{more}"
     worst = min(analysis.verdicts, key=_rank)
     asked = worst.requirement
     why = worst.reason.rstrip(".") or _cause(analysis, worst)
@@ -246,13 +275,13 @@ def closing_text(analysis: Analysis, *, whole: bool) -> str:
 
 
 def _rank(verdict: Verdict) -> tuple[bool, float]:
-    """Missed before met, least margin first, unknown before all."""
+    """Failed before met, smallest margin first, unknown before all."""
     margin = first_margin(verdict)
     return is_met(verdict), -np.inf if np.isnan(margin) else margin
 
 
 def _cause(analysis: Analysis, verdict: Verdict) -> str:
-    """What decides a measure, where the analysis tells."""
+    """The cause of a measure's value, if the analysis contains it."""
     find = _CAUSES.get(verdict.requirement.kind)
     return "" if find is None else find(analysis, verdict.requirement.name)
 
@@ -284,7 +313,13 @@ def _loss_cause(analysis: Analysis, name: str) -> str:
 
 def _safety_cause(analysis: Analysis, _: str) -> str:
     stress = None if analysis.workspace is None else analysis.workspace.stress
+    if stress is None and analysis.kinematics.thrusts:
+        return "all coils at peak current; safety.at_strokes is at the required strokes"
     return f"the hinge {stress.weakest}" if stress is not None and stress.links else ""
+
+
+def _cause_at_strokes(analysis: Analysis, _: str) -> str:
+    return "" if analysis.stress is None else f"the hinge {analysis.stress.weakest}"
 
 
 _CAUSES: Mapping[MeasureKind, Callable[[Analysis, str], str]] = {
@@ -294,4 +329,5 @@ _CAUSES: Mapping[MeasureKind, Callable[[Analysis, str], str]] = {
     measures.loss: _loss_cause,
     measures.own_loss: _loss_cause,
     measures.safety: _safety_cause,
+    measures.safety_at_strokes: _cause_at_strokes,
 }

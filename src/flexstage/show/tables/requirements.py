@@ -16,7 +16,7 @@ _LEAST = 0.01
 
 
 def verdict_table(verdicts: Sequence[Verdict], *, explained: bool = False) -> Table | None:
-    """Requirements with demand, value and margin, met or not, `explained` with the meaning of each; `None` without any.
+    """Requirements with limit, value and margin, met or not, `explained` with the meaning of each; `None` without any.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -27,7 +27,7 @@ def verdict_table(verdicts: Sequence[Verdict], *, explained: bool = False) -> Ta
         return None
     rows = [_row(verdict) for verdict in verdicts]
     heads: list[Column | str] = ["requirement", "demand", Column("value"), Column("margin"), "verdict"]
-    if explained:  # the value beside the name
+    if explained:  # the value next to the name
         rows = [
             (name, value, demand, *rest, Cell(meaning(each))) for each, (name, demand, value, *rest) in zip(verdicts, rows, strict=True)
         ]
@@ -48,7 +48,7 @@ def is_met(verdict: Verdict) -> bool:
 
 
 def meaning(verdict: Verdict) -> str:
-    """What a requirement's key means, in words.
+    """The meaning of a requirement's key.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -59,7 +59,7 @@ def meaning(verdict: Verdict) -> str:
 
 
 def verdict_text(verdicts: Sequence[Verdict]) -> str:
-    """How many requirements are met, and the least margin or those that are missed, in a sentence or two.
+    """The number of met requirements, and the smallest margin or the failed ones, in one or two sentences.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -88,7 +88,7 @@ def first_margin(verdict: Verdict) -> float:
 
 
 def value_text(verdict: Verdict) -> str:
-    """The value a requirement is judged by, in display units (first design).
+    """The value of a requirement's measure, in display units (first design).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -101,7 +101,7 @@ def value_text(verdict: Verdict) -> str:
 
 
 def quantity_text(value: float, quantity: Quantity, digits: int = DIGITS) -> str:
-    """An SI value of a quantity in the unit the quantity is shown in, in a smaller one where there is less than a hundredth of it.
+    """An SI value in the display unit of its quantity, or in a smaller one below a hundredth of it.
 
     >>> from flexstage.base.units.quantity import STIFFNESS
     >>> quantity_text(17e6, STIFFNESS), quantity_text(420.0, STIFFNESS)
@@ -143,7 +143,7 @@ def _row(verdict: Verdict) -> tuple[Cell, ...]:
 
 
 def answer_text(verdict: Verdict) -> str:
-    """A verdict in words.
+    """A verdict as text.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge

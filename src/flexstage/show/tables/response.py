@@ -26,7 +26,7 @@ class Curve:
 
 
 def leading_curves(response: Response) -> tuple[Curve, ...]:
-    """For each output the input that moves it most at the lowest frequency (first design).
+    """For each output the input with the largest effect at the lowest frequency (first design).
 
     >>> import numpy as np
     >>> from flexstage.models.linear.model import Channel
@@ -43,13 +43,13 @@ def leading_curves(response: Response) -> tuple[Curve, ...]:
 
 
 def _leading_input(gains: Array) -> int:
-    """The largest gain; among those within 2 % of it one that moves the output forward."""
+    """The largest gain; among those within 2 % of it a positive one."""
     sizes = np.round(np.abs(gains) / (np.max(np.abs(gains)) or 1.0), 6)
     return int(np.argmax(np.where(sizes > 0.98, 1.0 + (np.real(gains) > 0.0), sizes)))
 
 
 def response_table(response: Response) -> Table:
-    """For each output its leading input: gain at the lowest frequency, highest magnitude and where; 0 for what is but rounding.
+    """For each output its leading input: gain at the lowest frequency, highest magnitude and its frequency; 0 for rounding noise.
 
     >>> import numpy as np
     >>> from flexstage.models.linear.model import Channel
@@ -72,6 +72,6 @@ def response_table(response: Response) -> Table:
         tuple((curve.unit, curve.unit, "Hz", "1") for curve in curves),
     )
     band = f"From {number(float(response.frequencies[0]), 4)} to {number(float(response.frequencies[-1]), 4)} Hz."
-    noise = ["0 stands for rounding noise: below 1e-9 of the largest magnitude in its unit."] if not np.all(low) else []
+    noise = ["0: rounding noise, below 1e-9 of the largest magnitude in its unit."] if not np.all(low) else []
     notes, provenance = [band, *noise], response.provenance
     return column_table("Frequency responses", found, head="output, leading input", notes=notes, provenance=provenance)

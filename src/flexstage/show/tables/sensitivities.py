@@ -1,4 +1,4 @@
-"""Tables of sensitivities: which numbers matter most."""
+"""Tables of sensitivities: the most important parameters."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.show.table import Table, column_table
 
 
 def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: int = 15) -> Table:
-    """The parameters that move the lowest frequencies most: change in per cent per per cent of the parameter.
+    """The parameters with the largest effects on the lowest frequencies: change in per cent per per cent of the parameter.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.sensitivities import sensitivities
@@ -29,7 +29,7 @@ def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: in
 
 
 def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | None:
-    """The parameters that change the actuators' losses most: loss in per cent of stroke per per cent of the parameter; `None` without any.
+    """The parameters with the largest effects on the losses: loss in per cent of stroke per per cent of the parameter; `None` without any.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.sensitivities import sensitivities

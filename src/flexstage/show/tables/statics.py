@@ -1,4 +1,4 @@
-"""Tables of statics: stiffness, compliance, stiffness by freedom and by direction, mass."""
+"""Tables of statics: stiffness, compliance, stiffness by DOF and by direction, mass."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _STEP = 15
 
 
 def stiffness_table(statics: Statics) -> Table:
-    """K of the platform, strokes held.
+    """K of the platform, actuators fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -31,7 +31,7 @@ def stiffness_table(statics: Statics) -> Table:
 
 
 def compliance_table(statics: Statics) -> Table:
-    """C of the platform, strokes held.
+    """C of the platform, actuators fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -43,35 +43,35 @@ def compliance_table(statics: Statics) -> Table:
 
 
 def freedom_stiffness_table(freedoms: FreedomStiffness) -> Table:
-    """Stiffness by freedom: along the ideal motions left, then along what the links hold.
+    """Stiffness by DOF: along the free ideal motions, then along the constrained ones.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
     >>> table = freedom_stiffness_table(fs.freedom_stiffness(fs.statics(fs.lumped(stage)), fs.ideal(stage)))
     >>> [row[0] for row in table.texts()[1:3]]
-    ['x, motion left', 'y, held by links']
+    ['x, free motion', 'y, constrained']
     """
     left, rest = freedoms.motions, freedoms.constraints
-    told = (*(f"{name}, motion left" for name in left.rows), *(f"{name}, held by links" for name in rest.rows))
+    told = (*(f"{name}, free motion" for name in left.rows), *(f"{name}, constrained" for name in rest.rows))
     whole = by_freedom(np.concatenate([left.values, rest.values], axis=-2), (*left.rows, *rest.rows))
-    note = "Strokes held. Others free: what a push test measures; it includes that a motion left moves the point along other axes too."
+    note = "Actuators fixed. Others free: as in a push test, including parasitic motion along other axes."
     locked = [f"{reason[:1].upper()}{reason[1:]}." for reason in sorted(set(freedoms.reasons.values()))]
-    found = replace(whole, rows=told, columns=("others free", "others held"))
+    found = replace(whole, rows=told, columns=("others free", "others fixed"))
     return column_table(f"Stiffness by DOF at {freedoms.point}", found, head="DOF", notes=(note, *locked))
 
 
 def mass_tables(mass: MassMatrix) -> Iterator[Table]:
-    """Mass at the point: of its body with payloads alone, and of the whole stage as it is felt there.
+    """Mass at the point: of its body with payloads, and the condensed mass of the whole stage.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
     >>> [table.title for table in mass_tables(fs.mass_matrix(stage, fs.lumped(stage)))]
-    ['Mass at platform, platform with payloads alone', 'Mass at platform, whole stage']
+    ['Mass at platform, platform with payloads', 'Mass at platform, whole stage']
     """
     if mass.rigid is not None:
-        yield matrix_table(f"Mass at {mass.point}, {mass.body} with payloads alone", _short(mass.rigid))
+        yield matrix_table(f"Mass at {mass.point}, {mass.body} with payloads", _short(mass.rigid))
     if mass.reduced is not None:
-        note = "Statically condensed, strokes held: other masses follow as they do when the point moves slowly."
+        note = "Statically condensed (Guyan), actuators fixed: other masses follow quasi-statically."
         yield matrix_table(f"Mass at {mass.point}, whole stage", _short(mass.reduced), notes=[note])
 
 
@@ -95,8 +95,9 @@ def direction_table(statics: Statics, load: float = _LOAD) -> Table:
     """
     degrees = np.arange(0, 180, _STEP)
     free, held = (_along(item, np.deg2rad(degrees)) for item in (statics.free, statics.held))
-    heads = (f"displacement at {number(load)} N", "stiffness, others free", "stiffness, others held")
-    values = np.stack([load / free, free, held], axis=-1)
+    heads = (f"displacement at {number(load)} N", "stiffness, others free", "stiffness, others fixed")
+    with np.errstate(divide="ignore"):
+        values = np.stack([load / free, free, held], axis=-1)
     found = Matrix(values, tuple(map(str, degrees)), heads, (("m", "N/m", "N/m"),) * len(degrees))
     return column_table("Stiffness by direction in the plane", found, head="direction [deg]", notes=["From x towards y."])
 
@@ -106,7 +107,7 @@ def _along(stiffness: DirectionalStiffness, angles: Array) -> Array:
 
 
 def principal_table(statics: Statics) -> Table | None:
-    """Principal stiffnesses in the plane with their directions, with the other freedoms free and held.
+    """Principal stiffnesses in the plane with their directions, with the other DOFs free and fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -1,4 +1,4 @@
-"""Tables of isolated units and of the terms that simpler theories omit."""
+"""Tables of isolated units and of the terms omitted by simpler theories."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
 
 
 def omitted_table(found: Omitted, *, top: int = 12) -> Table | None:
-    """Change of a gain by each DOF that a simpler theory leaves out; those with rounding noise alone are one row.
+    """Change of a gain by each DOF that a simpler theory omits; those with rounding noise only are one row.
 
     >>> omitted_table(Omitted("platform.z", "B1", 2.0, 1.9, {"lever.rz": -0.1, "lever.x": 1e-15})).texts()[2:4]
     [['lever.rz', '-0.1', '-5.26 %'], ['further DOFs', '+0', '0 %']]

@@ -19,7 +19,7 @@ from flexstage.spatial.frame import MOTION
 
 
 def command_text(command: Mapping[str, Number]) -> str:
-    """A box of commands in words.
+    """A box of commands as text.
 
     >>> command_text({"x": 50e-6, "rz": 244e-6})
     'x +-50 um, rz +-244 urad'
@@ -28,14 +28,14 @@ def command_text(command: Mapping[str, Number]) -> str:
 
 
 def stroke_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Strokes along one coordinate at a time, ideal and with lost motion corrected, and those of the command, all at once."""
+    """Strokes along one coordinate at a time, ideal and with corrected lost motion, and those of the command, all at once."""
     yield result_table(workspace.single_axis)
     yield result_table(workspace.corrected, title="Single-axis strokes, lost motion corrected by command")
     yield None if workspace.worst_case is None else corner_table(workspace.worst_case)
 
 
 def corner_table(corner: Utilisation) -> Table | None:
-    """Strokes of the actuators that all commanded motions at once require.
+    """Actuator strokes for all commanded motions at once.
 
     >>> import numpy as np
     >>> corner_table(Utilisation(("B1",), {"x": 5e-05}, np.array([5e-5]), np.array([7.5e-5]), "")).texts()[1]
@@ -44,12 +44,12 @@ def corner_table(corner: Utilisation) -> Table | None:
     scale = single(corner.scale)
     verdict = "within reach" if scale >= 1.0 else "out of reach"
     return result_table(
-        corner, notes=[f"{command_text(corner.command)}, all at once: {verdict}; the whole box may be scaled by {number(scale, 4)}."]
+        corner, notes=[f"{command_text(corner.command)}, all at once: {verdict}; the box can be scaled by {number(scale, 4)}."]
     )
 
 
 def gauge_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Readings of the gauges at the commanded corner against their ranges, and the pose that their resolution resolves."""
+    """Readings of the gauges at the commanded corner against their ranges, and the pose resolution."""
     seen = workspace.gauges
     yield None if seen is None else result_table(seen, notes=[f"{command_text(seen.command)}, all at once."])
     yield result_table(workspace.resolution)
@@ -77,7 +77,7 @@ def weakest_first(found: HingeStress | Buckling | None) -> Table | None:
 
 
 def load_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Axial forces of the stacks under dead load, and over all strokes."""
+    """Axial forces of the stacks under permanent load, and over all strokes."""
     if workspace.loads is not None:
         yield result_table(workspace.loads)
         yield result_table(workspace.loads.over(workspace.limits.from_zero))

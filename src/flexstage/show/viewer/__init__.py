@@ -1,1 +1,1 @@
-"""The stage as one mesh that moves: data of the viewer that pages, notebooks and the studio share, and its page."""
+"""The stage as one moving mesh: data of the viewer for pages, notebooks and the studio, and its page."""

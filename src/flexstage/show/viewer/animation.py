@@ -1,4 +1,4 @@
-"""Animations of a stage away from its undeformed configuration: positions along a load path, modes and buckling modes at a state."""
+"""Animations of a stage away from its undeformed configuration: a load path, modes and buckling modes at a state."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ from flexstage.show.viewer.motions import Course, Curve, Group, Motion
 from flexstage.spatial.rotation import exponential, logarithm
 
 NODES = 12
-"""Places along a link at which it is told where it lies."""
+"""Points along a link at which its position is computed."""
 _BYTES = 400_000
-"""What the poses of a path may take in a page."""
+"""Size limit for the poses of a path in a page [bytes]."""
 _MODES = 6
 _MILLIMETRES = DisplayUnit("mm", 1e3)
 _OWN = {"strain": DisplayUnit("um/m", 1e6), "lost": DisplayUnit("%", 100.0)}
 
 
 _Label: TypeAlias = tuple[str, str, str, float | None]
-"""What a small motion is called, how it reads in a list, what is remarked of it, its frequency [Hz] where it has one."""
+"""Name of a small motion, its label in a list, its remark, its frequency [Hz] if it has one."""
 
 
 def stroke_data(mechanism: Mechanism, path: LoadPath, found: Stroke, *, text: str = "") -> StageData:
     """A stage along a path: one motion through its points, and the first modes at its last one that is stable.
 
-    Bodies lie where they are; flexures along their centre lines, what is only known by its 6x6 evenly between its ends. Points without an
+    Flexures follow their centre lines; a part known only by its 6x6 matrix is interpolated evenly between its ends. Points without an
     equilibrium are skipped.
     """
     still = still_data(mechanism, text=text)
@@ -51,14 +51,14 @@ def stroke_data(mechanism: Mechanism, path: LoadPath, found: Stroke, *, text: st
 
 
 def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
-    """A stage as one of its copies is forced into a misaligned seat: one motion from none to all of it."""
+    """A stage with one instance forced into a misaligned seat: one motion, from zero to the largest misalignment."""
     still = still_data(mechanism)
     motion = _along(still, found.state, f"{found.copy} {found.axis}", found)
     return replace(still, motions=(motion,), notes=tuple(str(each) for each in found.warnings))
 
 
 def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: Beyond | None = None) -> StageData:
-    """A stage as it gives way in load cases, drawn about its last stable state in each: one motion a case, and the path `after` one."""
+    """Buckling modes of a stage, about its last stable state in each load case: one motion for each case, and the path `after` one."""
     still = still_data(mechanism)
     told = [motion for number, case in enumerate(cases) if case.found is not None for motion in _gives_way(still, case, case.found, number)]
     paths = [] if after is None else [_along(still, after.path.state, after.path.drive, after.stroke)]
@@ -73,7 +73,7 @@ def _gives_way(still: StageData, case: CaseFactor, found: Critical, number: int)
 
 
 def modes_at_data(mechanism: Mechanism, there: OperatingPoint, found: Modes, said: str, *, count: int = 12) -> StageData:
-    """A stage with its modes about where it stands; `said` is where that is."""
+    """A stage with its modes about an operating point; `said` describes that point."""
     still = still_data(mechanism)
     moved = mode_motions(there.state, found.shapes[:, :count], there.locked)
     return replace(still, motions=tuple(_about(still, there.state, moved, _labels(found.frequencies[:count], said))))
@@ -91,7 +91,7 @@ def _along(still: StageData, state: State, drive: str, found: Stroke | Misaligne
 
 
 def curves_of(along: Matrix) -> tuple[Curve, ...]:
-    """What is told of every point, a row a point, in display units: the drive first."""
+    """Quantities at every point, one row each, in display units: the drive first."""
     return tuple(
         Curve(name, to_typography("" if form.unit == "1" else form.unit), values * form.factor)
         for name, values, form in quantities_of(along)
@@ -100,7 +100,7 @@ def curves_of(along: Matrix) -> tuple[Curve, ...]:
 
 
 def quantities_of(along: Matrix) -> Iterator[tuple[str, Array, DisplayUnit]]:
-    """Columns of what is told of every point: name, SI values, and the unit in which a curve or column of them is shown."""
+    """Columns of quantities at every point: name, SI values, and the display unit."""
     units = (along.unit,) * len(along.columns) if isinstance(along.unit, str) else along.unit[0]
     for name, values, unit in zip(along.columns, np.moveaxis(along.values, -1, 0), units, strict=True):
         largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
@@ -109,12 +109,12 @@ def quantities_of(along: Matrix) -> Iterator[tuple[str, Array, DisplayUnit]]:
 
 
 def limits(found: Stroke | Misaligned) -> tuple[str, ...]:
-    """What is beyond a limit at each point, in words; empty where nothing is."""
+    """The exceeded limits at each point as text; empty without any."""
     return tuple(to_typography("; ".join(_words(found, point))) for point in range(len(found.along.values)))
 
 
 def _over(found: Stroke | Misaligned, point: int) -> list[int]:
-    """The flexures whose stress is above their material's limit."""
+    """The flexures with a stress above their material's limit."""
     strained = found.strained
     return [place for place, limit in enumerate(strained.limit) if strained.stress[point, place] > limit]
 
@@ -126,7 +126,7 @@ def _words(found: Stroke | Misaligned, point: int) -> Iterator[str]:
         yield f"{strained.names[place]}: {stress} of {limit}"
     loose = found.along.values[point, found.along.columns.index("unstable")]
     if np.isnan(loose):
-        yield "no equilibrium was found"
+        yield "no equilibrium found"
     elif loose > 0:
         yield "the free stage is not stable here"
 
@@ -140,7 +140,7 @@ def _parts_beyond(found: Stroke | Misaligned, numbers: Mapping[str, int]) -> tup
 
 
 def _modes_there(still: StageData, path: LoadPath) -> Iterator[Motion]:
-    """The first modes at the last point that is stable without what holds it."""
+    """The first modes at the last point that is stable without the prescribed coordinates."""
     from flexstage.models.linear.eigen import eigen
     from flexstage.models.nonlinear.linearise import linearise
 
@@ -156,7 +156,7 @@ def _modes_there(still: StageData, path: LoadPath) -> Iterator[Motion]:
 
 
 def _told(path: LoadPath, point: int) -> str:
-    """Where a point of a path is, in words."""
+    """A point of a path as text."""
     channel = next((each.unit for each in path.state.model.inputs if each.name == path.drive), None)
     unit = channel or ("rad" if path.drive.rpartition(".")[2].startswith("r") else "m")
     return to_typography(f"at {path.drive} = {format_value(float(path.values[point]), unit, 4)}")
@@ -185,7 +185,7 @@ def _about(still: StageData, state: State, moved: Motions, labels: Sequence[_Lab
 
 @dataclass(frozen=True, eq=False)
 class _Carrier:
-    """A piece between two bodies: what it is part of, its bodies, and its drawn ends (2, 3)."""
+    """A piece between two bodies: its part, its bodies, and its drawn ends (2, 3)."""
 
     name: str
     bodies: tuple[int, int]
@@ -204,12 +204,12 @@ def _bending(still: StageData) -> list[_Carrier]:
 
 
 def _poses(still: StageData, state: State) -> Array:
-    """Displacements and rotation vectors (b, rows, 6) of all bodies, the ground first, and of the nodes of what bends."""
+    """Displacements and rotation vectors (b, rows, 6) of all bodies, the ground first, and of the nodes of bending pieces."""
     count = len(state.pose.position)
     position, turn = np.zeros((count, len(still.bodies), 3)), np.broadcast_to(np.eye(3), (count, len(still.bodies), 3, 3)).copy()
     model = state.model
     for name in model.bodies:
-        if name not in still.bodies:  # a seat that is not drawn
+        if name not in still.bodies:  # a seat is not drawn
             continue
         place, number = still.bodies.index(name), model.body(name)
         position[:, place] = state.pose.position[:, number] - model.reference[number]
@@ -237,7 +237,7 @@ def _moved_point(references: Array, position: Array, turn: Array) -> _At:
 
 
 def _piece(carrier: _Carrier, line: Line | None, at: _At, turn: Array) -> Array:
-    """Displacements and rotation vectors (b, NODES, 6) along a piece: of a flexure its centre line, else evenly between its ends."""
+    """Displacements and rotation vectors (b, NODES, 6) along a piece: of a flexure its centre line, else interpolated between its ends."""
     shares = np.linspace(0.0, 1.0, NODES)
     drawn = carrier.ends[0] + shares[:, None] * (carrier.ends[1] - carrier.ends[0])
     if line is not None:
@@ -252,7 +252,7 @@ def _piece(carrier: _Carrier, line: Line | None, at: _At, turn: Array) -> Array:
 
 
 def _resampled(line: Line, shares: Array) -> tuple[Array, Array]:
-    """Places and rotation vectors (b, NODES, 3) of a centre line, whose slope is that of its sections."""
+    """Positions and rotation vectors (b, NODES, 3) of a centre line; its slope is that of the sections."""
     vectors = logarithm(line.turn)
     cut = [
         np.stack([np.stack([np.interp(shares, line.shares, row) for row in case.T], axis=-1) for case in each])
@@ -262,7 +262,7 @@ def _resampled(line: Line, shares: Array) -> tuple[Array, Array]:
 
 
 def _carried(still: StageData, carrier: _Carrier, bodies: Array, lines: Mapping[str, Line], moved: Mapping[str, Array]) -> Array:
-    """Small motions (NODES, 6) along a piece, by those of bodies and, `moved`, of centre `lines`."""
+    """Small motions (NODES, 6) along a piece, from those of bodies and, `moved`, of centre `lines`."""
     shares = np.linspace(0.0, 1.0, NODES)
     known = moved.get(carrier.name)
     if known is not None:
@@ -281,7 +281,7 @@ def animate(mechanism: Mechanism, path: LoadPath) -> Any:
     """Animate a stage along a load path at large displacements: notebooks show the view, `save` writes it as a page.
 
     Curves of force, stiffness, parasitic motion and frequencies are below, with a cursor; values beyond a limit are red. Small paths are
-    magnified, and the factor is shown.
+    magnified by the displayed factor.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")

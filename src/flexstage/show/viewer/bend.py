@@ -1,4 +1,4 @@
-"""How a link bends between its ends: shares of the motions of its two bodies along its length, true in place and slope at both."""
+"""Bending of a link between its ends: shares of the motions of its two bodies along its length, exact in position and slope at both."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _INTERVALS = 400
 
 @dataclass(frozen=True, eq=False)
 class Bend:
-    """Deflections of a straight part by the offset and by the turn of its second end, its first one held, along its length from 0 to 1.
+    """Deflections of a straight part by the offset and the rotation of its second end, its first one fixed, along its length from 0 to 1.
 
-    `values` (n, 5) at `shares` (n,): the share itself (of elongation and twist), deflections for an offset and for a turn of one, and the
-    slopes of both: v(s) = offset N(s) + turn L M(s), with N(1) = M'(1) = 1, all others of N, M and slopes 0 at the ends.
+    `values` (n, 5) at `shares` (n,): the share (of elongation and twist), deflections for a unit offset and a unit rotation, and the
+    slopes of both. Deflection: v(s) = offset N(s) + turn L M(s), with N(1) = M'(1) = 1, all others of N, M and slopes 0 at the ends.
     """
 
     shares: Array
@@ -32,10 +32,10 @@ class Bend:
 
 
 def bend_of(part: Part | None) -> Bend:
-    """The bend of a part: of a beam of its sections, loaded at its ends alone; without a shape, of a beam of one section.
+    """The bend of a part: of a beam of its sections, loaded only at its ends; without a shape, of a uniform beam.
 
-    Curvature goes with (a + b s) / I(s), I the least second moment of area, constant between stations; a and b follow from the ends. A part
-    of one section bends as the cubic of Hermite. Shear is left out.
+    Curvature is proportional to (a + b s) / I(s), I the smallest second moment of area, constant between stations; a and b follow from
+    the ends. The bend of a uniform part is a cubic Hermite polynomial. Shear is neglected.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> bend_of(Leaf("steel", 0.02, 0.001, 0.01)).at(np.array([0.5, 1.0])).round(4).tolist()
@@ -47,7 +47,7 @@ def bend_of(part: Part | None) -> Bend:
 
 
 def _flexibility(part: Shaped, shares: Array) -> Array:
-    """1 / I in the middle of each interval of shares (n + 1,), over the largest: sizes are straight between stations."""
+    """1 / I in the middle of each interval of shares (n + 1,), over the largest: sizes are interpolated linearly between stations."""
     places = (0.5 * (shares[1:] + shares[:-1]) - 0.5) * single(part.span)
     moment = part.section_at(places).least_inertia
     return np.min(moment) / moment
@@ -63,7 +63,7 @@ def _bend(shares: Array, flexibility: Array) -> Bend:
     by_offset, by_turn = np.linalg.solve(ends, np.eye(2)).T
     rows = [shares, by_offset @ deflections, by_turn @ deflections, by_offset @ slopes, by_turn @ slopes]
     values = np.stack(rows, axis=-1)
-    values[0], values[-1] = [0.0] * COLUMNS, [1.0, 1.0, 0.0, 0.0, 1.0]  # exactly, whatever the sums round to
+    values[0], values[-1] = [0.0] * COLUMNS, [1.0, 1.0, 0.0, 0.0, 1.0]  # exact, without rounding errors of the sums
     return Bend(shares, values)
 
 

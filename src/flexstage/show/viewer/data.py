@@ -1,4 +1,4 @@
-"""All that a viewer shows of a stage, as one value, and as JSON whose arrays are base64: the same for pages, notebooks and the studio."""
+"""Data of a viewer for a stage, as one value, and as JSON with base64 arrays: the same for pages, notebooks and the studio."""
 
 from __future__ import annotations
 
@@ -44,18 +44,18 @@ from flexstage.show.viewer.parts import Describer, Thing
 FORMAT = 1
 _Found = TypeVar("_Found")
 _STEPS, _PIECES = 12, 1800
-"""Pieces that a link bends in, and how many there are in all where links are many."""
+"""Segments of a bent link, and their largest number for all links."""
 _MODES = 12
 _LOADED = ", small motions about the loaded stage"
 
 
 @dataclass(frozen=True, eq=False)
 class StageData:
-    """A stage as a viewer shows it: its mesh, the things that it consists of by part number, and its motions.
+    """Data of a viewer for a stage: its mesh, its parts by number, and its motions.
 
-    `bodies` are in the order of twists, the ground first; `size` is the diagonal of the box around everything and `centre` (3,) its middle
-    [m]; `bones` are the bodies with their reference points. `links` are the part numbers that a motion's strain energy is told of. `notes`
-    say what is not shown, and why.
+    `bodies` are in the order of twists, the ground first. `size` is the diagonal of the box around everything and `centre` (3,) its middle
+    [m]. `bones` are the bodies with their reference points. `links` are the part numbers of a motion's strain energy. `notes` state the
+    simplifications of the picture and their reasons.
     """
 
     name: str
@@ -75,14 +75,14 @@ class StageData:
         return tuple(number for number, thing in enumerate(self.things) if thing.kind in {Kind.HINGE, Kind.DRIVE})
 
     def reach(self, motion: Motion) -> float:
-        """Largest displacement [m] of any vertex in a motion; of large displacements of any body's reference and any node."""
+        """Largest displacement [m] of any vertex in a motion; in large displacements, of any body's reference and any node."""
         if motion.course is not None:
             return motion.course.reach
         moved = self.mesh.displacement(motion.twists)
         return float(np.sqrt(np.max(np.sum(moved**2, axis=1), initial=0.0)))
 
     def document(self) -> dict[str, Any]:
-        """Plain values with the names that the page knows (`web/src/viewer/types.ts`)."""
+        """Plain values under the names of the page (`web/src/viewer/types.ts`)."""
         return {
             "format": FORMAT,
             "name": self.name,
@@ -101,7 +101,7 @@ class StageData:
         }
 
     def text(self) -> str:
-        """The document as JSON: the same bytes for the same stage."""
+        """The document as JSON: equal stages have equal bytes."""
         return json.dumps(self.document(), separators=(",", ":"), allow_nan=False)
 
     def _label(self, label: Label) -> dict[str, Any]:
@@ -109,7 +109,7 @@ class StageData:
         return {"text": label.text, "kind": label.kind.value, "point": list(label.point), "bodies": bodies}
 
     def motion_document(self, motion: Motion) -> dict[str, Any]:
-        """The plain values of a motion of this stage, as those of the document."""
+        """The plain values of a motion of this stage, as in the document."""
         said: dict[str, Any] = {"group": motion.group.value, "name": motion.name, "label": motion.label}
         if motion.frequency is not None:
             said["frequency"] = motion.frequency
@@ -139,12 +139,12 @@ def stage_data(
     count: int = _MODES,
     still: StageData | None = None,
 ) -> StageData:
-    """What a viewer shows of a stage, of the first design of a batch; `still` where that is known already.
+    """Compute the data of a viewer for a stage, of the first design of a batch; `still` if already known.
 
-    `model`, `kinematics` and its modes are worked out (lumped, ideal, those of the platform) where they are not given; what the stage does
-    not have is left out, with its reason among the notes. `weighed` is the model of the modes where that is another one: small motions
-    about the loaded stage. `text` is that of the design's file, whose lines things are found at. `count` is
-    how many of the lowest modes are shown; those of the platform always are. Raises `DesignError` where the stage cannot be drawn.
+    `model`, `kinematics` and its modes are computed by default (lumped, ideal, those of the platform). Missing parts are left out, with
+    the reason among the notes. `weighed` is the model of the modes if different: small motions about the loaded stage. `text` is that of
+    the design's file, for line numbers. `count` is the number of lowest modes shown; those of the platform are always included. Raises
+    `DesignError` if the stage cannot be drawn.
     """
     still = still or still_data(mechanism, text=text)
     notes, motions, bones = list(still.notes), list[Motion](), still.bones
@@ -164,7 +164,7 @@ def stage_data(
 
 
 def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
-    """The same without motions: no model is asked."""
+    """The same data without motions, and without a model."""
     assembly = expand(mechanism)
     steps = max(1, min(_STEPS, _PIECES // max(1, len(assembly.links))))
     seen = scene(mechanism, steps=steps)
@@ -181,7 +181,7 @@ def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
 
 
 def _simplifications(assembly: Assembly) -> Iterator[str]:
-    """What is not drawn as it is: holes that outlines leave in others, and outlines that a CAD file holds."""
+    """Simplified outlines: holes cut by other outlines, and outlines from a CAD file."""
     solids = {name: each for body in assembly.bodies.values() for name, each in body.solids.items()} | dict(assembly.ground)
     found = {name: simplification(placed.solid) for name, placed in solids.items()}
     for said in dict.fromkeys(filter(None, found.values())):
@@ -194,14 +194,14 @@ def _size(seen: Scene, low: Array, high: Array) -> float:
 
 
 def _bends(assembly: Assembly) -> Mapping[str, Bend]:
-    """How links with a shape of their own bend, by name; one value for all links of one part."""
+    """Bends of links with a shape of their own, by name; one value for all links of one part."""
     kinds = {id(link.part): link.part for link in assembly.links.values()}
     known = {key: bend_of(part) for key, part in kinds.items()}
     return {name: known[id(link.part)] for name, link in assembly.links.items()}
 
 
 def _attempt(what: str, work: Callable[[], _Found], notes: list[str]) -> _Found | None:
-    """What it gives, or, where the stage is refused, `None` and the reasons among the notes."""
+    """The result, or for a refused stage `None` and the reasons among the notes."""
     try:
         return work()
     except DesignError as error:

@@ -1,7 +1,7 @@
-"""The viewer within a page of HTML: its place, the stage's data once and the bundle once; nothing is loaded from anywhere.
+"""The viewer within an HTML page: its element, the stage's data once and the bundle once; nothing is loaded.
 
-A page holds any number of `element`s, one `data_script` for each stage and one `bundle_script`, which finds the elements by itself and
-draws each when it comes into sight. Where there is no script or no WebGL, what stands in an element's place is what one sees.
+A page contains any number of `element`s, one `data_script` for each stage and one `bundle_script`. The script finds the elements and
+draws each when it becomes visible. Without scripts or WebGL, the content of the element is shown.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from flexstage.show.viewer.data import StageData
 
 
 def element(key: str, *, motion: str = "", instead: str = "") -> str:
-    """The place of a viewer of the data called `key`; it begins with a `motion`, "mode 1" or "stroke B1", or at rest.
+    """The element of a viewer for the data named `key`; it begins with a `motion`, "mode 1" or "stroke B1", or undeformed.
 
-    `instead` is HTML that is taken as it is: what stands there without a script or without WebGL, and in print.
+    `instead` is unescaped HTML: the content without a script or WebGL, and in print.
 
     >>> element("stage", motion="mode 1", instead="<p>a picture</p>")
     '<div data-flexstage="stage" data-motion="mode 1"><p>a picture</p></div>'
@@ -26,7 +26,7 @@ def element(key: str, *, motion: str = "", instead: str = "") -> str:
 
 
 def data_script(key: str, data: StageData) -> str:
-    """A stage's data, once a page: the viewers called `key` show it.
+    """A stage's data, once in a page, for all viewers of the `key`.
 
     No text in it ends the script: every "<" is escaped.
     """
@@ -35,12 +35,12 @@ def data_script(key: str, data: StageData) -> str:
 
 @cache
 def bundle() -> str:
-    """The viewer's program as it is shipped, its licence on top."""
+    """The viewer's program as shipped, its licence at the top."""
     return resources.files("flexstage.show").joinpath("static/viewer.js").read_text(encoding="utf-8")
 
 
 def bundle_script() -> str:
-    """The viewer's program, once a page, behind all elements and data.
+    """The viewer's program, once in a page, after all elements and data.
 
     >>> bundle_script().count("</script>")
     1
@@ -49,5 +49,5 @@ def bundle_script() -> str:
 
 
 def fragment(data: StageData, *, key: str = "stage", motion: str = "", instead: str = "") -> str:
-    """All that a page with one viewer needs: element, data and program."""
+    """The content of a page with one viewer: element, data and program."""
     return element(key, motion=motion, instead=instead) + data_script(key, data) + bundle_script()

@@ -1,4 +1,4 @@
-"""The mesh of a stage: triangles and sharp edges whose vertices know their part and how far they lie between its two bodies."""
+"""The mesh of a stage: triangles and sharp edges; each vertex has a part and a share between its two bodies."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from flexstage.show.viewer.bend import COLUMNS, Bend
 class Mesh:
     """Vertices, triangles and edges of a stage in its frame.
 
-    A vertex has a place in `points` (v, 3) [m], a `part` (v,), a `carrier` (v,) and a `station` (v,). A carrier is a piece between two
-    bodies: `bodies` (c, 2) by number, 0 the ground; `ends` (c, 2, 3) [m], where it meets them; of what is rigid both bodies are one. A
+    A vertex has a position in `points` (v, 3) [m], a `part` (v,), a `carrier` (v,) and a `station` (v,). A carrier is a piece between two
+    bodies: `bodies` (c, 2) by number, 0 the ground; `ends` (c, 2, 3) [m] at the bodies. Both bodies are equal for a rigid piece. A
     station is a row of `stations` (s, 5): see `Bend`. `triangles` (t, 3) are counter-clockwise from outside, `edges` (e, 2) sharp.
     """
 
@@ -50,8 +50,8 @@ class Mesh:
     def displacement(self, twists: Array) -> Array:
         """Displacement (v, 3) of the vertices by the bodies' twists at the origin (b, 6), small rotations.
 
-        Of a body every point p moves by t + w x p. A link moves with its first body and, on top of that, as a beam of its bend does whose
-        second end follows the second body. The viewer's shader does the same.
+        A point p of a body moves by t + w x p. A link moves with its first body, plus the deflection of its bend for the relative motion of
+        the second body. The viewer's shader does the same.
         """
         first, second = (twists[self.bodies[self.carrier, side]] for side in (0, 1))
         rigid = first[:, :3] + np.cross(first[:, 3:], self.points)
@@ -69,7 +69,7 @@ class Mesh:
 def mesh_of(
     pieces: Sequence[DrawnPiece], bodies: Mapping[str, int], parts: Mapping[str, int], bends: Mapping[str, Bend], straight: Bend
 ) -> Mesh:
-    """The mesh of pieces, with the numbers of bodies and parts by name; `bends` are those of parts that are not `straight`.
+    """The mesh of pieces, with the numbers of bodies and parts by name; `bends` are those of parts other than `straight`.
 
     >>> mesh_of((), {}, {}, {}, Bend(np.zeros(1), np.zeros((1, 5)))).points.shape
     (0, 3)
@@ -93,7 +93,7 @@ def mesh_of(
 
 
 def _single(values: Array) -> Array:
-    """Values as exact as a viewer gets them."""
+    """Values with the precision of a viewer."""
     return values.astype(np.float32).astype(float) + 0.0
 
 
@@ -102,7 +102,7 @@ def _rounded(skin: DrawnSurface) -> DrawnSurface:
 
 
 def _carrier(piece: DrawnPiece, bodies: Mapping[str, int]) -> Array:
-    """The bodies of a piece by number, and where it meets them (8,): the middles of its first and its last ring; zeros if rigid."""
+    """The bodies of a piece by number, and its ends (8,): the middles of its first and its last ring; zeros if rigid."""
     first, second = (bodies[name] for name in piece.bodies)
     share = piece.skin.share
     ends = np.zeros(6) if first == second else np.concatenate([_single(piece.skin.points[share == end]).mean(axis=0) for end in (0.0, 1.0)])
@@ -110,13 +110,13 @@ def _carrier(piece: DrawnPiece, bodies: Mapping[str, int]) -> Array:
 
 
 def _stations(piece: DrawnPiece, bend: Bend) -> Array:
-    """Rows (k, 5) of a piece's bend at its points; zeros where it is rigid."""
+    """Rows (k, 5) of a piece's bend at its points; zeros if it is rigid."""
     first, second = piece.bodies
     return np.zeros((len(piece.skin.share), COLUMNS)) if first == second else _single(bend.at(piece.skin.share))
 
 
 def body_names(names: Iterable[str]) -> tuple[str, ...]:
-    """The ground, which is number 0, and the bodies in their order.
+    """The ground, number 0, and the bodies in order.
 
     >>> body_names(["platform"])
     ('ground', 'platform')

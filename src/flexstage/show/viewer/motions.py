@@ -1,4 +1,4 @@
-"""What a stage is seen to do: its modes, strokes of actuators, ideal motions of its platform, deflections under dead load, drift."""
+"""Motions of a stage: its modes, strokes of actuators, ideal motions of its platform, deflections under permanent load, drift."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from flexstage.show.display import format_value, number, to_typography
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 PLATFORM_MODE = "a mode of the platform"
-"""What the remark of such a mode says."""
+"""Remark of a platform mode."""
 _UNIT_STROKES = {"m": 1e-6, "N": 1.0, "A": 1.0}
 _UNIT_MOTION = 1e-6
 _WARMER = ("1 K warmer", "1 K/m along x", "1 K/m along y", "1 K/m along z")
 
 
 class Group(Enum):
-    """What kind of motion it is."""
+    """Kind of a motion."""
 
     MODE = "mode"
     STROKE = "stroke"
@@ -45,7 +45,7 @@ class Group(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Something that is told of every point of a path: its `values` (p,) in its display `unit`, NaN where unknown."""
+    """A quantity at every point of a path: its `values` (p,) in its display `unit`, NaN if unknown."""
 
     name: str
     unit: str
@@ -60,9 +60,9 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """What a stage does over time, small motions: `basis` (n, b, 6) the twists of all bodies by unit coordinate, at the stage's origin.
+    """Motion of a stage over time, small motions: `basis` (n, b, 6) the twists of all bodies by unit coordinate, at the stage's origin.
 
-    `weights` (f, n) is what every coordinate does at equal steps of time; `curves` are told beside it, the time first.
+    `weights` (f, n) are the coordinates at equal steps of time; `curves` are further quantities, the time first.
     """
 
     basis: Array
@@ -75,8 +75,8 @@ class Course:
     """Large displacements through the points of a path, or a small motion about one.
 
     `poses` (f, rows, 6) are displacement and rotation vector of each body about its reference, the ground's first, then of the nodes along
-    what bends, piece by piece; `frames` (f,) the points of the path that they belong to. `shape` (rows, 6) is a small motion about the only
-    pose. `curves` begin with what is driven. `beyond` are the part numbers that are beyond a limit at every point, `said` why.
+    the bending pieces. `frames` (f,) are the points of the path that they belong to. `shape` (rows, 6) is a small motion about the only
+    pose. `curves` begin with the drive. `beyond` are the part numbers beyond a limit at every point, `said` the reason.
     """
 
     frames: Array
@@ -97,10 +97,10 @@ class Course:
 class Motion:
     """A motion of all bodies: `twists` (b, 6) at the stage's origin, the ground's first.
 
-    `name` is unique in its group, `remark` says more; `frequency` [Hz] is that of a mode. `energy` is the share of the strain energy by
-    link, and of all else that is elastic by its name; empty where it is not known. `stress` is the share of what is allowed that links
-    bear, by name, `stressed` says in words where: at the full stroke, under that load. The size of a motion means something but for modes.
-    Motions of large displacements, along a path or about a state, have a `course` instead of twists; what happens over time has a
+    `name` is unique in its group, `remark` adds information; `frequency` [Hz] is that of a mode. `energy` is the strain-energy fraction by
+    link, and of other elastic parts by name; empty if unknown. `stress` is the utilisation of links by name, and `stressed` its condition:
+    at the full stroke, under that load. The amplitude is physical except for modes. Motions of large displacements, along a path or about a
+    state, have a `course` instead of twists; motions over time have a `response`, and the twists of their farthest instant.
     `response` beside those of its farthest instant.
     """
 
@@ -119,12 +119,12 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
-    """The bodies of a stage by name, without the ground, and their reference points (3,), at which models tell their twists."""
+    """The bodies of a stage by name, without the ground, and their reference points (3,) for the models' twists."""
 
     references: Mapping[str, Array]
 
     def at_origin(self, twists: Mapping[str, Array]) -> Array:
-        """Twists (b + 1, 6) at the stage's origin, the ground's first; bodies that are not named stand still."""
+        """Twists (b + 1, 6) at the stage's origin, the ground's first; zero for bodies not named."""
         own = [np.real(twists[name]) if name in twists else np.zeros(6) for name in self.references]
         rows = np.array([np.zeros(6), *own])
         rows[1:, :3] += np.cross(self._points, rows[1:, 3:])
@@ -140,7 +140,7 @@ def body_twists(
 ) -> dict[str, Array]:
     """Twists (6,) of the bodies in a shape (n,) of the model's coordinates, under `inputs` (m,) if there are any (first design).
 
-    A model that knows the platform only moves the other bodies as the ideal kinematics do.
+    With a model of only the platform, the other bodies move by the ideal kinematics.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -166,7 +166,7 @@ def body_twists(
 def mode_motions(
     model: LinearModel, kinematics: Kinematics | None, found: Modes, bones: Skeleton, count: int, *, about: str = ""
 ) -> Iterator[Motion]:
-    """The lowest modes, mass-normalised, and those of the platform that lie higher; remarks end with what they are `about`."""
+    """The lowest modes, mass-normalised, and higher platform modes; remarks end with `about`."""
     frequencies, shapes = first_design(found.frequencies, 1), first_design(found.shapes, 2)
     last = max((*found.platform, -1)) + 1
     for index in range(min(len(found.names), max(count, last))):
@@ -175,13 +175,13 @@ def mode_motions(
         twists = body_twists(model, kinematics, shapes[:, index], tuple(bones.references))
         frequency = float(frequencies[index])
         label = f"{index + 1}  {number(frequency)} Hz  {found.names[index]}"
-        remark = (PLATFORM_MODE if index in found.platform else "a mode beside those of the platform") + about
+        remark = (PLATFORM_MODE if index in found.platform else "a mode of other bodies") + about
         energy = _energy(model, shapes[:, index])
         yield Motion(Group.MODE, str(index + 1), to_typography(label), bones.at_origin(twists), remark, frequency, energy)
 
 
 def _energy(model: LinearModel, motion: Array, inputs: Array | None = None) -> dict[str, float] | None:
-    """Shares of the strain energy by contribution, of the first design; `None` where there is none."""
+    """Strain-energy fractions by contribution, of the first design; `None` without energy."""
     given = None if inputs is None else inputs[:, None]
     deformed = {name: first_design(each, 2)[:, 0] for name, each in part_deformation(model, motion[:, None], given).items()}
     parts = {name: float(each @ first_design(model.stiffness[name].law, 2) @ each) for name, each in deformed.items()}
@@ -190,7 +190,7 @@ def _energy(model: LinearModel, motion: Array, inputs: Array | None = None) -> d
 
 
 class Bearing:
-    """Shares of what is allowed that links of a stage bear, where their sections, their limits and the model's forces in them are known."""
+    """Utilisation of links of a stage, if their sections, their limits and the model's forces in them are known."""
 
     def __init__(self, mechanism: Mechanism, model: LinearModel) -> None:
         known = {channel.name for channel in model.outputs}
@@ -199,11 +199,11 @@ class Bearing:
         self._model = model
 
     def at(self, shape: Array, inputs: Array | None = None) -> dict[str, float] | None:
-        """Shares by link in a shape (n,) of the model's coordinates under `inputs` (m,), of that alone; `None` where none is known."""
+        """Utilisation by link in a shape (n,) of the model's coordinates under `inputs` (m,) only; `None` if unknown."""
         return self.of_all(shape[:, None], None if inputs is None else inputs[:, None])[0]
 
     def of_all(self, shapes: Array, inputs: Array | None = None) -> list[dict[str, float] | None]:
-        """The same of shapes (n, k) under inputs (m, k), all at once."""
+        """The same for shapes (n, k) under inputs (m, k), all at once."""
         if not self._links or not shapes.shape[1]:
             return [None] * shapes.shape[1]
         rows = self._model.output_index(tuple(f"{link}.{force}" for link in self._links for force in FORCES))
@@ -215,7 +215,7 @@ class Bearing:
         return [dict(zip(self._links, each, strict=True)) for each in shares.tolist()]
 
     def most(self, actuator: str) -> float | None:
-        """The stroke [m] from rest to its farther end, if it is known."""
+        """The stroke [m] from zero to its farther end, if it is known."""
         if self._limits is None or actuator not in self._limits.actuators:
             return None
         place = self._limits.actuators.index(actuator)
@@ -223,7 +223,7 @@ class Bearing:
 
 
 def stroke_motions(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None, bones: Skeleton) -> Iterator[Motion]:
-    """What a micrometre of each actuator's stroke, a newton of its force or an ampere of its current does at rest, all others held.
+    """Motions for a micrometre of each actuator's stroke, a newton of its force or an ampere of its current; all others are fixed.
 
     Their stress is that of the whole stroke from its middle or bias.
     """
@@ -247,7 +247,7 @@ def stroke_motions(mechanism: Mechanism, model: LinearModel, kinematics: Kinemat
 
 
 def axis_motions(kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
-    """Ideal motions of the platform by a micrometre or a microradian along each of its coordinates, and the strokes that they take."""
+    """Ideal motions of the platform by a micrometre or a microradian along each of its coordinates, and the strokes for them."""
     bodies, strokes = first_design(kinematics.bodies, 2), first_design(kinematics.actuation, 2)
     rows = {name: place for place, name in enumerate(kinematics.body_coordinates)}
     for place, coordinate in enumerate(kinematics.coordinates):
@@ -265,9 +265,9 @@ def axis_motions(kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
 
 
 def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None, bones: Skeleton) -> Iterator[Motion]:
-    """What own weight, payloads and stated forces do at rest, strokes held; causes without any are left out.
+    """Static deflections under own weight, payloads and specified forces, actuators fixed; causes without any are left out.
 
-    Raises `DesignError` where what is not held would fall.
+    Raises `DesignError` if a part without support would fall.
     """
     bearing = Bearing(mechanism, model)
     for name, load in dead_loads(mechanism, model).items():
@@ -275,16 +275,16 @@ def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics
         if np.any(shape):
             twists = bones.at_origin(body_twists(model, kinematics, shape, tuple(bones.references)))
             energy, stress = _energy(model, shape), bearing.at(shape)
-            yield Motion(Group.DEFLECTION, name, name, twists, "strokes held", None, energy, stress, f"under {name} alone")
+            yield Motion(Group.DEFLECTION, name, name, twists, "actuators fixed", None, energy, stress, f"under {name} alone")
 
 
 def drift_motions(mechanism: Mechanism, model: LinearModel, bones: Skeleton) -> Iterator[Motion]:
-    """Where bodies go as the stage warms by a kelvin, or by a kelvin a metre along an axis, strokes held; their growth is not drawn.
+    """Motions of the bodies per kelvin, or per kelvin a metre along an axis, actuators fixed; their expansion is not drawn.
 
-    Raises `DesignError` where it is not known what expands how.
+    Raises `DesignError` for unknown expansion.
     """
     found = drift(mechanism, model)
     for place, (name, label) in enumerate(zip(FIELDS, _WARMER, strict=True)):
         twists = bones.at_origin({body: first_design(each, 2)[:, place] for body, each in found.bodies.items()})
         if np.any(twists):
-            yield Motion(Group.DRIFT, name, label, twists, f"strokes held, ground of {found.taken[GROUND]}")
+            yield Motion(Group.DRIFT, name, label, twists, f"actuators fixed, ground of {found.taken[GROUND]}")

@@ -1,4 +1,4 @@
-"""What is drawn, thing by thing: its name, its unit, where it stands in the design, and its data in words."""
+"""Drawn entries: name, unit, address in the design, and data as text."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Fact = tuple[str, str]
 
 @dataclass(frozen=True)
 class Thing:
-    """Something that is drawn and can be pointed at: `what` it is, the `unit` it is in, its `address` in a design file, its `line` there.
+    """A drawn entry: `what` it is, its `unit`, its `address` in a design file, its `line` there.
 
     `facts` are pairs of a name and a value with its unit.
     """
@@ -39,7 +39,7 @@ class Thing:
 
 
 class Describer:
-    """Says of what is drawn, by name, what it is; data of a part that several links have are worked out once."""
+    """Describes drawn entries by name; data of a part with several links are computed once."""
 
     def __init__(self, mechanism: Mechanism, assembly: Assembly, lines: Mapping[str, int]) -> None:
         self._mechanism = mechanism
@@ -52,14 +52,14 @@ class Describer:
         self._facts: dict[int, tuple[Fact, ...]] = {}
 
     def thing(self, name: str, kind: Kind, first: int, second: int) -> Thing:
-        """The thing of that name, which scene and description share, and the numbers of the bodies that it joins."""
+        """The entry of that name in scene and description, and the numbers of the bodies that it joins."""
         what, address, facts = self._said(name)
         unit = name.rpartition("/")[0]
         line = line_of(address, self._lines) if address else None
         return Thing(name, kind, (first, second), what, unit if unit in self._copies else "", address, line, facts)
 
     def _said(self, name: str) -> tuple[str, str, tuple[Fact, ...]]:
-        """What it is, its address and its facts."""
+        """Its kind, address and facts."""
         if (link := self._links.get(name) or self._links.get(name.removesuffix(_FOOT))) is not None:
             return "ground" if name.endswith(_FOOT) else kind_name(link.part), self._link_address(link), self._link_facts(link)
         if (gauge := self._assembly.gauges.get(name)) is not None:
@@ -95,7 +95,7 @@ class Describer:
 
 
 def part_facts(record: object) -> Iterator[Fact]:
-    """The single numbers of a description, under the names that they are set by; places and matrices are seen or looked up."""
+    """The scalar numbers of a description, under the names of their keys; positions and matrices are left out."""
     for address, value, node in node_of(type(record)).numbers(record):
         if "." not in address or address.startswith("profile."):
             form = field_unit(node.quantity)

@@ -1,4 +1,4 @@
-"""A stage to turn and to play with, in a notebook or as a page of its own."""
+"""An interactive view of a stage, in a notebook or as a separate page."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _STYLE = (
 
 @dataclass(frozen=True, eq=False)
 class View(CheckedFields):
-    """A stage that turns, with its motions: notebooks show it, `save` writes it as a page that stands alone.
+    """An interactive stage with its motions: notebooks show it, `save` writes it as a self-contained page.
 
-    `motion` is the one that it begins with, `height` that of its frame in a notebook, in pixels; `picture` (HTML) is what stands there
-    in print and where nothing can turn.
+    `motion` is the first one shown, `height` that of its frame in a notebook, in pixels; `picture` (HTML) replaces it
+    in print and without WebGL.
     """
 
     data: StageData = field(repr=False)
@@ -36,14 +36,14 @@ class View(CheckedFields):
 
     @property
     def html(self) -> str:
-        """The page: one file, nothing loaded from anywhere, the same bytes for the same stage."""
+        """The page: one file, nothing loaded, equal bytes for equal stages."""
         name = escape(self.data.name)
         head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>{name}</title>'
         body = f"<main><h1>{name}</h1>{fragment(self.data, motion=self.motion, instead=self.picture)}</main>"
         return f'<!doctype html><html lang="en"><head>{head}<style>{_STYLE}</style></head><body>{body}</body></html>\n'
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the page; the file is there whole or not at all."""
+        """Write the page, completely or not at all."""
         return write(path, self.html)
 
     def _repr_html_(self) -> str:
@@ -52,12 +52,12 @@ class View(CheckedFields):
 
 @check_arguments
 def view(mechanism: Mechanism, *, motion: str = _FIRST) -> View:
-    """The stage of a description as it turns and moves, of the first design of a batch.
+    """Show the moving stage of a description, of the first design of a batch.
 
-    It begins with `motion`: "stroke B1", "axis x", "deflection own weight", or, at first, "mode 1" (at rest where it has none). Modes,
-    unit strokes and deflections are those of the lumped model, motions of the platform those of the ideal one; what the stage has not got
-    is left out, and the viewer says why. Motions are small ones, drawn exaggerated: the factor stands beside them. Raises `DesignError`
-    where the stage cannot be drawn.
+    It begins with `motion`: "stroke B1", "axis x", "deflection own weight", or, by default, "mode 1" (undeformed without one). Modes,
+    unit strokes and deflections are those of the lumped model, motions of the platform those of the ideal one. Missing parts are left out,
+    with the reason in the viewer. Motions are small ones, drawn exaggerated by the displayed factor. Raises `DesignError` if the stage
+    cannot be drawn.
 
     >>> import flexstage as fs
     >>> fs.view(fs.case("parallelogram")).html[:15]
@@ -66,12 +66,12 @@ def view(mechanism: Mechanism, *, motion: str = _FIRST) -> View:
     data = stage_data(mechanism)
     names = [f"{each.group.value} {each.name}" for each in data.motions]
     if motion not in (_FIRST, *names):
-        raise refuse(motion, "the stage has no motion of this name", suggest_nearest(motion, names))
+        raise refuse(motion, "unknown motion", suggest_nearest(motion, names))
     return view_of(mechanism, data, motion)
 
 
 def view_of(mechanism: Mechanism, data: StageData, motion: str = _FIRST) -> View:
-    """The view of a stage whose data is known, with the stage's picture."""
+    """The view of a stage with known data, with the stage's picture."""
     from flexstage.show.notebook import to_html  # loads matplotlib
 
     return View(data, motion, picture=to_html(mechanism))

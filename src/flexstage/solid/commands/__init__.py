@@ -1,1 +1,1 @@
-"""Commands of the solid wing, a module each, or one for those that belong together."""
+"""Commands of the solid model, one module for each group."""

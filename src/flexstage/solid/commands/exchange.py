@@ -1,4 +1,4 @@
-"""Commands about solids in files: `cad` writes a stage (STEP, VTU, GLB), `import` states a STEP file, `superelement` writes matrices."""
+"""Commands about solids in files: `cad` writes a stage (STEP, VTU, GLB), `import` reads a STEP file, `superelement` writes matrices."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def cad(
     Outlines are checked against each other first: what does not meet, overlaps or nearly coincides is told, and keeps it from being meshed.
     """
     if output is None and mesh is None and gltf is None:
-        raise typer.BadParameter("name a file to write, e.g. -o stage.step, --mesh stage.vtu or --gltf stage.glb", param_hint="--output")
+        raise refuse("--output", "missing", "Use -o stage.step, --mesh stage.vtu or --gltf stage.glb")
     mechanism = open_design(design, changes, [("--output", output), ("--mesh", mesh), ("--gltf", gltf)])
     for path, option, content in _contents(mechanism, {"--output": output, "--mesh": mesh, "--gltf": gltf}, order, modes):
         save(path, content, option)
@@ -73,7 +73,7 @@ def state(
     mechanism = load(design)
     chosen = _material(mechanism, material)
     require_solver()
-    from flexstage.solid.fea.geometry.imported import measure, with_properties  # needs the solver, refused by name where it is missing
+    from flexstage.solid.fea.geometry.imported import measure, with_properties  # needs the solver
 
     density = float(mechanism.materials[chosen].density)
     stated = with_properties(measure(part, solid), str(part.resolve()), chosen, density, solid)
@@ -116,7 +116,7 @@ def _material(mechanism: Mechanism, name: str | None) -> str:
 
 
 def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, modes: int) -> Iterator[tuple[Path, str, bytes]]:
-    """The files that are wanted, with their options, one after the other."""
+    """The requested files, with their options, one after the other."""
     require_solver()
     stage, fineness = with_drawn_parts(mechanism), Fineness(order=order)
     _check_contact(stage, meshed=wanted["--mesh"] is not None or wanted["--gltf"] is not None)
@@ -133,7 +133,7 @@ def _contents(mechanism: Mechanism, wanted: dict[str, Path | None], order: int, 
 
 
 def _check_contact(stage: Mechanism, *, meshed: bool) -> None:
-    """Findings keep a stage from being meshed; drawn it may be all the same, to be mended in CAD."""
+    """Errors prevent meshing a stage, but not drawing it for a repair in CAD."""
     findings = stage_findings(stage, Cache())
     if meshed:
         require(findings)

@@ -1,4 +1,4 @@
-"""The modes of a stage by finite elements, for commands of other wings that show them beside theirs."""
+"""The modes of a stage by finite elements, for comparison in commands of other packages."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from flexstage.solid.results.resolution import DEFAULT
 
 
 def fea_modes(mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
-    """Modes from the cache, or computed if asked for; where there are none it is said how to get them."""
+    """Modes from the cache, or computed if requested; else a note on the option that computes them."""
     if computing:
         with progress_bar() as shown:
             return modes.fea_modes(mechanism, DEFAULT, solids(Ways(Cache(), shown.step, notice=print_warning)))
     found = modes.fea_modes_from_cache(mechanism, Cache())
     if found is None:
-        print_note("not given: FEA: the cache does not hold this stage; --fea computes it")
+        print_note("not given: FEA: not in the cache; --fea computes it")
     return found

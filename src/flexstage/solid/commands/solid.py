@@ -61,7 +61,7 @@ if TYPE_CHECKING:
     from flexstage.show.viewer.motions import Motion
     from flexstage.solid.show import report as reports
     from flexstage.solid.show import sections as pages
-else:  # few are asked for a report
+else:  # reports are rare
     page, reports, pages = Late("flexstage.show.page"), Late("flexstage.solid.show.report"), Late("flexstage.solid.show.sections")
 
 
@@ -88,7 +88,7 @@ Memory: TypeAlias = Annotated[
 
 @dataclass(frozen=True)
 class SolidOptions:
-    """How exact a solid study is to be, and what it may take."""
+    """Accuracy of a solid study, and its resources."""
 
     accuracy: Accuracy = "1 %"
     order: Order = None
@@ -96,15 +96,15 @@ class SolidOptions:
 
     @property
     def resolution(self) -> Resolution:
-        """The accuracy and the order. Raises `DesignError` for what is out of range."""
+        """The accuracy and the order. Raises `DesignError` for values out of range."""
         share = parse(self.accuracy, RATIO, where="--accuracy")
         if not 1e-6 <= share < 1.0:
-            what = f"{self.accuracy} is no relative error to ask for"
-            raise refuse("--accuracy", what, 'Give one between 0.0001 % and 100 %, e.g. "1 %"')
+            what = f"must be between 1e-6 and 1 (got {self.accuracy})"
+            raise refuse("--accuracy", what, 'Use e.g. "1 %"')
         return Resolution(share, self.order)
 
     def ways(self, shown: ProgressBar, pool: Pool | None = None) -> Ways:
-        """By the cache of the user, with the progress shown. Raises `DesignError` for no size of memory."""
+        """Options of the jobs: the cache of the user, with progress. Raises `DesignError` for an invalid size of memory."""
         return Ways(Cache(), shown.step, Limits(memory=_size(self.memory)), pool, print_warning)
 
 
@@ -186,7 +186,7 @@ def verify(
 
 
 def _verify(mechanism: Mechanism, asked: Resolution, ways: Ways) -> verification.Verification:
-    """The verification, its cost told before it begins, and each verdict as it is known."""
+    """The verification; prints its cost before the computation, and each verdict after it."""
     todo = verification_plan(mechanism, asked, ways)
     print_note(str(todo))
     work_ahead(todo, ways)
@@ -222,12 +222,12 @@ def calibrate(
 
 
 def _size(memory: str | None) -> float | None:
-    """The size of memory stated [bytes]."""
+    """The specified size of memory [bytes]."""
     if memory is None:
         return None
     size = parse(memory, Quantity("size of memory", "B", "GB", "8 GB"), where="--memory")
     if size <= 0.0:
-        raise refuse("--memory", f"{memory} is no memory to plan with", 'Give what may be used, e.g. "8 GB"')
+        raise refuse("--memory", f"must be a size of memory (got {memory})", 'Use e.g. "8 GB"')
     return size
 
 
@@ -235,7 +235,7 @@ def _hinge_study(mechanism: Mechanism, asked: Resolution, ways: Ways) -> _Result
     found = solid_hinges(mechanism, hinges(asked.accuracy, asked.order, ways))
     warnings = _inexact_hinges(found)
     return _Result(
-        said=page.Headline(f"{len(found)} distinct hinges, {len(warnings) or 'none'} of them less exact than was asked.", not warnings),
+        said=page.Headline(f"{len(found)} distinct hinges, {len(warnings) or 'none'} of them below the required accuracy.", not warnings),
         results=({"hinges": found},),
         tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
         sections=lambda: iter([pages.hinge_section(found)]),
@@ -296,7 +296,7 @@ _STUDIES = {Scope.HINGE: _hinge_study, Scope.UNIT: _unit_study, Scope.STAGE: _st
 
 
 def free_end_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Leaves whose ends theory lets warp, while their solids are clamped whole.
+    """Leaves with ends free to warp in theory, but clamped in the solid model.
 
     >>> free_end_warnings(Mechanism("stage"))
     ()
@@ -307,25 +307,25 @@ def free_end_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
         if isinstance(part, Leaf) and part.ends is LeafEnds.FREE and link.material is not None:
             clamped = leaf_diagonal(replace(part, ends=LeafEnds.CLAMPED), link.material)[3]
             stiffer = float(np.max(np.real(leaf_diagonal(part, link.material)[3] / clamped))) - 1.0
-            what = f"theory lets its ends warp, finite elements clamp them: in twist they are {100.0 * stiffer:.3g} % stiffer"
+            what = f"its ends warp in theory, but are clamped in finite elements: {100.0 * stiffer:.3g} % stiffer in twist"
             found[link.link.part] = Finding(f"parts.{link.link.part}", what, 'Compare with ends = "clamped"')
     return tuple(found.values())
 
 
 def _inexact_hinges(hinges: Mapping[str, SolidHinge]) -> tuple[Finding, ...]:
-    """Warnings about hinges whose 6x6 is not as exact as was asked."""
+    """Warnings about hinges whose 6x6 misses the required accuracy."""
     found = ((name, hinge.found.finding) for name, hinge in hinges.items())
     return tuple(Finding(name, each.what, each.advice) for name, each in found if each is not None)
 
 
 def _accuracy_warnings(what: str, found: Converged[Any], asked: Resolution) -> tuple[Finding, ...]:
-    """A warning where the error estimated is not as small as was asked; where it is, it is told."""
+    """A warning if the estimated error exceeds the required accuracy; else a note."""
     text = _accuracy_text(found)
     if found.error <= asked.accuracy:
         print_note(f"{what}: {text}")
         return ()
-    more = found.stopped or (f"Ask for --order {found.order + 1}" if asked.order is not None else "This is the highest order")
-    return (Finding(what, f"{text}; {100.0 * asked.accuracy:.2g} % was asked", more.rstrip(".")),)
+    more = found.stopped or (f"Use --order {found.order + 1}" if asked.order is not None else "This is the highest order")
+    return (Finding(what, f"{text}; {100.0 * asked.accuracy:.2g} % required", more.rstrip(".")),)
 
 
 def _accuracy_text(found: Converged[Any]) -> str:
@@ -334,13 +334,13 @@ def _accuracy_text(found: Converged[Any]) -> str:
         locked, number = ", ".join(found.unestimated[:3]), len(found.unestimated)
         return f"of {number} figures ({locked}{', ...' if number > 3 else ''}) {NOT_ESTIMATED}; of the others it is {size}"
     more = f", {found.order + 1} in {found.raised} of the components" if found.raised else ""
-    return f"the error estimated of finite elements is {size} at order {found.order}{more}"
+    return f"the estimated error of finite elements is {size} at order {found.order}{more}"
 
 
 def _accuracy_headline(found: Converged[Any], asked: Resolution) -> Headline:
-    """How exact a result is, against what was asked."""
+    """Accuracy of a result, compared with the required accuracy."""
     said = _accuracy_text(found)
-    return page.Headline(f"{said[0].upper()}{said[1:]}; {100.0 * asked.accuracy:.2g} % was asked.", found.error <= asked.accuracy)
+    return page.Headline(f"{said[0].upper()}{said[1:]}; {100.0 * asked.accuracy:.2g} % required.", found.error <= asked.accuracy)
 
 
 def _verification_tables(found: verification.Verification) -> Iterator[Table | str | None]:

@@ -1,6 +1,6 @@
-"""GLB files (glTF 2.0, binary): the surface of a stage, one coloured node a body or link, with motions as animations of morph targets.
+"""GLB files (glTF 2.0, binary): the surface of a stage, a coloured node for each body or link, motions as animated morph targets.
 
-Metres; the stage's z is glTF's y (up). Every node has one morph target a motion; its animation moves it as a sine, in one second.
+Metres; the stage's z is glTF's y (up). Every node has one morph target for each motion; its animation is a sine over one second.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from flexstage.solid.fea.solver.component import groups
 from flexstage.solid.fea.solver.surface import vertex_places
 
 _KEYS = 33
-"""Keyframes of one period: a sine drawn by chords is within 0.5 % of its amplitude."""
+"""Keyframes of one period: linear interpolation of a sine is within 0.5 % of its amplitude."""
 _SECONDS = 1.0
 _LARGEST = 0.05
 """The largest displacement of an animation over the diagonal of the stage."""
 _UPRIGHT = [-float(np.sqrt(0.5)), 0.0, 0.0, float(np.sqrt(0.5))]
-"""Quaternion that turns z up into y up."""
+"""Quaternion of the rotation from z up to y up."""
 _LINK: Colour = (0.80, 0.81, 0.83)
 
 
@@ -80,9 +80,9 @@ def _split_surface(item: Placed, vertices: Array, shifts: Array) -> dict[str, Su
 
 
 def gltf(stage: str, shown: Mapping[str, Surface], motions: Sequence[Motion]) -> bytes:
-    """The GLB file of a stage's surfaces with one animation a motion.
+    """The GLB file of a stage's surfaces with one animation for each motion.
 
-    Bodies are coloured each by itself, links grey. Normals are left to the viewer, which then shades every triangle flat.
+    Bodies have different colours, links are grey. Normals are omitted, so viewers shade every triangle flat.
 
     >>> gltf("nothing", {}, [])[:4]
     b'glTF'
@@ -104,7 +104,7 @@ def gltf(stage: str, shown: Mapping[str, Surface], motions: Sequence[Motion]) ->
 
 
 class _Buffer:
-    """The file's binary data, as it grows."""
+    """The file's binary data."""
 
     def __init__(self, document: gl.GLTF2) -> None:
         self.data = bytearray()

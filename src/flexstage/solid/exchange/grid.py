@@ -1,4 +1,4 @@
-"""Grids: a component's mesh as quadratic tetrahedra for other programs, made in a process of its own."""
+"""Grids: a component's mesh as quadratic tetrahedra for other programs, made in a separate process."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _CORNERS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
 _ORDER = (1, 0, 2, 3)
-"""Corners in the order of VTK, whose tetrahedra turn the other way."""
+"""Corners in the order of VTK, whose tetrahedra have the opposite orientation."""
 _EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 """Edges in the order of VTK."""
 
@@ -45,7 +45,7 @@ class Gridding(ComponentJob):
 
 
 def grid(mesh: PieceMesh) -> Grid:
-    """A mesh's tetrahedra with the middles of their edges, which lie on the curved geometry.
+    """A mesh's tetrahedra with mid-edge points on the curved geometry.
 
     >>> import ngsolve
     >>> from netgen import occ

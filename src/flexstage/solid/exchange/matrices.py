@@ -1,4 +1,4 @@
-"""Reduced matrices of one solid of a stage in a file, as a part with ports that theory and other programs can take."""
+"""Reduced matrices of one solid of a stage in a file, as a part with ports for theory and other programs."""
 
 from __future__ import annotations
 
@@ -38,15 +38,15 @@ def export_superelement(
     progress: Progress | None = None,
     memory: float | None = None,
 ) -> Superelement:
-    """Reduce one solid of a stage by finite elements, write its matrices as an NPZ file, and return the part that is known by them.
+    """Reduce one solid of a stage by finite elements, write its matrices as an NPZ file, and return the part defined by them.
 
-    The solid is that of the body or link of this `name`, with all that is one solid with it (see `fea.component`). Its ports are the end
-    faces of links where it meets what is not: the ground, rigid bodies, stacks, other units. Each keeps plane; it is named after the link
-    (`left`, or `left-platform` where the link ends on two of them), its frame is at the middle of the face, in the axes the solid is drawn
-    in: those of the stage, or of the unit. Stiffness `K` and mass `M` are in SI over the ports' twists, then inner coordinates: the
-    `reduction.modes` lowest modes with all ports held, and the static response to wrenches on its bodies and to the inertia of the ports'
-    motions, which stands for the modes that are left out. Raises `DesignError` as `model`
-    does, where no solid has that name, where it has less than two ports, and for a stack, whose stroke the matrices would not hold.
+    The solid is that of the body or link of this `name`, with all parts of the same component (see `fea.component`). Its ports are the end
+    faces of links to other components: the ground, rigid bodies, stacks, other units. Each remains plane and is named after the link
+    (`left`, or `left-platform` if the link ends on two of them). Its frame is at the middle of the face, in the axes of the drawing:
+    those of the stage, or of the unit. Stiffness `K` and mass `M` are in SI over the ports' twists, then inner coordinates. These are the
+    `reduction.modes` lowest modes with all ports fixed, and the static response to wrenches on its bodies and to the inertia of the ports'
+    motions, which replaces the omitted modes. Raises `DesignError` as `model` does; for an unknown name; for fewer than two ports; and for
+    a stack, because the matrices have no stroke.
     """
     target = Path(path)
     if target.suffix != ".npz":
@@ -56,27 +56,25 @@ def export_superelement(
     sound_components(shape, cache)
     ((_, element),) = reduce_parts((whole,), replace(reduction, residual=True), Ways(cache, progress, Limits(memory=memory)))
     if element.strokes:
-        raise refuse(name, "a stack's stroke is not in its stiffness and mass", "Export the bodies on its both sides")
+        raise refuse(name, "a stack's stroke is not in its stiffness and mass", "Export the bodies on both of its sides")
     with atomic_write(target) as place, place.open("wb") as stream:
         np.savez(stream, K=sum(element.stiffness.values()), M=sum(element.inertia.values()))
     return superelement(Superelement(FileUnits.SI, _ports(whole), file=str(target), source=f"flexstage, {reduction.modes} modes"))
 
 
 def _component(parts: tuple[Component, ...], name: str) -> Component:
-    """The component that a body or link is part of."""
+    """The component that contains a body or link."""
     held = {piece.owner: part for part in parts for piece in part.pieces}
     if name not in held:
-        raise refuse(name, "no solid of the stage has this name", suggest_nearest(name, held))
+        raise refuse(name, "unknown solid", suggest_nearest(name, held))
     return held[name]
 
 
 def _free(part: Component) -> Component:
-    """The component joined to nothing, all its joints ports that stay plane."""
+    """The component without neighbours, all its joints ports that remain plane."""
     joints = [item.joint for item in part.interfaces]
     if len(joints) + len(part.fixed) < 2:
-        raise refuse(
-            part.name, f"it meets what is not of it at {len(joints) + len(part.fixed)} place", "A superelement has two or more ports"
-        )
+        raise refuse(part.name, f"it has only {len(joints) + len(part.fixed)} interface", "A superelement has two or more ports")
     interfaces = (*(replace(item, yields=False) for item in part.interfaces), *(Interface(joint) for joint in part.fixed))
     return replace(part, interfaces=interfaces, fixed=())
 

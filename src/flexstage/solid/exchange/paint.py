@@ -21,7 +21,7 @@ _COLOURS: tuple[Colour, ...] = (
 
 
 def palette(names: Iterable[str]) -> Mapping[str, Colour]:
-    """A colour for every distinct name, in their order; from the start again where there are more than ten.
+    """A colour for every distinct name, in order; repeated after ten names.
 
     >>> colours = palette(["steel", "stack", "steel"])
     >>> list(colours), colours["steel"] == colours["stack"]

@@ -1,6 +1,6 @@
 """STEP files: a stage as one assembly of named solids, with materials, densities and colours (ISO 10303-21, AP214; lengths in mm).
 
-The CAD kernel writes every solid by itself; here they become parts of one assembly, each a product with its address as name.
+The CAD kernel writes every solid separately; here they become parts of one assembly, each a product with its address as name.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ REPRESENTATION_CONTEXT('','3D'));
 #19=DIRECTION('',(1.,0.,0.));
 #20=AXIS2_PLACEMENT_3D('',#17,#18,#19);
 """
-"""The assembly and the context of its shapes; the places of parts are filled in."""
+"""The assembly and the context of its shapes, with placeholders for the parts."""
 _USE = """#1=NEXT_ASSEMBLY_USAGE_OCCURRENCE('{count}',{name},'',{root},{definition},$);
 #2=CARTESIAN_POINT('',(0.,0.,0.));
 #3=DIRECTION('',(0.,0.,1.));
@@ -95,7 +95,7 @@ class Part:
 
 
 def stage_parts(stage: Stage) -> tuple[Part, ...]:
-    """The solids of a stage: one a link, one a body (and a material), the ground's outlines each by itself.
+    """The solids of a stage: one for each link, one for each body (and material), the ground's outlines separately.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [part.name for part in stage_parts(stage_pieces(parallelogram()))]
@@ -113,9 +113,9 @@ def stage_parts(stage: Stage) -> tuple[Part, ...]:
 
 
 def step(mechanism: Mechanism) -> bytes:
-    """The STEP file of a stage as it is described.
+    """The STEP file of a stage as described.
 
-    Raises `DesignError` naming every link that has no shape, and where nothing at all has one.
+    Raises `DesignError` with the names of all links without a shape, and for a stage without any shape.
 
     >>> step(Mechanism("nothing"))
     Traceback (most recent call last):
@@ -132,7 +132,7 @@ def _fuse(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
 
 
 def step_text(name: str, parts: Sequence[Part]) -> str:
-    """Parts as the text of a STEP file: one product each, all placed in an assembly of the given name.
+    """Parts as the text of a STEP file: one product each, all placed in an assembly of this name.
 
     >>> step_text("nothing", ()).splitlines()[0]
     'ISO-10303-21;'
@@ -167,7 +167,7 @@ def _use(part: Part, count: int, own: Mapping[int, str], offset: int, used: int)
 
 
 def _renumbered(entities: Mapping[int, str], offset: int) -> Iterator[str]:
-    """Entities with their numbers moved up."""
+    """Entities renumbered by an offset."""
     for number, entity in entities.items():
         yield _REFERENCE.sub(lambda match: f"#{int(match[1]) + offset}", f"#{number}={entity}")
 
@@ -200,7 +200,7 @@ def _write_entities(part: Part, colour: Colour, path: Path) -> dict[int, str]:
 
 
 def _name_entity(entity: str, name: str) -> str:
-    """Products and solids bear the part's name; written here, for the kernel's writer knows only some letters."""
+    """Give products and solids the part's name; the kernel's writer does not support all letters."""
     kind, last = entity.partition("(")[0], entity[entity.rfind(",") :]
     if kind.endswith("=PRODUCT"):
         return f"{kind}({quote(name)},{quote(name)},''{last}"

@@ -1,7 +1,7 @@
 """VTU files: the meshes of all components of a stage as one unstructured grid of quadratic tetrahedra, in metres.
 
-Cells carry numbers: of their piece, of the body or link it belongs to, of the material and of the component; the names behind the numbers
-stand in a comment at the head of the file. Components do not share points where they meet: they are joined by coordinates, not by nodes.
+Cells have numbers of their piece, their body or link, the material and the component; a comment at the head of the file lists the
+names of these numbers. Components do not share points at their interfaces: they are joined by coordinates, not by nodes.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ class StageMesh:
 
 
 def stage_mesh(mechanism: Mechanism, fineness: Fineness, limits: Limits = _LIMITS, progress: Progress | None = None) -> StageMesh:
-    """Mesh every distinct component once, in a process of its own, and place it with every copy.
+    """Mesh every distinct component once, in a separate process, and place it for every instance.
 
-    Raises `DesignError` where the outlines do not form solids or cannot be meshed, and where nothing has a shape.
+    Raises `DesignError` if the outlines do not form solids or cannot be meshed, and for a stage without any shape.
 
     >>> stage_mesh(Mechanism("nothing"), Fineness())
     Traceback (most recent call last):
@@ -102,7 +102,7 @@ def _write_xml(grids: Sequence[Grid], data: Mapping[str, Array]) -> bytes:
 
 
 def _comment(content: bytes, names: Mapping[str, Sequence[str]]) -> bytes:
-    """The file with the names behind its numbers as a comment."""
+    """The file with a comment that lists the names of its numbers."""
     lines = ["lengths in metres; numbers of the cell data:"]
     lines += [f"{kind} {number}: {escape(printable(name))}" for kind, members in names.items() for number, name in enumerate(members)]
     comment = "\n".join(lines).replace("--", "- -")

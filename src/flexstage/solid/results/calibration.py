@@ -1,4 +1,4 @@
-"""Calibration: hinges of beam theory replaced by their 6x6 from finite elements, so that the lumped model has FEA's accuracy."""
+"""Calibration: hinges of beam theory replaced by their 6x6 from finite elements, for FEA's accuracy in the lumped model."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _LARGEST_ERROR = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Calibration(InNotebook):
-    """The hinges that were computed, the `parts` that stand in for them, and the design file's `text` with these parts."""
+    """The computed hinges, the `parts` that replace them, and the design file's `text` with these parts."""
 
     hinges: Mapping[str, SolidHinge]
     parts: Mapping[str, ComplianceMatrix]
@@ -52,10 +52,10 @@ class Calibration(InNotebook):
 
 @check_arguments
 def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
-    """Compute the 6x6 of every distinct hinge in a design file's text and put them in, comments kept.
+    """Compute the 6x6 of every distinct hinge in a design file's text and insert them; comments are kept.
 
-    Raises `DesignError` for hinges that are calibrated already, that single copies depart from, that are members of a compound, or whose
-    6x6 FEA could not find.
+    Raises `DesignError` for hinges that are calibrated already, have overrides in single instances, are members of a compound, or whose
+    6x6 FEA could not compute.
     """
     mechanism = loads(text, where=where)
     require(_refuse_calibrated(mechanism))
@@ -68,10 +68,10 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
 
 
 def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, ComplianceMatrix]:
-    """The computed hinges as compliance matrices, of the mass and with the intended freedoms of the drawn ones.
+    """The computed hinges as compliance matrices, with the mass and the intended DOFs of the drawn ones.
 
-    The 6x6 is given the symmetry of the drawn hinge; a freedom whose compliance FEA cannot tell from that of the blocks beside the hinge
-    keeps beam theory's. Raises `DesignError` for a 6x6 that is known to worse than 10 %.
+    The 6x6 has the symmetry of the drawn hinge. A DOF whose compliance FEA cannot separate from that of the adjacent blocks
+    keeps beam theory's. Raises `DesignError` for a 6x6 with an error above 10 %.
 
     >>> stand_ins({})
     {}
@@ -98,14 +98,14 @@ def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, ComplianceMatrix]:
 def _doubt(name: str, error: float | None) -> Finding:
     if error is None:
         return Finding(f"parts.{name}", f"the error of its 6x6 by FEA is not known: {NO_ESTIMATE}", LEAVE)
-    what = f"its 6x6 by FEA is known to {100.0 * error:.2g} % only, no better than beam theory's"
-    return Finding(f"parts.{name}", what, "Ask for more accuracy")
+    what = f"the error of its 6x6 by FEA is {100.0 * error:.2g} %, no better than beam theory's"
+    return Finding(f"parts.{name}", what, "Increase the accuracy")
 
 
 def substitute_parts(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:
-    """The stage with the computed hinges as compliance matrices, where no copy has an override; members of compounds stay as drawn.
+    """The stage with the computed hinges as compliance matrices, except instances with an override and members of compounds.
 
-    Raises `DesignError` where copies depart from a shared hinge.
+    Raises `DesignError` for overrides of a shared hinge.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> substitute_parts(double_triangle(), {}) == double_triangle()
@@ -122,25 +122,25 @@ def substitute_parts(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> M
 
 
 def _rename_parts(links: Mapping[str, Link], names: Mapping[str, str], owner: str) -> dict[str, Link]:
-    """Links with the parts that stand in for theirs."""
+    """Links with the replaced parts."""
     return {name: replace(link, part=names.get(owner + name, link.part)) for name, link in links.items()}
 
 
 def _refuse_calibrated(mechanism: Mechanism) -> Iterator[Finding]:
     for name in calibrated_parts(mechanism):
-        yield Finding(f"parts.{name}", "its 6x6 is of FEA origin already", "Calibrate the file that it was made from")
+        yield Finding(f"parts.{name}", "its 6x6 is from FEA already", "Calibrate the original file")
 
 
 def _refuse_members(mechanism: Mechanism) -> Iterator[Finding]:
     for name in {link.link.part: link for link in expand(mechanism).links.values() if link.of is not None}:
-        what = "it consists of several hinges: no 6x6 can stand for one of them"
-        yield Finding(f"parts.{name}", what, "Draw them as links of their own to calibrate them")
+        what = "it consists of several hinges, which cannot be calibrated separately"
+        yield Finding(f"parts.{name}", what, "Define them as separate links")
 
 
 def _refuse_overrides(mechanism: Mechanism) -> Iterator[Finding]:
     for link in expand(mechanism).links.values():
         if link.described.part != mechanism.parts[link.link.part]:
-            yield Finding(link.name, f"departs from its part {link.link.part}, whose 6x6 is shared", "Give that link a part of its own")
+            yield Finding(link.name, f"overrides its part {link.link.part}, whose 6x6 is shared", "Define a separate part for that link")
 
 
 _TURN = spatial_rotation(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
@@ -148,10 +148,10 @@ _TURN = spatial_rotation(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0,
 
 
 def _symmetrise(hinge: SolidHinge) -> Array:
-    """The 6x6 with the symmetry of the drawn hinge, which its mesh has not quite.
+    """The 6x6 with the symmetry of the drawn hinge, which its mesh has only approximately.
 
-    Reflected across y and z a hinge is itself, and across x if its roots are alike; a round one is alike all round. What cannot be told
-    from the stubs is as beam theory has it, alone.
+    Reflected across y and z a hinge is itself, and across x if its roots are equal; a round one is axially symmetric. Compliances that
+    cannot be separated from the stubs are those of beam theory.
     """
     matrix, known = np.array(hinge.found.compliance), np.array(hinge.separable)
     matrix[~known] = matrix[:, ~known] = 0.0

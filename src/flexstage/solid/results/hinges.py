@@ -1,7 +1,7 @@
-"""The 6x6 of every distinct hinge of a stage, as a solid by itself, with the roots it has in the stage.
+"""The 6x6 of every distinct hinge of a stage, as an isolated solid with the roots it has in the stage.
 
-The roots are part of a hinge: what a block yields where a hinge grows out of it no model with rigid bodies has anywhere else. A part that
-is used with different roots is as many hinges.
+The roots are part of a hinge: models with rigid bodies have no other compliance of a block around a hinge. A part used with different
+roots is several hinges.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 _MOST_STUB = 0.9
 
 Hinges: TypeAlias = Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]]
-"""Computes hinges by name: plainly, or from a cache and telling its progress."""
+"""Computes hinges by name: directly, or from a cache with progress reports."""
 
 
 @dataclass(frozen=True, eq=False)
 class DistinctHinge:
-    """A distinct hinge: the `shared` part that it is, its form, and the drawn `links` that are like it."""
+    """A distinct hinge: its `shared` part, its form, and the equal drawn `links`."""
 
     shared: Annotated[str, INNER]
     form: Annotated[HingeForm, INNER]
@@ -48,7 +48,7 @@ class DistinctHinge:
 
     @property
     def roots(self) -> Annotated[Roots, VIEW]:
-        """Which of its ends grow on blocks."""
+        """Its ends that grow on blocks."""
         return self.form.roots
 
 
@@ -70,29 +70,29 @@ class SolidHinge(DistinctHinge, InNotebook):
 
     @property
     def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
-        """Whether each direct compliance can be told from that of the stubs beside the hinge: they have at most 90 % of the whole.
+        """Whether each direct compliance can be separated from that of the adjacent stubs: they have at most 90 % of the whole.
 
-        In torsion a wide notch is stiffer than its stubs, which are taken off as beams held from warping (Vlasov): a small difference of
-        two larger numbers, and beams are too rough for it.
+        In torsion a wide notch is stiffer than its stubs, which are subtracted as beams with restrained warping (Vlasov). This is a small
+        difference of two larger numbers, for which beams are too inaccurate.
         """
         whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))
         return tuple(bool(value) for value in own >= (1.0 - _MOST_STUB) * whole)
 
     @property
     def error(self) -> Annotated[float | None, RATIO]:
-        """Relative error estimated of any entry of the compliance at the hinge's end."""
+        """Estimated relative error of any entry of the compliance at the hinge's end."""
         return self.found.error if np.isfinite(self.found.error) else None
 
     @property
     def errors(self) -> Annotated[Array | None, RATIO]:
-        """Relative errors estimated of the direct compliances (6,) about the centre."""
+        """Estimated relative errors of the direct compliances (6,) about the centre."""
         if self.error is None:
             return None
         return np.maximum(self.error, np.where(np.isfinite(self.found.changes), self.found.changes, 0.0))
 
     @property
     def reasons(self) -> Mapping[str, str]:
-        """Why its errors are not known."""
+        """Reasons for unknown errors."""
         return {} if self.error is not None else dict.fromkeys(("error", "errors"), NO_ESTIMATE)
 
     @property
@@ -102,17 +102,17 @@ class SolidHinge(DistinctHinge, InNotebook):
 
     @property
     def elements(self) -> Annotated[int, VIEW]:
-        """Their number."""
+        """Number of elements."""
         return self.found.elements
 
     @property
     def freedoms(self) -> Annotated[int, VIEW]:
-        """Its number of unknowns."""
+        """Number of unknowns."""
         return self.found.freedoms
 
 
 def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS) -> Hinges:
-    """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, side by side, by `ways`."""
+    """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, in parallel, by `ways`."""
     asked = accuracy_of(accuracy, order)
 
     def compute(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
@@ -122,7 +122,7 @@ def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDA
 
 
 def accuracy_of(accuracy: float, order: int | None) -> Accuracy:
-    """What is asked of hinges where a stage is to reach an accuracy, with elements of at most an order.
+    """Requirements of hinges for a stage's accuracy, with elements of at most an order.
 
     >>> accuracy_of(0.01, 2).orders
     (2, 3)
@@ -131,13 +131,13 @@ def accuracy_of(accuracy: float, order: int | None) -> Accuracy:
 
 
 STANDARD_HINGES = hinges()
-"""To 1 %, by the cache of the user."""
+"""To 1 %, with the cache of the user."""
 
 
 def distinct_hinges(mechanism: Mechanism) -> dict[str, DistinctHinge]:
     """Every distinct hinge of a stage.
 
-    It is called as its part is; where that has different roots at different links, `part-link`; a copy that departs, by its link's name.
+    Its name is that of its part; `part-link` if the part has several roots; for an instance with an override, its link's name.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = distinct_hinges(double_triangle())
@@ -175,14 +175,14 @@ def _name(shape: Mechanism, links: list[PlacedLink], everything: list[list[Place
 
 @check_arguments
 def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, SolidHinge]:
-    """Compute the 6x6 of every distinct hinge that is drawn.
+    """Compute the 6x6 of every distinct drawn hinge.
 
-    Raises `DesignError` where a stage has none, and for kinds whose shape nobody offers.
+    Raises `DesignError` if a stage has none, and for kinds without a shape.
 
     >>> solid_hinges(Mechanism("bare"))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: links: none of them is a hinge with a shape. Only these have a 6x6 that can be computed.
+    flexstage.base.finding.DesignError: links: no hinge has a shape. Use notches, necks, leaves or rods.
     """
     found = distinct_hinges(mechanism)
     require_hinges(found)
@@ -191,24 +191,24 @@ def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dic
 
 
 def require_hinges(found: Mapping[str, DistinctHinge]) -> None:
-    """Raise a `DesignError` where a stage has no hinge that is drawn.
+    """Raise a `DesignError` if a stage has no drawn hinge.
 
     >>> require_hinges({})
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: links: none of them is a hinge with a shape. Only these have a 6x6 that can be computed.
+    flexstage.base.finding.DesignError: links: no hinge has a shape. Use notches, necks, leaves or rods.
     """
     if not found:
-        raise refuse("links", "none of them is a hinge with a shape", "Only these have a 6x6 that can be computed")
+        raise refuse("links", "no hinge has a shape", "Use notches, necks, leaves or rods")
 
 
 def as_drawn(hinge: DistinctHinge, solved: HingeSolid) -> SolidHinge:
-    """A hinge with what was computed of its form as `turned_forms` gives it, turned back to how it is drawn."""
+    """The result of a form from `turned_forms`, transformed to the drawn orientation."""
     return SolidHinge(hinge.shared, hinge.form, hinge.links, _turn_back(solved, hinge.form))
 
 
 def turned_forms(found: Mapping[str, DistinctHinge]) -> dict[str, HingeForm]:
-    """The forms that are computed of hinges: with the root at their second end where one end has one.
+    """The computed forms of hinges: with a single root always at the second end.
 
     >>> turned_forms({})
     {}
@@ -217,7 +217,7 @@ def turned_forms(found: Mapping[str, DistinctHinge]) -> dict[str, HingeForm]:
 
 
 def _is_turned(form: HingeForm) -> bool:
-    """A hinge that grows on a block at its first end only is the one that does so at its second, turned end for end; not of a crystal."""
+    """Whether a hinge has a root at its first end only: it is computed with exchanged ends; not for a crystal."""
     return form.roots.first and not form.roots.second and not form.material.is_cubic
 
 
@@ -228,6 +228,6 @@ def _turn(form: HingeForm) -> HingeForm:
 def _turn_back(found: HingeSolid, form: HingeForm) -> HingeSolid:
     if not _is_turned(form):
         return found
-    across = mirror(0)  # hinges are symmetric but for their roots
+    across = mirror(0)  # hinges are symmetric except for their roots
     compliance, stiffness, whole = (across @ each @ across for each in (found.compliance, found.stiffness, found.whole))
     return replace(found, compliance=compliance, stiffness=stiffness, whole=whole)

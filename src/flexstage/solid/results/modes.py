@@ -1,4 +1,4 @@
-"""Modes by finite elements for a comparison: computed when asked for, else taken from the cache where all of a stage is there."""
+"""Modes by finite elements for a comparison: computed if requested, else from the cache if the stage is there completely."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from flexstage.solid.results.resolution import DEFAULT, HIGHEST, Resolution, con
 
 @check_arguments
 def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> FeaModes:
-    """The modes of a stage as a solid, to the accuracy asked. Raises `DesignError` as the solid model does."""
+    """The modes of a stage as a solid, to the required accuracy. Raises `DesignError` as the solid model does."""
 
     def work(way: Reduction) -> FeaModes:
         model = read_solid(mechanism, way, reduce).model
@@ -36,7 +36,7 @@ def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids 
 
 
 def fea_modes_from_cache(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
-    """The modes of a stage as a solid where every component of some order is in the cache, the highest order first; else `None`.
+    """The modes of a stage as a solid from the cache, at the highest order with all components; `None` if there is none.
 
     >>> from pathlib import Path
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -49,7 +49,7 @@ def fea_modes_from_cache(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
             if found is not None:
                 before = _from_cache(mechanism, cache, coarsen(reduction_of_order(order)))
                 return found if before is None else FeaModes(found.modes, found.model, order, _errors(before, found))
-    except DesignError:  # parts without a shape: there is no solid model of this stage
+    except DesignError:  # parts without a shape: the stage has no solid model
         return None
     return None
 

@@ -1,4 +1,4 @@
-"""What solids of a stage cost before they begin: their jobs that are not in the cache, in phases, with unknowns, seconds and memory."""
+"""Cost of solids of a stage before the computation: jobs missing from the cache, in phases, with unknowns, seconds and memory."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ from flexstage.solid.results.resolution import Resolution, first_reductions, ord
 
 @dataclass(frozen=True)
 class Plan:
-    """The jobs of a computation by phase, how many are done at once, how many are in the cache already; what may come on top.
+    """The jobs of a computation by phase, the number of simultaneous jobs and of cached ones; possible further jobs.
 
-    Without the jobs of `needed` (keys) nothing can be told.
+    Failed jobs of `needed` (keys) prevent any result.
     """
 
     phases: Mapping[str, tuple[StoredJob, ...]]
@@ -41,17 +41,17 @@ class Plan:
 
     @property
     def jobs(self) -> tuple[StoredJob, ...]:
-        """All there are to do."""
+        """All jobs."""
         return tuple(chain.from_iterable(self.phases.values()))
 
     @property
     def seconds(self) -> float:
-        """What they usually take in one queue [s]."""
+        """Their usual duration in one queue [s]."""
         each = [job.seconds() for job in self.jobs]
         return max(sum(each) / self.lanes, max(each, default=0.0))
 
     def __str__(self) -> str:
-        """The plan in a line or two: how many jobs, the unknowns and the memory of the largest, seconds.
+        """The plan in one or two lines: number of jobs, unknowns and memory of the largest, seconds.
 
         >>> print(Plan({"hinges": ()}, lanes=2, cached=3))
         to do: nothing, all 3 parts are in the cache.
@@ -69,18 +69,18 @@ class Plan:
 
 
 def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hinges: Accuracy | None = None) -> Plan:
-    """What `verify` has to do in any case: hinges, the stage and its units alone at two orders.
+    """The minimum jobs of `verify`: hinges, the stage and its isolated units at two orders.
 
-    The accuracy of hinges is what is asked for, unless it is told. Outlines are checked against each other. Unknowns and seconds are those
-    of usual meshes of such parts, right within a factor of two or three; time left is told by what the first jobs took. Raises
-    `DesignError` where the stage cannot be read as a solid, or has no hinge.
+    The accuracy of hinges is by default the required one. Outlines are checked. Unknowns and seconds are those
+    of usual meshes, within a factor of two or three; the remaining time is estimated from the first jobs. Raises
+    `DesignError` if the stage cannot be read as a solid, or has no hinge.
     """
     shape, alone = with_drawn_parts(mechanism), units_alone(mechanism)
     check_together([shape, *alone], ways.cache, ways.pool)
     parts = [sound_components(shape, ways.cache)]
     try:
         parts += [sound_components(stage, ways.cache) for stage in alone]
-    except DesignError:  # told when its turn comes
+    except DesignError:  # reported in its phase
         alone = []
     require_hinges(distinct_hinges(shape))
     exact = accuracy_of(asked.accuracy, asked.order) if of_hinges is None else of_hinges
@@ -92,15 +92,15 @@ def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hi
 
     each = [jobs(stage, components) for stage, components in zip((shape, *alone), parts, strict=True)]
     names = "hinges", f"order {lower.fineness.order}", f"order {upper.fineness.order}"
-    more = f" Order {rest[0]} follows where that is not exact enough." if rest else ""
+    more = f" Order {rest[0]} follows if the accuracy is insufficient." if rest else ""
     phases = {name: chain.from_iterable(same) for name, same in zip(names, zip(*each, strict=True), strict=True)}
     return _plan(phases, ways, more, frozenset(job.key for job in chain.from_iterable(each[0])))
 
 
 def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *, bare: bool = False) -> Plan:
-    """What `solid` has to do in any case for stages as they are drawn: their components at two orders, `bare` of modes.
+    """The minimum jobs of `solid` for stages as drawn: their components at two orders, without modes if `bare`.
 
-    Outlines are checked. Raises `DesignError` where a stage cannot be read as a solid.
+    Outlines are checked. Raises `DesignError` if a stage cannot be read as a solid.
     """
     check_together(stages, ways.cache, ways.pool)
     parts = [part for stage in stages for part in sound_components(stage, ways.cache)]
@@ -110,7 +110,7 @@ def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *
 
 
 def _plan(phases: Mapping[str, Iterable[StoredJob]], ways: Ways, further: str, needed: frozenset[str]) -> Plan:
-    """A plan of the jobs of phases by name, each of them once; refused where one that is needed is far beyond memory or time."""
+    """A plan of the distinct jobs of phases by name; refused if a needed one far exceeds memory or time."""
     whole = {name: distinct(jobs) for name, jobs in phases.items()}
     todo = {
         name: tuple(job for job in jobs if ways.cache is None or not holds(ways.cache, job.key, job.stored)) for name, jobs in whole.items()
@@ -123,9 +123,9 @@ def _plan(phases: Mapping[str, Iterable[StoredJob]], ways: Ways, further: str, n
 
 
 def work_ahead(plan: Plan, ways: Ways) -> None:
-    """Work what is planned in one queue: hinges, stage and units wait for nobody, and find it at hand in the pool of `ways`.
+    """Run the planned jobs in one queue, so that hinges, stage and units find their results in the pool of `ways`.
 
-    Raises `DesignError` where what is needed in any case cannot be had; what only a unit alone lacks is told when its turn comes.
+    Raises `DesignError` for failures of needed jobs; those of a single isolated unit are reported in its phase.
     """
     try:
         obtain(plan.jobs, ways)
@@ -136,7 +136,7 @@ def work_ahead(plan: Plan, ways: Ways) -> None:
 
 
 def units_alone(mechanism: Mechanism) -> list[Mechanism]:
-    """Every distinct unit alone as it is drawn; none where strokes leave motions of the platform open, which is told when its turn comes.
+    """Every distinct isolated unit as drawn; none if the strokes do not determine the platform, which is reported in its phase.
 
     >>> units_alone(Mechanism("nothing"))
     []

@@ -1,4 +1,4 @@
-"""How studies read solids: a stage, reduced by whoever is asked to (from a cache, with progress, or plainly)."""
+"""Solids of studies: a stage, reduced from a cache, with progress, or directly."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ STANDARD_WAYS = Ways()
 
 @dataclass(frozen=True, eq=False)
 class SolidRead:
-    """A stage read as solids: its linear model, and the components with the operators that give their fields."""
+    """A stage read as solids: its linear model, and the components with the operators of their fields."""
 
     mechanism: Mechanism
     model: LinearModel
@@ -41,12 +41,12 @@ class SolidRead:
 
     @property
     def freedoms(self) -> int:
-        """Number of unknowns of all distinct components before they were reduced."""
+        """Number of unknowns of all distinct components before reduction."""
         return sum(item.element.freedoms for item in self._distinct)
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Unknowns of every distinct component, by the content that orders are raised by."""
+        """Unknowns of every distinct component, by the content for raised orders."""
         return {content_in_stage(item.component): item.element.freedoms for item in self._distinct}
 
     @property
@@ -64,7 +64,7 @@ def solids(ways: Ways = STANDARD_WAYS) -> Solids:
 
 
 def remember(reduce: Solids) -> Solids:
-    """The same, but what was reduced is kept at hand: of two orders known, parts of either are put together without asking again.
+    """The same function with its results cached: of two known orders, parts of either are combined without a new computation.
 
     >>> remember(solids())(Mechanism("nothing"), Reduction())
     ()
@@ -86,7 +86,7 @@ def remember(reduce: Solids) -> Solids:
 
 
 STANDARD_SOLIDS = solids()
-"""By the cache of the user."""
+"""With the cache of the user."""
 
 STANDARD_REDUCTION, _CACHE = Reduction(), Cache()
 
@@ -102,11 +102,11 @@ def model(
 ) -> LinearModel:
     """Read a stage as 3-D elastic solids: finite elements of each distinct component, reduced by Craig and Bampton's method and joined.
 
-    Same names of inputs and outputs as `lumped`. Every component is drawn, meshed and reduced once, in a process of its own, and kept in
-    the `cache` (`None`: neither looked up nor kept). `progress` is told what is done, the fraction and the seconds left; `memory` [bytes]
-    bounds what is planned with (absent: what the machine has left). Raises `DesignError` for links without a shape, for gaps, overlaps and
-    slivers of outlines, all by name before anything is meshed, for meshes that cannot be made, too little memory or time, and stages that
-    move freely. What is to be said about the cache is warned.
+    Names of inputs and outputs are those of `lumped`. Every component is drawn, meshed and reduced once, in a separate process, and
+    stored in the `cache` (`None`: not used). `progress` receives the step, the fraction and the seconds left; `memory` [bytes] limits the
+    planned memory (absent: the free memory of the machine). Raises `DesignError` for links without a shape, for gaps, overlaps and slivers
+    of outlines, all by name before meshing. Also for failed meshes, insufficient memory or time, and stages with rigid-body motions.
+    Warnings report problems of the cache.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> model(parallelogram(), memory=1e6, cache=None)
@@ -118,9 +118,9 @@ def model(
 
 
 def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidRead:
-    """Read a stage as solids; calibrated hinges as the shapes they stand for.
+    """Read a stage as solids; calibrated hinges as the shapes they replace.
 
-    Raises `DesignError` for parts without a shape, outlines that do not meet, overlap or leave slivers, and when the stage can move freely.
+    Raises `DesignError` for parts without a shape, for gaps, overlaps and slivers of outlines, and if the stage has a rigid-body motion.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.restrict import restrict
@@ -128,7 +128,7 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> So
     >>> read_solid(restrict(parallelogram(), {'leaf': ((Freedom.X,), ())}), Reduction(), solids())
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: left: some of its freedoms are locked or freed by a restriction. ...
+    flexstage.base.finding.DesignError: left: some of its DOFs are locked or freed by a restriction. ...
     """
     shape = with_drawn_parts(mechanism)
     assembly = expand(shape)
@@ -141,7 +141,7 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> So
 
 
 def coarsen(reduction: Reduction) -> Reduction:
-    """The resolution that an error is estimated against: the same mesh, one order less.
+    """The resolution for the error estimate: the same mesh, one order less.
 
     >>> coarsen(Reduction()).fineness.order
     2

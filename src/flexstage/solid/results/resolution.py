@@ -1,4 +1,4 @@
-"""Resolution of a solid study: which order of elements, and the error estimated from the results at two resolutions."""
+"""Resolution of a solid study: order of elements, and the error estimated from the results at two resolutions."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from flexstage.solid.results.read import coarsen
 _Result = TypeVar("_Result")
 HIGHEST = 4
 _LEFT, _MATTERS = 0.5, 0.1
-"""Share of a component's change that is expected to be left at the next order, on the shipped stage 0.05 to 0.45; the least change of a
-figure over the largest one of any component that one is raised for."""
+"""Expected share of a component's change remaining at the next order, on the shipped stage 0.05 to 0.45. And the smallest relevant
+change of a figure over the largest one of any component."""
 _AT_ORDER_TWO = 0.25
-"""Order one is far off: on hinges and blocks order two left a tenth of the change from it, never a quarter."""
+"""Order one is inaccurate: on hinges and blocks order two had a tenth of its error, never a quarter."""
 _LOCKED = 0.5
-"""Change from order one above which it says nothing about order two: elements of order one lock where thin parts bend."""
-NOT_ESTIMATED = "FEA's error is not estimated: order one, which order two is compared with, locks where thin parts bend. Ask for --order 3"
+"""Change from order one above which it does not estimate order two: elements of order one lock in bending of thin parts."""
+NOT_ESTIMATED = "FEA's error is not estimated: order one, the reference of order two, locks in bending of thin parts. Use --order 3"
 
 
 @dataclass(frozen=True)
 class Resolution(CheckedFields):
-    """What is asked: the relative error of stiffnesses, gains and frequencies, or, instead, a fixed `order` of elements."""
+    """Requirement: the relative error of stiffnesses, gains and frequencies, or instead a fixed `order` of elements."""
 
     accuracy: float = 0.01
     order: int | None = None
@@ -40,11 +40,11 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Converged(Generic[_Result]):
-    """A result with the relative error estimated of each of its figures. An estimate, no bound; a figure that is not there is unknown.
+    """A result with the estimated relative error of each of its figures. An estimate, no bound; absent figures are unknown.
 
-    It is the change from the order before, at order two a quarter of it, and not known of the `unestimated` figures, which changed by more
-    than half. `stopped` says why the order was not raised further although the accuracy asked was not reached; `raised` is the number of
-    components whose elements are of one order more.
+    It is the change from the previous order, at order two a quarter of it, and unknown for the `unestimated` figures, which changed by more
+    than half. `stopped` states why the order was not raised further without the required accuracy; `raised` is the number of
+    components with elements of one order more.
     """
 
     result: Annotated[_Result, INNER]
@@ -56,7 +56,7 @@ class Converged(Generic[_Result]):
 
     @property
     def error(self) -> float:
-        """The largest of the errors; infinite where one of them is not estimated, or none is known."""
+        """The largest of the errors; infinite if one is not estimated, or none is known."""
         return float("inf") if self.unestimated else max(self.errors.values(), default=float("inf"))
 
 
@@ -67,10 +67,10 @@ def converge(
     sizes: Callable[[_Result], Mapping[str, float]] | None = None,
     measure: Callable[[Reduction], Mapping[str, float]] | None = None,
 ) -> Converged[_Result]:
-    """Work at rising orders (2, 3, 4) until the figures change by less than the accuracy, or at one order and the next coarser way.
+    """Compute at rising orders (2, 3, 4) until the figures change by less than the accuracy, or at one order and the coarser one.
 
-    With `sizes`, the unknowns of the components of a result, the order is raised in those alone whose share of the change is too large;
-    `measure` gives the figures without the rest of a result.
+    With `sizes`, the unknowns of the components of a result, only components with a large share of the change get a higher order.
+    `measure` computes the figures without the other parts of a result.
 
     >>> found = converge(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))
     >>> found.order, round(found.error, 4)
@@ -93,12 +93,12 @@ def converge(
                     found = _converged(result, figured(coarsen(way)), figures(result), order, len(way.raised))
                     if found.error <= asked.accuracy:
                         return found
-        except DesignError as error:  # of a higher order than one that went: what it needs is not there
+        except DesignError as error:  # a higher order needs more than is available
             if found is None:
                 raise
             return replace(found, stopped=str(error))
         before = now
-    assert found is not None  # noqa: S101  there is at least one order
+    assert found is not None  # noqa: S101  orders are never empty
     return found
 
 
@@ -110,9 +110,9 @@ def _converged(result: _Result, before: Mapping[str, float], now: Mapping[str, f
 def _raise_parts(
     figured: Callable[[Reduction], Mapping[str, float]], now: Mapping[str, float], sizes: Mapping[str, float], order: int, accuracy: float
 ) -> Iterator[Reduction]:
-    """Ways with the order raised in more and more components: those with the largest share of the change for their unknowns first.
+    """Reductions with the order raised in more and more components, first those with the largest share of the change for their unknowns.
 
-    A component's share is what the figures change by when it alone is one order lower.
+    A component's share is the change of the figures if only its order is lowered by one.
     """
     lower, everything = coarsen(reduction_of_order(order)), frozenset(sizes)
     shares = {part: _share(figured(replace(lower, raised=everything - {part})), now) for part in sizes}
@@ -129,18 +129,18 @@ def _raise_parts(
 
 
 def _share(before: Mapping[str, float], after: Mapping[str, float]) -> Array:
-    """Relative changes of figures, nought where one is not there."""
+    """Relative changes of figures, zero if one is absent."""
     found = np.array([(value - before.get(name, np.nan)) / (abs(value) or 1.0) for name, value in after.items()])
     return np.where(np.isfinite(found), found, 0.0)
 
 
 def _left(shares: Mapping[str, Array], raised: frozenset[str]) -> Array:
-    """The change of each figure as it is expected from an order less in every component."""
+    """The expected remaining change of each figure from one order less in every component."""
     return sum((share * (_LEFT if part in raised else 1.0) for part, share in shares.items()), np.zeros(1))
 
 
 def _next_part(shares: Mapping[str, Array], sizes: Mapping[str, float], raised: frozenset[str]) -> frozenset[str]:
-    """The component that takes most of the figure that is worst, for its unknowns; none where those that are left do not matter to it."""
+    """The component with the largest effect on the worst figure for its unknowns; none if the others are insignificant."""
     worst = int(np.argmax(np.abs(_left(shares, raised))))
     most = max(abs(float(share[worst])) for share in shares.values())
     waiting = {part: abs(float(share[worst])) for part, share in shares.items() if part not in raised}
@@ -149,7 +149,7 @@ def _next_part(shares: Mapping[str, Array], sizes: Mapping[str, float], raised: 
 
 
 def orders_of(asked: Resolution) -> tuple[int, ...]:
-    """Orders that are tried one after the other.
+    """Orders to try, in sequence.
 
     >>> orders_of(Resolution()), orders_of(Resolution(order=2))
     ((3, 4), (2,))
@@ -158,7 +158,7 @@ def orders_of(asked: Resolution) -> tuple[int, ...]:
 
 
 def first_reductions(asked: Resolution) -> tuple[Reduction, Reduction]:
-    """The two ways that are worked in any case: what an error is estimated against, and the lowest order asked for.
+    """The two reductions needed in any case: the one for the error estimate, and the lowest required order.
 
     >>> [way.fineness.order for way in first_reductions(Resolution())]
     [2, 3]
@@ -177,9 +177,9 @@ def reduction_of_order(order: int) -> Reduction:
 
 
 def estimates(before: Mapping[str, float], after: Mapping[str, float], order: int) -> dict[str, float]:
-    """Relative errors estimated of the figures at an order, from those of the order below.
+    """Estimated relative errors of the figures at an order, from those of the order below.
 
-    None at order two where order one is off by more than half.
+    None at order two if order one differs by more than half.
 
     >>> estimates({"a": 1.0, "b": 4.0}, {"a": 2.0, "b": 1.0}, order=2)
     {'a': 0.125}
@@ -189,7 +189,7 @@ def estimates(before: Mapping[str, float], after: Mapping[str, float], order: in
 
 
 def changes(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:
-    """Relative changes of the figures that both have, where they are numbers.
+    """Relative changes of the common figures that are numbers.
 
     >>> changes({"a": 1.0, "b": 1.0, "c": float("nan")}, {"a": 2.0, "c": 1.0})
     {'a': 0.5}

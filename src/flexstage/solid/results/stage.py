@@ -36,7 +36,7 @@ _BODY = " (body)"
 
 @dataclass(frozen=True, eq=False)
 class BodyCost:
-    """By platform mode (k,), the share of strain energy that elastic bodies hold, and what that costs of the frequency."""
+    """Strain-energy fraction of elastic bodies by platform mode (k,), and the resulting change of the frequency."""
 
     strain_energy_share: Annotated[Array, RATIO, Heading("strain energy in bodies", digits=3, unit="%")]
     cost_in_frequency: Annotated[Array, RATIO, Heading("frequency change", digits=3, unit="%")]
@@ -46,9 +46,9 @@ class BodyCost:
 class SolidStage(InNotebook):
     """A stage by the solid model.
 
-    `statics` and `modes` as of any model; `stress` at every link and body, the highest over all corners of the strokes counted from zero,
-    dead load included (`None` where a stage has no strokes or too many corners). `worst` (N,) are the coordinates at the corner of the
-    weakest link. `blocks` (k,) is the share of strain energy that the bodies, which other models take as rigid, hold in each mode.
+    `statics` and `modes` are as for any model. `stress` at every link and body is the highest over all corners of the strokes from zero,
+    permanent load included (`None` without strokes or with too many corners). `worst` (N,) are the coordinates at the corner of the
+    weakest link. `blocks` (k,) is the strain-energy fraction of the bodies, rigid in other models, in each mode.
     """
 
     statics: Annotated[Statics, Called("stiffness")]
@@ -60,23 +60,23 @@ class SolidStage(InNotebook):
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """What an error is estimated of, in SI."""
+        """Figures with an estimated error, in SI."""
         return _figures(self.statics, self.modes)
 
     @property
     def flexible(self) -> Array:
-        """What the elasticity of the bodies takes from each frequency (k,), to first order: sqrt(1 - share) - 1 of the energy's share."""
+        """Relative change of each frequency (k,) by the elasticity of the bodies, to first order: sqrt(1 - share) - 1."""
         return np.sqrt(1.0 - self.blocks) - 1.0
 
     @property
     def bodies(self) -> Annotated[BodyCost, VIEW]:
-        """What the elasticity of the bodies takes from the platform's modes."""
+        """Effect of the elasticity of the bodies on the platform's modes."""
         platform = list(self.modes.platform)
         return BodyCost(self.blocks[platform], self.flexible[platform])
 
     @property
     def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
-        """The links without a shape, with the kind of their part: they have the stiffness and mass that they state, as in any model."""
+        """The links without a shape, with the kind of their part: they have the specified stiffness and mass, as in any model."""
         return stated_links(expand(self.read.mechanism))
 
     @property
@@ -86,7 +86,7 @@ class SolidStage(InNotebook):
 
     @property
     def freedoms(self) -> Annotated[int, VIEW]:
-        """Their number of unknowns before they were reduced."""
+        """Number of unknowns before reduction."""
         return self.read.freedoms
 
     @property
@@ -96,7 +96,7 @@ class SolidStage(InNotebook):
 
     @property
     def provenance(self) -> Annotated[str, VIEW]:
-        """What was read, and how finely."""
+        """Stage and resolution."""
         return self.read.model.provenance
 
 
@@ -106,25 +106,25 @@ def _figures(found: Statics, modes: Modes) -> dict[str, float]:
 
 
 def stage_figures(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, float]:
-    """The figures of `solid_stage` alone: no stress. Raises as it does."""
+    """The figures of `solid_stage` without stress. Raises as it does."""
     model = read_solid(mechanism, reduction, reduce).model
     return _figures(statics(model), platform_modes(mechanism, model))
 
 
 def stiffness_figures(found: Statics) -> dict[str, float]:
-    """The platform's stiffness as models are compared by it: principal values in plane, and along and about the other axes [SI].
+    """The platform's stiffness for comparisons: principal values in plane, and along and about the other axes [SI].
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
-    >>> round(stiffness_figures(statics(mapped(double_triangle())))["stiffest in plane, others held"] / 1e6, 2)  # N/um
+    >>> round(stiffness_figures(statics(mapped(double_triangle())))["in-plane stiffness (stiffest), others fixed"] / 1e6, 2)  # N/um
     15.45
     """
     held, free = found.held.principal, found.free.principal
     return {
-        "stiffest in plane, others held": float(held[0]),
-        "softest in plane, others held": float(held[1]),
-        "stiffest in plane, others free": float(free[0]),
-        "softest in plane, others free": float(free[1]),
+        "in-plane stiffness (stiffest), others fixed": float(held[0]),
+        "in-plane stiffness (softest), others fixed": float(held[1]),
+        "in-plane stiffness (stiffest), others free": float(free[0]),
+        "in-plane stiffness (softest), others free": float(free[1]),
         **{f"stiffness {COMPONENTS[index]}": float(found.stiffness.values[index, index]) for index in (2, 3, 4, 5)},
     }
 
@@ -133,7 +133,7 @@ def stiffness_figures(found: Statics) -> dict[str, float]:
 def solid_stage(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> SolidStage:
     """Read a whole stage as a solid.
 
-    Raises `DesignError` for parts without a shape, outlines that do not touch, and when the stage can move freely.
+    Raises `DesignError` for parts without a shape, outlines that do not touch, and if the stage has a rigid-body motion.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.restrict import restrict
@@ -141,7 +141,7 @@ def solid_stage(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION,
     >>> solid_stage(restrict(parallelogram(), {'leaf': ((Freedom.X,), ())}))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: left: some of its freedoms are locked or freed by a restriction. ...
+    flexstage.base.finding.DesignError: left: some of its DOFs are locked or freed by a restriction. ...
     """
     read = read_solid(mechanism, reduction, reduce)
     found = platform_modes(mechanism, read.model)
@@ -158,7 +158,7 @@ def solid_stage(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION,
 
 
 def _corners(read: SolidRead) -> tuple[Array, dict[str, Array]] | None:
-    """Coordinates (N, 2^n) at the corners of the strokes from zero, dead load included, and the strokes by input."""
+    """Coordinates (N, 2^n) at the corners of the strokes from zero, permanent load included, and the strokes by input."""
     if not read.model.strokes:
         return None
     limits = stroke_limits(read.mechanism).from_zero
@@ -182,7 +182,7 @@ def worst_strokes(stage: SolidStage) -> dict[str, float]:
 
 
 def block_energy(model: LinearModel, shapes: Array) -> Array:
-    """Share (k,) of the strain energy of shapes (N, k) that the elastic bodies hold.
+    """Strain-energy fraction (k,) of the elastic bodies in shapes (N, k).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -21,16 +21,15 @@ from flexstage.solid.results.read import SolidRead
 
 SHARP_CORNERS = "At sharp inner corners the true stress has no limit: there it grows with the resolution."
 SILENT = 1e3
-"""Stress [Pa] below which there is none."""
+"""Stress [Pa] below which it counts as zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class LinkStress(InNotebook):
-    """Highest von Mises stress (L,) [Pa] on the skin of links and bodies over some load cases, stacks left out.
+    """Highest von Mises stress (L,) [Pa] on the skin of links and bodies over some load cases, without stacks.
 
-    `case` (L,) is the number of the worst case, `yield_stress` (L,) [Pa] that of the material, or its
-    fatigue limit or allowable stress where that is less (NaN: none is stated). At sharp inner corners the
-    true stress has no limit, and what is computed grows with the resolution.
+    fatigue limit or allowable stress if less (NaN: none is specified). At sharp inner corners the
+    true stress has no limit, and the computed one grows with the resolution.
     """
 
     names: tuple[str, ...]
@@ -45,7 +44,7 @@ class LinkStress(InNotebook):
 
     @property
     def weakest(self) -> str:
-        """The name with the least safety, or with the highest stress where no yield stress is known."""
+        """The name with the smallest safety, or with the highest stress without a known yield stress."""
         safety = self.safety
         return self.names[int(np.argmax(self.highest) if np.isnan(safety).all() else np.nanargmin(safety))]
 
@@ -71,9 +70,9 @@ class LinkStress(InNotebook):
 
 
 def link_stress(read: SolidRead, motion: Array, strokes: Mapping[str, Array]) -> LinkStress | None:
-    """The highest stress over k load cases: coordinates (N, k) of the model, and the strokes (k,) [m] of its inputs that belong to them.
+    """The highest stress over k load cases: coordinates (N, k) of the model, and the corresponding strokes (k,) [m] of its inputs.
 
-    `None` where nothing but stacks is drawn.
+    `None` if only stacks are drawn.
     """
     assembly = expand(read.mechanism)
     by_link = {assembly.actuators[name]: values for name, values in strokes.items()}

@@ -1,4 +1,4 @@
-"""Surfaces of a stage read as solids, moved and with values on them, for pictures."""
+"""Surfaces of a stage read as solids, displaced and with values on them, for pictures."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SHOWN = 0.06
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Triangles (t, 3) between places (v, 3) [m] in the stage's frame, with a value (v,) at each."""
+    """Triangles (t, 3) between positions (v, 3) [m] in the stage's frame, with a value (v,) at each."""
 
     places: Array
     triangles: Array
@@ -27,7 +27,7 @@ class Surface:
 
 
 def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
-    """The stage moved by a mode's coordinates (N,), magnified to be seen; values: displacement relative to the largest."""
+    """The stage displaced by a mode's coordinates (N,), magnified; values: displacement relative to the largest."""
     factor, largest = magnification(read, shape)
     return tuple(
         Surface(vertex_places(item, shape, factor), item.element.skin.triangles, _displacement(item, shape) / largest)
@@ -36,7 +36,7 @@ def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
 
 
 def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]) -> tuple[Surface, ...]:
-    """The stage moved by static coordinates (N,), magnified to be seen; values: von Mises stress [Pa]. `strokes` [m] belong to them."""
+    """The stage displaced by static coordinates (N,), magnified; values: von Mises stress [Pa]. `strokes` [m] belong to them."""
     assembly = expand(read.mechanism)
     factor, _ = magnification(read, motion)
     by_link = {assembly.actuators[name]: np.array([value]) for name, value in strokes.items()}
@@ -49,7 +49,7 @@ def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]
 
 
 def magnification(read: SolidRead, motion: Array) -> tuple[float, float]:
-    """By how much a motion (N,) is magnified in a picture, and its largest displacement [m]."""
+    """The magnification of a motion (N,) in a picture, and its largest displacement [m]."""
     places = np.concatenate([vertex_places(item, motion, 0.0) for item in read.placed])
     size = float(np.max(places.max(axis=0) - places.min(axis=0)))
     largest = max((float(np.max(_displacement(item, motion))) for item in read.placed), default=0.0) or 1.0

@@ -1,4 +1,4 @@
-"""Each distinct unit alone, as a solid: stiffness at its output, gain and lost motion (Table 2 of Shin & Moon), stress at the command."""
+"""Each distinct isolated unit as a solid: output stiffness, gain and lost motion (Table 2 of Shin & Moon), stress at the command."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ _STEPS = 5
 
 @dataclass(frozen=True, eq=False)
 class SolidUnit(UnitOutput, InNotebook):
-    """One unit alone by the solid model.
+    """One isolated unit by the solid model.
 
-    With its output guided along the direction and not loaded: `strokes` (k,) [m] up to the stack's full one with `outputs` (k,) [m],
-    linear; `stress` at every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.
+    With its output guided along the direction and not loaded: `strokes` (k,) [m] up to the full one with `outputs` (k,) [m],
+    linear. `stress` at every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.
     """
 
     TABLE: ClassVar[Layout] = Layout(
-        "Units alone as solids",
+        "Isolated units as solids",
         "copy axial lateral gain ideal_gain loss stress.weakest stress.peak stress.least_safety",
         head="unit",
         notes=(
-            "Each unit alone, output on a rigid face.",
+            "Each unit isolated, output on a rigid face.",
             "Axial (K_a) and lateral (K_l) stiffness: actuators fixed, all other motions of the output prevented.",
             f"Gain and stress: output guided along its direction and not loaded, full stroke. {SHARP_CORNERS}",
         ),
@@ -63,22 +63,22 @@ class SolidUnit(UnitOutput, InNotebook):
 
     @property
     def freedoms(self) -> Annotated[int, VIEW]:
-        """Number of freedoms before reduction."""
+        """Number of DOFs before reduction."""
         return self.read.freedoms
 
     @property
     def loss(self) -> Annotated[float, RATIO, Heading(unit="%")]:
-        """Share of the ideal output that is lost."""
+        """Lost share of the ideal output."""
         return 1.0 - self.gain / self.ideal_gain
 
     @property
     def load_compliance(self) -> Annotated[float, COMPLIANCE]:
-        """Give of the guided output under a force along it [m/N]."""
+        """Compliance of the guided output under a force along it [m/N]."""
         return 1.0 / self.axial
 
     @property
     def commands(self) -> Annotated[Array, LENGTH, Heading("commanded output", unit="um")]:
-        """Ideal outputs (k,) [m] of the strokes: what was commanded."""
+        """Ideal outputs (k,) [m] of the strokes: the commands."""
         return self.ideal_gain * self.strokes
 
     @property
@@ -95,10 +95,10 @@ class SolidUnit(UnitOutput, InNotebook):
 
 @check_arguments
 def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, SolidUnit]:
-    """Read the first copy of every placed unit that drives its output by exactly one actuator as a solid, alone.
+    """Read the first instance of every placed unit with exactly one actuator on its output as an isolated solid.
 
-    Outlines that belong to other bodies are left out; the output is the end face of the link that joins the platform, kept plane. Raises
-    `DesignError` where no unit of the stage is of this kind.
+    Outlines of other bodies are left out; the output is the end face of the link to the platform, kept plane. Raises
+    `DesignError` if the stage has no such unit.
 
     >>> from flexstage.cases.registry import case
     >>> solid_units(case("bridge"))
@@ -111,7 +111,7 @@ def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION,
         raise refuse(
             "units",
             "none of the stage's units drives an output of its own by one actuator",
-            "Ask for the whole stage instead: --scope stage",
+            "Use --scope stage",
         )
     return {unit: _unit(mechanism, unit, copy, direction, reduction=reduction, reduce=reduce) for unit, (copy, direction) in found.items()}
 
@@ -142,7 +142,7 @@ def _unit(mechanism: Mechanism, unit: str, copy: str, direction: Array, *, reduc
 
 
 def _full_motion(read: SolidRead, copy: str, guide: Array) -> Array:
-    """Coordinates (N,) under a unit stroke while the guide holds the output by a wrench (6,)."""
+    """Coordinates (N,) under a unit stroke with an output guided by a wrench (6,)."""
     model = read.model
     platform = model.output[model.output_index(_TWIST)]
     load = model.input_matrix[:, model.input_index((copy,))[0]] + platform.T @ guide
@@ -150,7 +150,7 @@ def _full_motion(read: SolidRead, copy: str, guide: Array) -> Array:
 
 
 def full_stroke(mechanism: Mechanism, copy: str) -> float:
-    """The full stroke of a copy's stack [m].
+    """The full stroke of an instance's stack [m].
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(full_stroke(double_triangle(), "B4"), 9)

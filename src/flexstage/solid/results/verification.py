@@ -1,4 +1,4 @@
-"""Verification: theory beside finite elements for hinges, units and the whole stage, with the error of both and which to trust where."""
+"""Verification: theory compared with finite elements for hinges, units and the whole stage, with both errors and verdicts."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _GRADES = {
     Trust.FEA: Mark.FAIL,
 }
 _TIMES = 1.5
-"""A factor from which differences are told as factors."""
+"""Smallest ratio for differences printed as factors."""
 _WORDS = {
     "Hz": ("high", "low"),
     "N/m": ("stiff", "soft"),
@@ -57,7 +57,7 @@ _WORDS = {
     "m/N": ("soft", "stiff"),
     "rad/(N m)": ("soft", "stiff"),
 }
-"""What a figure that is too large makes of theory, and one that is too small, by unit."""
+"""Adjectives of theory for a figure that is too large, and one that is too small, by unit."""
 _SHOWN = UnitIn("shown_unit")
 
 
@@ -65,9 +65,9 @@ _SHOWN = UnitIn("shown_unit")
 class Row:
     """One number by theory and by FEA, SI.
 
-    `theory` is the lumped model's (for hinges beam theory's), `mapped` the paper's axial springs where they give it, `calibrated` the
-    lumped model with the hinges' FEA 6x6; `fea_error` the relative error estimated of FEA. `calibration` names the parts of FEA origin that
-    the theory contains. `modal_assurance` is that of paired modes. Absent is unknown, and `reason` says why: without `theory` and
+    `theory` is the lumped model's (for hinges beam theory's), `mapped` the paper's axial springs if they apply, `calibrated` the
+    lumped model with the hinges' FEA 6x6. `fea_error` is the estimated relative error of FEA. `calibration` names the parts of FEA origin
+    in the theory. `modal_assurance` is that of paired modes. Absent values are unknown, for a `reason`: without `theory` and
     `fea_error` there is no verdict.
     """
 
@@ -90,7 +90,7 @@ class Row:
 
     @property
     def shown_unit(self) -> str:
-        """The unit of tables: a loss is shown in per cent."""
+        """Unit of tables: a loss is shown in per cent."""
         return "%" if self.figure == "loss" else self.unit
 
     @property
@@ -105,12 +105,12 @@ class Row:
 
     @property
     def independent(self) -> Annotated[bool, VIEW]:
-        """Whether theory contains nothing of FEA origin."""
+        """Whether theory contains no data from FEA."""
         return not self.calibration
 
     @property
     def trust(self) -> Annotated[Trust | None, VIEW, Heading(absent="no verdict", mark=_GRADES.__getitem__)]:
-        """Which of them to trust; absent where there is no verdict."""
+        """The more reliable of them; absent without a verdict."""
         if self.calibration:
             return Trust.DEPENDENT
         if self.difference is None or self.fea_error is None:
@@ -133,7 +133,7 @@ def _relative(value: float, reference: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Verification(InNotebook):
-    """The rows of a verification, and the solid results behind them; `reasons` say why a group is not there."""
+    """The rows of a verification, and the solid results behind them; `reasons` for missing groups."""
 
     mechanism: Mechanism
     rows: tuple[Row, ...]
@@ -144,30 +144,30 @@ class Verification(InNotebook):
 
     @property
     def groups(self) -> dict[str, tuple[Row, ...]]:
-        """The rows by what they are about, in order."""
+        """The rows by subject, in order."""
         return groups(self.rows)
 
     @property
     def headline(self) -> str:
-        """For how many figures of the widest group that was compared theory will do, and where it differs from finite elements."""
+        """Largest differences between theory and finite elements in the widest compared group, and the number of agreeing figures."""
         name, rows = list(self.groups.items())[-1]
         good = sum(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows)
         words = departures(rows)
-        return f"{name.capitalize()}: theory will do for {good} of {len(rows)} figures{f'; {words}' if words else ''}."
+        return f"{words[:1].upper()}{words[1:]}{'. ' if words else ''}Theory suffices for {good} of {len(rows)} figures of the {name}."
 
     @property
     def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
-        """The links without a shape, with the kind of their part: theory and FEA alike have the stiffness and mass that they state."""
+        """The links without a shape, with the kind of their part: theory and FEA both use the specified stiffness and mass."""
         return stated_links(expand(with_drawn_parts(self.mechanism)))
 
     @property
     def verdicts(self) -> Annotated[Mapping[str, str], VIEW]:
-        """For every group, in words, which theory to trust."""
+        """For every group, a verdict on the models as text."""
         return {name: verdict(rows) for name, rows in self.groups.items()}
 
 
 def groups(rows: Iterable[Row]) -> dict[str, tuple[Row, ...]]:
-    """Rows by what they are about, in order.
+    """Rows by subject, in order.
 
     >>> groups(())
     {}
@@ -188,9 +188,9 @@ def verify(
 ) -> Verification:
     """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
 
-    Theory is the description as it stands; FEA the shapes it draws. Hinges come first, as they are soon done; `tell` is told of the rows of
-    hinges, stage and units as they are known. Unless it is told how to `reduce` and `compute`, all that is needed in any case is worked in
-    one queue. Raises `DesignError` where the stage cannot be read as a solid.
+    Theory is the description unchanged; FEA the shapes of its drawing. Hinges come first, as they are fast; `tell` is called with the
+    rows of hinges, stage and units when they are known. Without `reduce` and `compute`, the needed jobs run in
+    one queue. Raises `DesignError` if the stage cannot be read as a solid.
     """
     if reduce is STANDARD_SOLIDS and compute is STANDARD_HINGES:
         with Pool() as pool:
@@ -217,11 +217,11 @@ def verify(
 
 
 def _nobody(_rows: tuple[Row, ...]) -> None:
-    """Nobody is told."""
+    """Ignore the rows."""
 
 
 def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Converged[SolidStage]:
-    """The whole stage as a solid, to the accuracy asked."""
+    """The whole stage as a solid, to the required accuracy."""
     again = remember(reduce)
     return converge(
         lambda way: solid_stage(mechanism, way, again),
@@ -235,9 +235,9 @@ def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
 def units_solid(
     mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS, *, bare: bool = False
 ) -> Converged[dict[str, SolidUnit]]:
-    """Every distinct unit alone as a solid, to the accuracy asked; the errors by `unit: figure`.
+    """Every distinct isolated unit as a solid, to the required accuracy; the errors by `unit: figure`.
 
-    Its components have modes, as the stage's they may be shared with, unless they are `bare`: nothing moves, so figures are the same.
+    Its components have modes, because the stage's may be the same, unless they are `bare`: static figures do not change.
     """
 
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
@@ -255,7 +255,7 @@ def units_solid(
 
 
 def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:
-    """The six direct compliances of every hinge, by beam theory (or as the file gives them) and by FEA.
+    """The six direct compliances of every hinge, by beam theory (or from the file) and by FEA.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(hinge_rows(double_triangle(), {}))
@@ -278,7 +278,7 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
 
 
 def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
-    """Units alone with the FEA 6x6 of the hinges they have alone: an output without outlines holds the end of its hinge rigid."""
+    """Isolated units with the FEA 6x6 of their hinges as isolated: an output without outlines fixes the end of its hinge."""
     found: dict[str, UnitResult] = {}
     for unit, (copy, direction) in driven_units(mechanism).items():
         alone = isolate(mechanism, copy)
@@ -287,7 +287,7 @@ def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDAR
 
 
 def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Converged[dict[str, SolidUnit]]) -> Iterator[Row]:
-    """K_a, K_l, gain and loss of every unit alone; `better` are the units with calibrated hinges.
+    """K_a, K_l, gain and loss of every isolated unit; `better` are the units with calibrated hinges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(unit_rows(double_triangle(), {}, Converged({}, {}, 3)))
@@ -330,14 +330,14 @@ def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Con
 
 
 def _mapped_unit(unit: UnitResult) -> dict[str, float]:
-    """What the paper's springs give of a unit: Eq. 11 for levers, the series of axial springs for direct ones."""
+    """Figures of a unit from the paper's springs: Eq. 11 for levers, the series of axial springs for direct ones."""
     if unit.lever is not None:
         return {"axial stiffness": float(1.0 / unit.lever.tip_compliance), "gain": float(unit.lever.gain)}
     return {} if unit.series is None else {"axial stiffness": unit.series}
 
 
 def _calibrated_parts(mechanism: Mechanism, unit: str | None) -> tuple[str, ...]:
-    """The calibrated parts that a unit, or with `None` the stage, is built of."""
+    """The calibrated parts of a unit, or with `None` of the stage."""
     given = calibrated_parts(mechanism)
     links = [link.link for link in expand(mechanism).links.values() if unit is None or link.drawn.startswith(f"{unit}/")]
     return tuple(name for name in given if any(link.part == name for link in links))
@@ -383,11 +383,11 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Converged[SolidS
 def _why_unpaired(best: Pair | None) -> str:
     if best is None:
         return "theory has fewer modes"
-    return f"theory has no mode like it: that at {best.frequency:.4g} Hz shares {best.assurance:.2f} of its motion, {RELIABLE} is needed"
+    return f"no paired mode of theory: best assurance {best.assurance:.2f}, at {best.frequency:.4g} Hz (required {RELIABLE})"
 
 
 def _finite(error: float | None) -> float | None:
-    """An error that is a number."""
+    """An error, if it is finite."""
     return error if error is not None and np.isfinite(error) else None
 
 
@@ -395,7 +395,7 @@ def _why_unestimated(error: float | None, figure: str = "", found: Converged[Any
     if error is not None:
         return None
     is_locked = found is not None and figure in found.unestimated
-    return NOT_ESTIMATED if is_locked else "FEA's error was not estimated: nothing coarser was at hand that gives this figure"
+    return NOT_ESTIMATED if is_locked else "FEA's error is not estimated: no coarser result has this figure"
 
 
 def _mapped_model(mechanism: Mechanism) -> LinearModel | None:
@@ -406,7 +406,7 @@ def _mapped_model(mechanism: Mechanism) -> LinearModel | None:
 
 
 def verdict(rows: tuple[Row, ...]) -> str:
-    """In words, what the rows of one group say about which theory to trust.
+    """The verdict on theory from the rows of one group, as text.
 
     >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated=100.5),))
     'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped model.'
@@ -427,11 +427,11 @@ def _reasons(rows: Iterable[Row]) -> str:
 
 
 def departures(rows: Iterable[Row]) -> str:
-    """In words, where theory and finite elements differ: of every kind of figure the one that theory has most wrong, and why.
+    """Differences between theory and finite elements as text: the worst figure of every kind, and its cause.
 
-    >>> row = Row("stage", "softest in plane, others free", "N/m", 2.14e6, 0.48e6, 0.01, calibrated=2.1e6)
+    >>> row = Row("stage", "in-plane stiffness (softest), others free", "N/m", 2.14e6, 0.48e6, 0.01, calibrated=2.1e6)
     >>> departures([row, Row("stage", "mode 1", "Hz", 99.0, 100.0, 0.001)])
-    'softest in plane, others free: theory 4.5 times too stiff (rigid bodies bend)'
+    'in-plane stiffness (softest), others free: theory 4.5 times too stiff (rigid bodies bend)'
     """
     worst: dict[str, Row] = {}
     for row in rows:
@@ -441,7 +441,7 @@ def departures(rows: Iterable[Row]) -> str:
 
 
 def _factor(row: Row | None) -> float:
-    """By what factor theory is off, 1 and more; without a row, 1."""
+    """Ratio of theory and FEA, 1 and more; without a row, 1."""
     ratio = 1.0 if row is None or row.difference is None else 1.0 + row.difference
     return max(ratio, 1.0 / ratio) if ratio > 0.0 else float("inf")
 
@@ -455,19 +455,19 @@ def _departure(row: Row) -> str:
 
 
 def _verdict_of_known(rows: tuple[Row, ...]) -> str:
-    """What rows say whose difference is known, and, unless they are not independent, whose error is."""
+    """The verdict from rows with known difference and, unless they are not independent, known error."""
     worst = max(rows, key=_size_of_difference)
     least = max((row.fea_error for row in rows if row.fea_error is not None), default=0.0)
     off = f"up to {_percent(_size_of_difference(worst))} off ({worst.figure})"
     if any(row.calibration for row in rows):
         names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))
-        return f"Not independent: the theory contains the FEA 6x6 of {names}. It is {off}: what is left is not the hinges'."
+        return f"Not independent: the theory contains the FEA 6x6 of {names}. It is {off}: the residual is not from the hinges."
     name = "Beam theory" if worst.group.startswith("hinge") else "Lumped theory"
     if all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows):
         return f"{name} is {off}, FEA's own error {_percent(least)}: trust the theory."
     known = departures(rows)
     if any(row.trust is Trust.UNCLEAR for row in rows):
-        said = f"{name} is {off}, but FEA's own error is up to {_percent(least)}: ask for more accuracy before deciding."
+        said = f"{name} is {off}, but FEA's own error is up to {_percent(least)}: increase the accuracy."
         return f"{known[:1].upper()}{known[1:]}. {said}" if known else said
     better = [abs(row.calibrated_difference) for row in rows if row.calibrated_difference is not None]
     if not better:
@@ -475,7 +475,7 @@ def _verdict_of_known(rows: tuple[Row, ...]) -> str:
     after = f"with calibrated hinges {_percent(max(better))}"
     if all(row.trust is not Trust.FEA for row in rows):
         return f"{name} is {off}; {after}: calibrate, then trust the lumped model."
-    rest = "the rest is the elasticity of bodies and joints, which only the solid model knows. Trust FEA."
+    rest = "the residual is the elasticity of bodies and joints, only in the solid model. Trust FEA."
     return f"{known[:1].upper()}{known[1:]}; {after}: {rest}"
 
 

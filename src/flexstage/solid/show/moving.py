@@ -1,4 +1,4 @@
-"""A stage of rigid bodies and bending links as a GLB file with its modes as animations: theory alone, no finite elements."""
+"""A stage of rigid bodies and bending links as a GLB file with its modes as animations, from theory without finite elements."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ _RIGID = (Kind.PLATFORM, Kind.BODY, Kind.GROUND)
 def to_glb(mechanism: Mechanism, *, modes: int = 12) -> bytes:
     """The stage as a GLB file (glTF 2.0): a node for each body, link and gauge, an animation for each of its lowest `modes`.
 
-    Bodies move rigidly and links bend between them, as the lumped model has it (`flexstage.view` shows the same); `flexstage cad --gltf`
-    gives those of elastic solids. The largest displacement of an animation is 5 % of the stage's diagonal. Raises `DesignError` where the
+    Bodies move rigidly and links bend between them, as in the lumped model (`flexstage.view` shows the same); `flexstage cad --gltf`
+    writes those of elastic solids. The largest displacement of an animation is 5 % of the stage's diagonal. Raises `DesignError` if the
     package pygltflib is missing or the stage cannot be drawn.
 
     >>> import flexstage as fs
@@ -39,7 +39,7 @@ def to_glb(mechanism: Mechanism, *, modes: int = 12) -> bytes:
 
 
 def glb_of(data: StageData, modes: int = 12) -> bytes:
-    """The same of a stage's data."""
+    """The same for a stage's data."""
     if find_spec("pygltflib") is None:
         raise refuse("GLB", "the package pygltflib is not installed", "Install it with: pip install 'flexstage[solid]'")
     from flexstage.solid.exchange.gltf import Motion as Animation
@@ -51,7 +51,7 @@ def glb_of(data: StageData, modes: int = 12) -> bytes:
 
 
 def _surfaces(data: StageData, motions: Sequence[Motion]) -> Iterator[tuple[str, Surface]]:
-    """The surface of each body, with all that is drawn of it, and of each link and gauge, by name."""
+    """The surface of each body, with all its drawn parts, and of each link and gauge, by name."""
     from flexstage.solid.exchange.gltf import Surface
 
     mesh = data.mesh
@@ -69,6 +69,6 @@ def _surfaces(data: StageData, motions: Sequence[Motion]) -> Iterator[tuple[str,
 
 
 def _owner(data: StageData, thing: Thing) -> str:
-    """The body that is drawn by a thing, else the thing's own name."""
+    """The body of a drawn entry, else the entry's own name."""
     first, second = thing.bodies
     return data.bodies[first] if first == second and thing.kind in _RIGID else thing.name

@@ -1,4 +1,4 @@
-"""The report of the solid model: one HTML file that stands alone."""
+"""The report of the solid model: one self-contained HTML file."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def solid_report(
     warnings: tuple[Finding, ...] = (),
     more: tuple[Motion, ...] = (),
 ) -> str:
-    """Sections of the solid model as a page of HTML: what is said of them, the stage, the first section, warnings, the others.
+    """Sections of the solid model as an HTML page: headline, the stage, the first section, warnings, the others.
 
-    `warnings` are those about the result; those about the description stand with them. Sections that are absent are left out. `more` are
-    motions of the viewer beside those of theory.
+    `warnings` concern the result and precede those about the description. Absent sections are left out. `more` are
+    motions of the viewer in addition to those of theory.
 
     >>> solid_report(Mechanism("stage"), Headline(""), [None])[:15]
     '<!doctype html>'

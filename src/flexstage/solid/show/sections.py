@@ -1,4 +1,4 @@
-"""Sections of the solid model: hinges, units and stage by finite elements, theory beside them, and pictures of deformed solids."""
+"""Sections of the solid model: hinges, units and stage by finite elements, compared with theory, and pictures of deformed solids."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def hinge_section(found: Mapping[str, SolidHinge]) -> Section | None:
 
 
 def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
-    """Every distinct unit alone, with its stress at the full stroke."""
+    """Every distinct isolated unit, with its stress at the full stroke."""
     blocks: list[Block | None] = [solid_unit_table(found)]
     for name, unit in found.result.items():
         stroke = float(unit.strokes[-1])
@@ -68,7 +68,7 @@ def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
         stress = stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
         tables = (command_table(name, unit), *(() if stress is None else (stress,)))
         blocks += [Abreast((picture, *tables))] if stress is not None else list(tables)
-    return section("Units alone", blocks)
+    return section("Isolated units", blocks)
 
 
 def _in_megapascals(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
@@ -81,12 +81,12 @@ def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
 
     stage = found.result
     worst = max(found.errors, key=lambda name: found.errors[name], default=None)
-    error = "not known, nothing coarser was at hand" if worst is None else f"{100.0 * found.errors[worst]:.2g} % ({worst})"
+    error = "unknown without a coarser result" if worst is None else f"{100.0 * found.errors[worst]:.2g} % ({worst})"
     if found.unestimated:
         error += f"; of {', '.join(found.unestimated)} {NOT_ESTIMATED}"
     text = (
         f"Finite elements of order {found.order}: {stage.read.elements} elements and {stage.read.freedoms} unknowns in the distinct "
-        f"components, {len(stage.read.model.coordinates)} coordinates after reduction. Largest error estimated, from a coarser "
+        f"components, {len(stage.read.model.coordinates)} coordinates after reduction. Largest estimated error, from a coarser "
         f"resolution: {error}."
     )
     polar = to_svg(directional_figure(stage.statics), "solid-polar", "Stiffness by direction in the plane")
@@ -116,25 +116,25 @@ def _mode_pictures(stage: SolidStage) -> Iterator[Picture]:
 
 
 def _stress_picture(stage: SolidStage) -> Picture:
-    assert stage.worst is not None  # noqa: S101  there is a worst corner wherever there is a stress
+    assert stage.worst is not None  # noqa: S101  every stress has a worst corner
     surfaces = _in_megapascals(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)))
-    caption = "Von Mises stress at the corner of the strokes that is worst for the weakest link, dead load included; motion magnified."
+    caption = "Von Mises stress at the worst corner of the strokes for the weakest link, with permanent load; motion magnified."
     return Picture(to_svg(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), "stress", caption), caption)
 
 
 def verification_headline(found: Verification) -> Headline:
-    """The headline of a verification, and whether theory will do for all of the widest group."""
+    """The headline of a verification, and whether theory is sufficient for all of the widest group."""
     rows = list(found.groups.values())[-1]
     return Headline(found.headline, all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows))
 
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """The platform's modes by finite elements as motions of a viewer, with the modes of theory they are paired with."""
+    """The platform's modes by finite elements as motions of a viewer, with the paired modes of theory."""
     return fea_motions(still_data(mechanism).bones, Moving(stage.modes, stage.read.model), theory)
 
 
 def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """The same of any model of finite elements, on the bodies of a viewer."""
+    """The same for any model of finite elements, on the bodies of a viewer."""
     found: list[Motion] = []
     for index in moving.modes.platform:
         twists = body_twists(moving.model, None, moving.modes.shapes[:, index], tuple(bones.references))
@@ -147,17 +147,17 @@ def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = Ma
 
 
 def paired_with_theory(mechanism: Mechanism, stage: SolidStage) -> tuple[Mapping[int, Pair], Section | None]:
-    """The modes of theory that those of finite elements are paired with, by index, and both side by side."""
+    """The modes of theory paired with those of finite elements, by index, and both side by side."""
     model = lumped(mechanism)
     pairs = pair_modes(Moving(stage.modes, stage.read.model), Moving(platform_modes(mechanism, model), model))
     alike = {index: pairs[index] for index in stage.modes.platform if index in pairs and pairs[index].reliable}
     partners = [(f"mode {pair.index + 1}", f"mode fea {index + 1}") for index, pair in alike.items()]
-    text = "Left theory, right finite elements: a chosen mode plays beside its partner. Bodies move as rigid ones; signs are arbitrary."
+    text = "Left theory, right finite elements: a chosen mode plays next to its counterpart. Bodies move rigidly; signs are arbitrary."
     joined = joined_viewers(partners)
     return pairs, None if joined is None else section("Modes side by side", [joined, Prose(text)])
 
 
 def verification_section(found: Verification) -> Section | None:
-    """Theory beside finite elements, with the verdicts in words first."""
+    """Theory compared with finite elements, starting with the verdicts as text."""
     tables = [verification_table(rows) for rows in found.groups.values()]
     return section("Theory and finite elements", [verdict_table_of(found), *tables])

@@ -1,4 +1,4 @@
-"""Tables of the solid model: hinges, units and the stage by finite elements, and theory beside them."""
+"""Tables of the solid model: hinges, units and the stage by finite elements, compared with theory."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ _LISTED = 12
 
 
 def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
-    """Every distinct hinge: what it grows on, the six direct compliances about its centre, and the error estimated.
+    """Every distinct hinge: its roots, the six direct compliances about its centre, and the estimated error.
 
-    By hand: a column for each axis.
+    Built manually: a column for each axis.
 
     >>> hinge_table({}).texts()[0][:4]
     ['part', 'links', 'ends on', 'x [um/N]']
@@ -51,8 +51,8 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
     heads = [*(Column(axis, form.unit) for axis, form in zip(_AXES, forms, strict=True)), Column("error")]
     note = (
         "Compliance about the centre of the hinge between the ends of its arcs, in its link frame. Error: of any entry, estimated. "
-        "Where a hinge ends on a block, it includes what the block yields at its root; the ground and bodies without outlines are rigid. "
-        f"{NO_VALUE}: it cannot be told from that of the blocks beside the hinge."
+        "The root at a block is included; the ground and bodies without outlines are rigid. "
+        f"{NO_VALUE}: not separable from the adjacent blocks."
     )
     notes = [note, *([f"Error {NO_VALUE}: {NO_ESTIMATE}."] if any(hinge.error is None for hinge in found.values()) else [])]
     return make_table("Hinges as solids", ["part", "links", "ends on", *heads], rows, notes=notes)
@@ -69,14 +69,14 @@ def hinge_matrices(found: Mapping[str, SolidHinge]) -> Iterator[Table]:
 
 
 def _largest_error(name: str, found: Converged[dict[str, SolidUnit]]) -> float | None:
-    """The largest error of a unit's figures, where all are estimated."""
+    """The largest error of a unit's figures, if all are estimated."""
     if any(figure.startswith(f"{name}: ") for figure in found.unestimated):
         return None
     return max((error for figure, error in found.errors.items() if figure.startswith(f"{name}: ")), default=None)
 
 
 def solid_unit_table(found: Converged[dict[str, SolidUnit]]) -> Table | None:
-    """Every distinct unit alone: K_a, K_l, gain, loss, and the highest stress at the full stroke.
+    """Every distinct isolated unit: K_a, K_l, gain, loss, and the highest stress at the full stroke.
 
     >>> from flexstage.solid.results.resolution import Converged
     >>> solid_unit_table(Converged({}, {}, 3)) is None
@@ -88,12 +88,12 @@ def solid_unit_table(found: Converged[dict[str, SolidUnit]]) -> Table | None:
 
 
 def command_table(name: str, unit: SolidUnit) -> Table:
-    """Output of a unit by command, and what is lost (the form of the paper's Table 2)."""
+    """Output of a unit by command, and the loss (the form of the paper's Table 2)."""
     return array_table(f"Output of the {name} unit by command", unit, "strokes", "commands", "outputs", "lost")
 
 
 def stress_table(title: str, stress: LinkStress | None, listed: int = _LISTED) -> Table | None:
-    """The highest von Mises stress of links and bodies, highest first; `None` where there is none worth a line."""
+    """The highest von Mises stress of links and bodies, highest first; `None` without significant stress."""
     if stress is None or not np.max(stress.highest) >= SILENT:
         return None
     notes = [f"Von Mises stress on the surface, stacks left out. {SHARP_CORNERS}"]
@@ -111,17 +111,17 @@ def block_table(stage: SolidStage) -> Table:
 
 
 def _stated_note(stated: Mapping[str, str]) -> list[str]:
-    """What is said of links that no finite elements were made of."""
+    """Note on links that are not meshed."""
     return [f"Not meshed: {in_words(stated)} ({', '.join(stated)})."] if stated else []
 
 
 def verification_table(rows: tuple[Row, ...]) -> Table | None:
-    """Theory compared with FEA for one group of rows, with both errors and which to trust.
+    """Theory compared with FEA for one group of rows, with both errors and the verdict.
 
     >>> from flexstage.solid.results.verification import Row
     >>> table = verification_table((Row("stage", "mode 1", "Hz", 101.0, 100.0, 0.001),))
     >>> [] if table is None else table.texts()[1]
-    ['mode 1', '101', '100', '0.1 %', '1 %', 'theory will do']
+    ['mode 1', '101', '100', '0.1 %', '1 %', 'theory suffices']
     """
     return result_table(rows, notes=[f"{row.figure}: {row.reason}." for row in rows if row.reason])
 
@@ -131,22 +131,22 @@ def _error(error: float | None) -> str:
 
 
 def verdict_table_of(found: Verification) -> Table:
-    """For every group, in words, which theory to trust."""
+    """For every group, the verdict on theory as text."""
     rows = [(Cell(name, Mark.STRONG), text) for name, text in found.verdicts.items()]
     notes = [
         "Theory: beam theory for hinges, the lumped model for units and stage.",
         "Calibrated: the same with the 6x6 of its hinges from FEA, and so not independent of it.",
-        "FEA's error is estimated from two resolutions: it is no bound.",
+        "FEA's error is estimated from two resolutions, and is not a bound.",
         *_stated_note(found.as_stated),
         *(f"Not compared: {name}: {reason}" for name, reason in found.reasons.items()),
     ]
-    return make_table("Which to trust", ["what", "verdict"], rows, notes=notes)
+    return make_table("Verdicts", ["subject", "verdict"], rows, notes=notes)
 
 
 def calibration_table(found: Calibration) -> Table:
     """Compliance by FEA relative to beam theory.
 
-    By hand: a column for each axis.
+    Built manually: a column for each axis.
     """
     rows = [
         (

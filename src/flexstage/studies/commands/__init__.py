@@ -1,1 +1,1 @@
-"""Commands of the studies wing, a module each."""
+"""Commands of studies, one module each."""

@@ -15,11 +15,12 @@ from flexstage.show.command.progress import progress_bar
 from flexstage.studies.synthesis.architecture import DESIGN
 from flexstage.studies.synthesis.search import Answers, all_names
 from flexstage.studies.synthesis.search import design as find_designs
+from flexstage.studies.synthesis.show.report import answer_report
 from flexstage.studies.synthesis.show.tables import answer_tables
 from flexstage.studies.synthesis.specification import load_specification
 
 
-@command()
+@command("report")
 def design(
     specification: Annotated[Path, typer.Argument(metavar="SPEC.TOML", help="Specification file.", show_default=False)],
     *,
@@ -39,7 +40,8 @@ def design(
         found = find_designs(spec, tuple(architecture or ()), shown.share)
     if output is not None and found.answers:
         _write(found, output)
-    return CommandResult(None, lambda: found, lambda: answer_tables(found), None, Model.LUMPED, failed=found.best is None)
+    tables, page = lambda: answer_tables(found), lambda: answer_report(found)
+    return CommandResult(None, lambda: found, tables, page, Model.LUMPED, failed=found.best is None)
 
 
 def _write(found: Answers, folder: Path) -> None:

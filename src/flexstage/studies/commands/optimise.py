@@ -39,7 +39,7 @@ def optimise(
     definition = load_optimisation(asked, str(study))
     source = design_path(asked, study.parent)
     if source is not None and output is not None and source.resolve() == output.resolve():
-        raise refuse("--output", f"{output} is the design that the study starts from", "Choose another file")
+        raise refuse("--output", f"{output} is the initial design of the study", "Choose another file")
     if len(definition.objectives) > 1 and output is not None:
         raise refuse("--output", "a front has many designs", "Set a limit on one objective, optimise the other, and write that design")
     run = run_optimise if len(definition.objectives) == 1 else pareto_front
@@ -64,8 +64,8 @@ def optimise(
 
 
 def _require_solution(found: Optimum | Front) -> None:
-    """Refuse what has no design that keeps the limits, or none that can be made."""
+    """Refuse a result without a feasible design, or without a feasible rounded one."""
     require(Finding("limits", *contradiction_text(each, found)) for each in found.contradictions)
     reason = found.failure
     if reason:
-        raise refuse("optimise", reason, "Give more starts, widen the ranges, or make the steps finer")
+        raise refuse("optimise", reason, "Use more starts, wider ranges, or finer steps")

@@ -1,4 +1,4 @@
-"""The command `sweep`: many designs of a stage computed, and what makes them differ."""
+"""The command `sweep`: compute many designs of a stage, and the effects of the variables."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ def sweep(
 
 @contextmanager
 def _resumable(output: Path) -> Generator[None]:
-    """Tell of an interruption what is kept."""
+    """Report after an interruption that results are kept."""
     try:
         yield
     except KeyboardInterrupt:
-        raise refuse(str(output), "interrupted; what was computed is kept", "Go on with --resume") from None
+        raise refuse(str(output), "interrupted; results are kept", "Continue with --resume") from None

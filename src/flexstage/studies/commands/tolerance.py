@@ -1,4 +1,4 @@
-"""The command `tolerance`: copies of a stage as manufacture and material make them, and what that allows."""
+"""The command `tolerance`: samples of a stage with scatter of dimensions and materials, yield and allowable tolerances."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def tolerance(
             asked,
             output,
             Run(workers, resume),
-            lambda done, of: shown.share(f"{done} of {of} copies", done / max(of, 1)),
+            lambda done, of: shown.share(f"{done} of {of} samples", done / max(of, 1)),
         )
     page, warnings = partial(tolerance_report, found), loaded_findings(found.study)
     return CommandResult(found.study.design, lambda: found, lambda: tolerance_tables(found), page, Model.LUMPED, warnings)

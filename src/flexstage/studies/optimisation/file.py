@@ -14,7 +14,7 @@ _MOST = 2
 
 @check_arguments
 def load_optimisation(study: Study, where: str = "text") -> OptimisationProblem:
-    """Read the optimisation problem from the study's own text. Raises `DesignError` with every finding, each at `where`.
+    """Read the optimisation problem from the study's own text. Raises `DesignError` with every error, each at `where`.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> load_optimisation(leaf_study()[0]).starts
@@ -33,17 +33,17 @@ def _objectives(table: OptimiseTable, study: Study, findings: list[Finding]) -> 
         for name in names or ():
             at = f"optimise.{aim.value}"
             if name not in study.responses:
-                findings.append(Finding(at, f'there is no response "{name}"', suggest_nearest(name, study.responses)))
+                findings.append(Finding(at, f'unknown response "{name}"', suggest_nearest(name, study.responses)))
             elif name in (each.name for each in found):
-                findings.append(Finding(at, f'"{name}" is an objective already', "Name each once"))
+                findings.append(Finding(at, f'"{name}" is an objective already', "Name it once"))
             elif (same := next((each for each in found if each.measure == study.responses[name]), None)) is not None:
-                findings.append(Finding(at, f'"{name}" is the same measure as "{same.name}", an objective already', "Name each once"))
+                findings.append(Finding(at, f'"{name}" is the same measure as "{same.name}", an objective already', "Remove one"))
             else:
                 found.append(Objective(name, study.responses[name], aim))
     if not found and not findings:
         example = next(iter(study.responses), "f1")
-        findings.append(Finding("optimise", "no objective is named", f'Write for example maximise = "{example}" in [optimise]'))
+        findings.append(Finding("optimise", "no objective is named", f'Use e.g. maximise = "{example}" in [optimise]'))
     if len(found) > _MOST:
-        what = f"these are {len(found)} objectives, a front is drawn of {_MOST}"
+        what = f"must be at most {_MOST} objectives (got {len(found)})"
         findings.append(Finding("optimise", what, "Keep two, and set [limits] on the others"))
     return tuple(found)

@@ -10,20 +10,20 @@ from flexstage.studies.sweeps.definition import Asked, Study
 
 
 class Aim(Enum):
-    """Which way an objective is to go."""
+    """Direction of an objective."""
 
     MAXIMISE = "maximise"
     MINIMISE = "minimise"
 
     @property
     def sense(self) -> Sense:
-        """Which side of a limit is better."""
+        """Better side of a limit."""
         return Sense.AT_LEAST if self is Aim.MAXIMISE else Sense.AT_MOST
 
 
 @dataclass(frozen=True)
 class Objective(Asked):
-    """A response by name, its measure, and which way it is to go."""
+    """A response by name, its measure, and its direction."""
 
     direction: Aim
 
@@ -32,8 +32,8 @@ class Objective(Asked):
 class OptimisationProblem:
     """Optimisation problem, as the `[optimise]` section of a study's file defines it.
 
-    One objective, or two for a front of `points` designs. `starts`: how many designs the search begins from, the design as it stands first,
-    the others a Sobol sequence of this `seed`. `requirements`: the design's own `[requirements]` lines are limits too.
+    One objective, or two for a front of `points` designs. `starts`: number of initial designs, first the nominal design,
+    then a Sobol sequence of this `seed`. `requirements`: the design's own `[requirements]` lines are limits too.
     """
 
     objectives: tuple[Objective, ...]
@@ -44,7 +44,7 @@ class OptimisationProblem:
 
 
 def limits(study: Study, definition: OptimisationProblem) -> tuple[Requirement, ...]:
-    """All limits: the study's, then the design's own requirements on measures that the study does not limit on that side.
+    """All limits: the study's, then the design's requirements on measures without a limit of the study on that side.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> [each.key for each in limits(*leaf_study())]

@@ -1,4 +1,4 @@
-"""What an optimisation found."""
+"""Results of an optimisation."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from flexstage.studies.sweeps.variable import Variable
 
 @dataclass(frozen=True, eq=False)
 class Binding:
-    """What keeps the objective from being better: a limit, or an end of a variable's range.
+    """A binding limit, or a binding end of a variable's range.
 
-    `price`: how much the objective changes [its SI unit] when the limit or end moves up by one unit [its SI unit], the rest re-optimised.
+    `price`: change of the objective [its SI unit] per unit [its SI unit] of the limit or end, with all variables re-optimised.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Binding limits",
         "name limit gain price",
         notes=(
-            "Gain: of the objective, where the limit or end of the range is relaxed by 1 % of its value. Price: its change per unit of it.",
+            "Gain: of the objective, if the limit or range end is relaxed by 1 % of its value. Price: change of the objective per unit.",
         ),
     )
 
@@ -48,13 +48,13 @@ class Binding:
 
     @property
     def gain(self) -> Annotated[float, INNER, UnitIn("objective_unit"), Heading("gain for 1 %", digits=3)]:
-        """Gain of the objective where the limit is relaxed by 1 % of its value."""
+        """Gain of the objective if the limit is relaxed by 1 % of its value."""
         return abs(self.price) * (abs(self.limit) or 1.0) * 0.01
 
 
 @dataclass(frozen=True)
 class Accepted:
-    """A design that a search accepted: the objective [SI] and the largest relative violation of a limit."""
+    """A design accepted by a search: the objective [SI] and the largest relative violation of a limit."""
 
     objective: float
     violation: float
@@ -62,9 +62,9 @@ class Accepted:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """One start: where it began and ended (shares of the ranges), the objective there [SI], the largest violation, and its history.
+    """One start: its first and last design (shares of the ranges), the final objective [SI], the largest violation, and its history.
 
-    `history` are the objective and the largest violation (k, 2) design by design as the search accepted them. `agrees`: the end is
+    `history` are the objective and the largest violation (k, 2) of each accepted design. `agrees`: the final design is
     feasible and as good as the best one within a ten-thousandth.
     """
 
@@ -83,12 +83,12 @@ class Start:
 
     @property
     def end(self) -> str:
-        """How it ended."""
+        """Reason of the end."""
         return self.reason or ("converged" if self.converged else "no further step found")
 
     @property
     def accepted(self) -> Annotated[tuple[Accepted, ...], VIEW, Called("history")]:
-        """Designs as the search accepted them."""
+        """Accepted designs of the search."""
         return tuple(Accepted(*each) for each in self.history.tolist())
 
 
@@ -96,7 +96,7 @@ class Start:
 class Rounded:
     """The best design that can be made: values (d,) on the variables' steps, objective and its `loss` in the objective's unit, >= 0.
 
-    `tried`: how many neighbours were evaluated. `point` is `None` where none of them keeps the limits; `reason` then says so.
+    `tried`: number of evaluated neighbours. `point` is `None` if none of them is feasible; `reason` then states so.
     """
 
     point: Point | None
@@ -108,7 +108,7 @@ class Rounded:
 
 @dataclass(frozen=True)
 class LimitAt:
-    """A limit and the value [SI] that a design has, with the relative margin."""
+    """A limit and a design's value [SI], with the relative margin."""
 
     measure: str
     point: str
@@ -120,7 +120,7 @@ class LimitAt:
 
 @dataclass(frozen=True)
 class DesignPoint:
-    """A design: variables and objectives by name [SI; factors on what the design states for relative variables], and its limits."""
+    """A design: variables and objectives by name [SI; factors on the design's values for relative variables], and its limits."""
 
     variables: Mapping[str, float]
     objectives: Mapping[str, float]
@@ -129,7 +129,7 @@ class DesignPoint:
 
 @dataclass(frozen=True)
 class RoundedPoint(DesignPoint):
-    """The best design on the variables' steps: what rounding costs the objective [SI], and how many neighbours were tried."""
+    """The best design on the variables' steps: the loss of the objective by rounding [SI], and the number of evaluated neighbours."""
 
     loss: float
     tried: int
@@ -137,9 +137,9 @@ class RoundedPoint(DesignPoint):
 
 @dataclass(frozen=True, eq=False)
 class Contradiction:
-    """Limits that cannot all be kept within the ranges, though any of them left out the others can; `violation` is the least largest one.
+    """Limits that contradict each other within the ranges, a minimal set; `violation` is the smallest possible largest one.
 
-    `point` is the design there: relative violations of the limits named are equal or less.
+    `point` is the design there: relative violations of the named limits are equal or less.
     """
 
     limits: tuple[Requirement, ...]
@@ -149,9 +149,9 @@ class Contradiction:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Outcome(InNotebook):
-    """What every optimisation tells: `before` is the design as it stands; `contradictions` say why no design keeps the `limits`.
+    """Common results of all optimisations: `before` is the nominal design; `contradictions` state why no design is feasible.
 
-    `idle` names variables that move none of the measures asked for. `evaluated`: designs in all. `interrupted`: the best so far.
+    `idle` names variables without effect on any requested measure. `evaluated`: number of designs. `interrupted`: the best so far.
     """
 
     study: Annotated[Study, INNER]
@@ -171,12 +171,12 @@ class Outcome(InNotebook):
 
     @property
     def objectives(self) -> Annotated[tuple[Objective, ...], VIEW]:
-        """What is to be best."""
+        """The objectives."""
         return self.definition.objectives
 
     @property
     def variables(self) -> Annotated[tuple[Variable, ...], VIEW]:
-        """What may be moved."""
+        """The variables."""
         return self.study.variables
 
     @property
@@ -186,7 +186,7 @@ class Outcome(InNotebook):
 
     @property
     def initial(self) -> Annotated[DesignPoint, VIEW, Called("before")]:
-        """The design as it stands."""
+        """The nominal design."""
         return self.design(self.before)
 
     def design(self, point: Point) -> DesignPoint:
@@ -208,7 +208,7 @@ def _limit_at(limit: Requirement, value: float) -> LimitAt:
 class Optimum(Outcome):
     """The outcome of an optimisation with one objective.
 
-    `point` is the best design found, `None` where no start found one that keeps the limits. What keeps it from being better is `binding`.
+    `point` is the best design, `None` if no start found a feasible one. `binding` are the active limits and range ends.
     """
 
     point: Annotated[Point | None, INNER]
@@ -218,12 +218,12 @@ class Optimum(Outcome):
 
     @property
     def best(self) -> Annotated[DesignPoint | None, VIEW, Called("optimum")]:
-        """The best design found."""
+        """The best design."""
         return None if self.point is None else self.design(self.point)
 
     @property
     def on_steps(self) -> Annotated[RoundedPoint | None, VIEW, Called("rounded")]:
-        """The best design that can be made; null without steps, or where no neighbour keeps the limits."""
+        """The best design that can be made; null without steps, or if no neighbour is feasible."""
         if self.rounded is None or self.rounded.point is None:
             return None
         found = self.design(self.rounded.point)
@@ -231,20 +231,20 @@ class Optimum(Outcome):
 
     @property
     def final(self) -> Point | None:
-        """The design to be made: rounded where steps are given and a neighbour on them keeps the limits, else the optimum."""
+        """The final design: rounded if steps exist and a neighbour is feasible, else the optimum."""
         return self.point if self.rounded is None or self.rounded.point is None else self.rounded.point
 
     @property
     def failure(self) -> str:
-        """Why there is no design to be made; empty where there is one."""
+        """Reason why there is no final design; empty otherwise."""
         if self.point is None:
             reasons = [start.reason for start in self.starts if start.reason]
-            return f"no start found a design that keeps all limits{': ' + reasons[0] if reasons else ''}"
+            return f"no start found a feasible design{': ' + reasons[0] if reasons else ''}"
         return ""
 
     @property
     def agreeing(self) -> Annotated[int, VIEW]:
-        """How many starts ended as good as the best."""
+        """Number of starts with a final design as good as the best."""
         return sum(start.agrees for start in self.starts)
 
     def value(self, point: Point) -> float:
@@ -253,14 +253,14 @@ class Optimum(Outcome):
 
     @property
     def improvement(self) -> float:
-        """Relative change of the objective from the design as it stands to the final one; NaN without one."""
+        """Relative change of the objective from the nominal to the final design; NaN without one."""
         before = self.value(self.before)
         return np.nan if self.final is None or before == 0.0 else self.value(self.final) / before - 1.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Front(Outcome):
-    """Designs none of which is better in both objectives: `points` from the best in the first to the best in the second."""
+    """Pareto-optimal designs: `points` from the best in the first objective to the best in the second."""
 
     points: Annotated[tuple[Point, ...], INNER]
 
@@ -271,8 +271,8 @@ class Front(Outcome):
 
     @property
     def failure(self) -> str:
-        """Why there is no front; empty where there is one."""
-        return "" if self.points else "no start found a design that keeps all limits"
+        """Reason why there is no front; empty otherwise."""
+        return "" if self.points else "no start found a feasible design"
 
     @property
     def values(self) -> Array:

@@ -20,10 +20,10 @@ _EDGE = 1e-9
 
 
 def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
-    """The best neighbour on the variables' steps that keeps the limits; `None` where no variable has a step.
+    """The best feasible neighbour on the variables' steps; `None` if no variable has a step.
 
     All neighbours (of more than 12 variables those nearest), ranked by the linear model of objective and limits, are evaluated in order
-    until one keeps the limits; then single steps of every variable are tried while they make it better. Variables without a step stay.
+    until one is feasible. Then single steps of every variable are tried while they improve it. Variables without a step are constant.
     """
     stepped = [number for number, each in enumerate(setting.study.variables) if each.step is not None]
     if not stepped:
@@ -36,7 +36,7 @@ def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded 
         if best is not None:
             break
     if best is None:
-        reason = f"none of the {tried} nearest designs on the steps keeps all limits: make the steps finer, or the limits looser"
+        reason = f"none of the {tried} nearest designs on the steps is feasible: use finer steps, or wider limits"
         return Rounded(None, None, np.nan, tried, reason)
     for _ in range(_ROUNDS):
         around = np.array(list(_single_steps(setting, best, stepped)))
@@ -65,7 +65,7 @@ def _neighbours(setting: Setting, point: Point, stepped: list[int]) -> Array:
 def _multiples(setting: Setting, point: Point, number: int) -> list[float]:
     """Shares of the multiples of the step below and above, the nearest first; within the range."""
     variable = setting.study.variables[number]
-    assert variable.step is not None  # noqa: S101  of stepped variables only
+    assert variable.step is not None  # noqa: S101  the variable has a step
     count = float(np.real(variable.at(np.asarray(point.shares[number])))) / variable.step
     whole = {int(np.floor(count + 1e-6)), int(np.ceil(count - 1e-6))}
     found = [share_of(variable, each * variable.step) for each in sorted(whole, key=lambda each: abs(each - count))]
@@ -73,7 +73,7 @@ def _multiples(setting: Setting, point: Point, number: int) -> list[float]:
 
 
 def _rank(problem: Problem, point: Point, neighbours: Array) -> Array:
-    """Neighbours by the linear model: those that keep the limits first, the better objective first."""
+    """Neighbours by the linear model: feasible ones first, then by objective."""
     moves = neighbours - point.shares
     values = point.values[None] + moves @ point.gradient.T
     worth = np.array([max(side.of(row[side.index]) for side in problem.objective) for row in values])
@@ -82,7 +82,7 @@ def _rank(problem: Problem, point: Point, neighbours: Array) -> Array:
 
 
 def _best(problem: Problem, setting: Setting, shares: Array) -> Point | None:
-    """The best of some designs that keeps the limits."""
+    """The best of some designs that is feasible."""
     found = [point for point in setting.values.evaluate(shares) if isinstance(point, Point)]
     kept = [point for point in found if problem.excess(point) <= SPARE]
     return min(kept, key=problem.worth, default=None)

@@ -1,4 +1,4 @@
-"""An optimisation set up: measures, their sides and scales, the design as it stands among the ranges, the starts."""
+"""Set-up of an optimisation: measures, their sides and scales, the nominal design, the starts."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _EDGE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """What a search needs: `values` evaluates objectives first, then what the `kept` limits are on; `before` is the design as it stands."""
+    """Input of a search: `values` evaluates objectives first, then the measures of the `kept` limits; `before` is the nominal design."""
 
     study: Study
     definition: OptimisationProblem
@@ -40,15 +40,15 @@ class Setting:
         return Problem((self.objective(0),), tuple(self.side(number) for number in range(len(self.kept))))
 
     def objective(self, number: int) -> Side:
-        """An objective as a side: c is its value over its scale, negative where it is maximised."""
+        """An objective as a side: c is its value over its scale, negative for a maximisation."""
         return Side(number, self.definition.objectives[number].direction.sense, 0.0, self.scale(number))
 
     def scale(self, number: int) -> float:
-        """What an objective is measured by: its value in the design as it stands."""
+        """Scale of an objective: its value in the nominal design."""
         return abs(float(self.before.values[number])) or 1.0
 
     def side(self, number: int) -> Side:
-        """A limit as a side, with a little to spare."""
+        """A limit as a side, with a small margin."""
         limit = self.kept[number]
         index = len(self.definition.objectives) + number
         scale = abs(limit.limit) or abs(float(self.before.values[index])) or 1.0
@@ -56,7 +56,7 @@ class Setting:
         return Side(index, limit.sense, limit.limit + (spare if limit.sense is Sense.AT_LEAST else -spare), scale)
 
     def starts(self) -> Array:
-        """Shares (starts, n): the design as it stands, then a scrambled Sobol sequence."""
+        """Shares (starts, n): the nominal design, then a scrambled Sobol sequence."""
         count, size = self.definition.starts - 1, len(self.study.variables)
         generator = scipy.stats.qmc.Sobol(size, scramble=True, rng=np.random.default_rng(self.definition.seed))
         drawn = generator.random(1 << max(count - 1, 0).bit_length())[:count]
@@ -64,15 +64,15 @@ class Setting:
 
     @property
     def idle(self) -> tuple[str, ...]:
-        """Variables that move none of the measures, at the design as it stands."""
+        """Variables without effect on any measure, at the nominal design."""
         largest = np.max(np.abs(self.before.gradient) / np.maximum(np.abs(self.before.values), 1e-300)[:, None], axis=0)
         return tuple(each.name for each, most in zip(self.study.variables, largest, strict=True) if most <= 1e-14)
 
 
 def setting(study: Study, definition: OptimisationProblem) -> Setting:
-    """Set up an optimisation; the design as it stands is evaluated.
+    """Set up an optimisation, and evaluate the nominal design.
 
-    Raises `DesignError` for measures that the stage does not have, designs that stand outside their ranges, and one that cannot be read.
+    Raises `DesignError` for measures that the stage does not have, designs outside their ranges, and an invalid nominal design.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> found = setting(*leaf_study())
@@ -87,8 +87,8 @@ def setting(study: Study, definition: OptimisationProblem) -> Setting:
     shares = np.array([share_of(each, each.nominal(study.design)) for each in study.variables])
     before = values(np.clip(shares, 0.0, 1.0)[None])[0]
     if isinstance(before, str):
-        require([Finding("design", before, "Mend it before it is optimised")])
-    assert isinstance(before, Point)  # noqa: S101  refused just above
+        require([Finding("design", before, "Correct it before it is optimised")])
+    assert isinstance(before, Point)  # noqa: S101  refused above
     return Setting(study, definition, kept, values, before)
 
 
@@ -100,17 +100,17 @@ def _measure_findings(study: Study, objectives: tuple[Objective, ...], kept: tup
     for where, each in asked:
         value = value_or_reason(bench, each)
         if isinstance(value, str):
-            yield Finding(where, value, "Ask for what this stage has")
+            yield Finding(where, value, "Use measures of this stage")
 
 
 def _stated_values(study: Study, variable: Variable) -> list[float]:
-    """What the design states at each address, or the case for each parameter."""
+    """Value of the design at each address, or of the case for each parameter."""
     variant = variable.variant
     return [float(get(study.design, address) if variant is None else variant.value(address)) for address in variable.addresses]
 
 
 def share_of(variable: Variable, value: float) -> float:
-    """The share of a variable's range at which it has a value: the inverse of `Variable.at`.
+    """The share of a variable's range at a value: the inverse of `Variable.at`.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> share_of(Variable("t", (), LENGTH, 1.0, 4.0, logarithmic=True), 2.0)
@@ -122,16 +122,16 @@ def share_of(variable: Variable, value: float) -> float:
 
 
 def _range_findings(study: Study) -> Iterator[Finding]:
-    """Variables whose value in the design as it stands lies outside their range, or differs among their addresses."""
+    """Variables whose value in the nominal design is outside their range, or differs between their addresses."""
     for each in study.variables:
         where, value = f"variables.{each.name}", each.nominal(study.design)
         unit = "" if each.relative else f" {each.quantity.si}"
         slack = _EDGE * (each.high - each.low)
         if not each.low - slack <= value <= each.high + slack:
-            what = f"the design as it stands has {value:.6g}{unit}, outside {each.low:.6g} to {each.high:.6g}{unit}"
+            what = f"the nominal value is outside the range (got {value:.6g}{unit}, expected {each.low:.6g} to {each.high:.6g}{unit})"
             yield Finding(where, what, "Widen the range, or change the design")
         if not each.relative:
             found = _stated_values(study, each)
             if max(found) - min(found) > _EDGE * max(map(abs, found)):
-                what = f"its addresses state different values, {min(found):.6g} to {max(found):.6g}{unit}"
+                what = f"its addresses have different values, {min(found):.6g} to {max(found):.6g}{unit}"
                 yield Finding(where, what, "Give the range in percent, or use two variables")

@@ -1,4 +1,4 @@
-"""The design file of an optimised stage: the text given, with the new values and where they are from; comments stay."""
+"""The design file of an optimised stage: the original text, with the new values and their source; comments are kept."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SAME = 1e-11
 
 
 def design_path(study: Study, folder: Path) -> Path | None:
-    """Where the design file stands that a study names; `None` where it names a shipped case.
+    """The path of a study's design file; `None` for a shipped case.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> design_path(leaf_study()[0], Path()) is None
@@ -33,20 +33,20 @@ def design_path(study: Study, folder: Path) -> Path | None:
 
 
 def design_text(study: Study, folder: Path) -> str:
-    """The text of the design file that a study names, or that of its shipped case as a new file shows it.
+    """The text of a study's design file, or that of its shipped case as a new file.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> design_text(leaf_study()[0], Path()).splitlines()[0]
-    '# The stage that the study "thicker leaves" starts from.'
+    '# The initial stage of the study "thicker leaves".'
     """
     path = design_path(study, folder)
-    return read_text(path) if path is not None else dumps(study.design, {"": f'The stage that the study "{study.name}" starts from.'})
+    return read_text(path) if path is not None else dumps(study.design, {"": f'The initial stage of the study "{study.name}".'})
 
 
 def write_optimum(text: str, study: Study, definition: OptimisationProblem, values: Array | Sequence[float], *, where: str = "text") -> str:
     """The text of the design file with `values` (d,) of the study's variables, each tagged `derived optimise STUDY, OBJECTIVE`.
 
-    Raises `DesignError` where the file's layout does not allow it.
+    Raises `DesignError` if the file's layout does not allow it.
 
     >>> from flexstage.mechanism.store import dumps, loads
     >>> from flexstage.studies.optimisation.example import leaf_study
@@ -62,7 +62,7 @@ def write_optimum(text: str, study: Study, definition: OptimisationProblem, valu
 
 
 def _changes(study: Study, values: Array) -> Iterator[tuple[str, float]]:
-    """The numbers that become others, by address; those of one address each, and all that parameters of a case move."""
+    """The changed numbers by address: those of one address each, and all that depend on parameters of a case."""
     final = study.mechanism_for(values)
     addresses = [address for each in study.variables if each.variant is None for address in each.addresses]
     if any(each.variant is not None for each in study.variables):

@@ -38,7 +38,7 @@ class Scalars:
 
     @property
     def slope(self) -> Array:
-        """The gradient (n,) of the piece that the measure is."""
+        """The gradient (n,) of the active piece."""
         return self.gradient[int(np.argmin(self.values) if self.extreme is Extreme.LEAST else np.argmax(self.values))]
 
 
@@ -64,7 +64,7 @@ class Numbered:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A design at `shares` (n,) of the variables' ranges, with its measures in the order asked for."""
+    """A design at `shares` (n,) of the variables' ranges, with its measures in the requested order."""
 
     shares: Array
     found: tuple[Scalars | Numbered, ...]
@@ -84,9 +84,9 @@ class Point:
 class Values:
     """Evaluates `measures` of a study's designs.
 
-    Derivatives are exact (complex step through the models' formulas; eigenvalues analytically), except of map_error and opening: those
-    are worked out from real corners and outlines, and take central differences a thousandth of the range to either side, which is where
-    rounding of the finite motion and curvature balance.
+    Derivatives are exact (complex step through the models' formulas; eigenvalues analytically), except of map_error and opening. Those
+    are computed from real corners and outlines, with central differences of a thousandth of the range in both directions, where
+    rounding and curvature have equal effects.
     """
 
     study: Study
@@ -94,7 +94,7 @@ class Values:
 
     @cached_property
     def _bare(self) -> Study:
-        """The study without the tags of its design, which every change would have to look through."""
+        """The study without the tags of its design, which would slow down every change."""
         return replace(self.study, design=replace(self.study.design, tags=Table({})))
 
     @cached_property
@@ -104,7 +104,7 @@ class Values:
 
     @cached_property
     def _modes(self) -> tuple[Modes, ...]:
-        """The spectra needed: of the platform, of all bodies, or both; each as far up as the highest number asked for."""
+        """The required spectra: of the platform, of all bodies, or both; each up to the highest requested number."""
         highest: dict[bool, int] = {}
         for each in self.measures:
             if each.kind in _SPECTRAL:
@@ -113,7 +113,7 @@ class Values:
         return tuple(Modes(count, platform) for platform, count in highest.items())
 
     def __call__(self, shares: Array) -> list[Point | str]:
-        """Points of designs at shares (s, n) of the ranges with derivatives; in the place of one that fails, why."""
+        """Points of designs at shares (s, n) of the ranges with derivatives; for a failed one, the reason."""
         return self._evaluate(np.asarray(shares, dtype=float), slopes=True)
 
     def evaluate(self, shares: Array) -> list[Point | str]:
@@ -121,7 +121,7 @@ class Values:
         return self._evaluate(np.asarray(shares, dtype=float), slopes=False)
 
     def _evaluate(self, shares: Array, *, slopes: bool) -> list[Point | str]:
-        """All at once; where that fails, halves, until culprits stand alone."""
+        """Evaluate all at once; after a failure, halves, until the failing designs are isolated."""
         try:
             found = self._batch(shares, slopes=slopes)
         except (DesignError, np.linalg.LinAlgError) as error:
@@ -174,7 +174,7 @@ class Values:
 
 
 def values_of(study: Study, shares: Array) -> Array:
-    """Values (d,) of the variables at shares; what is within a millionth of the range of a step is on it.
+    """Values (d,) of the variables at shares; rounded to a step if within a millionth of the range.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> values_of(leaf_study()[0], np.array([0.5000000001])).round(12).tolist()
@@ -189,7 +189,7 @@ def values_of(study: Study, shares: Array) -> Array:
 
 
 def _extreme(asked: Measure) -> Extreme:
-    """Which of its pieces a measure is; of one piece that."""
+    """The extreme of a measure's pieces."""
     return asked.kind.extreme or Extreme.LEAST
 
 
@@ -197,7 +197,7 @@ def _scalars(values: Array, extreme: Extreme, shape: tuple[int, int], *, slopes:
     """Pieces (s n, m) of stepped designs, design by design."""
     designs, each = shape
     spread = np.broadcast_to(values, (designs * each, values.shape[-1])).reshape(designs, each, -1)
-    keep = np.isfinite(spread).all(axis=(0, 1)) | ~np.isinf(np.real(spread)).all(axis=(0, 1))  # infinite everywhere: no piece
+    keep = np.isfinite(spread).all(axis=(0, 1)) | ~np.isinf(np.real(spread)).all(axis=(0, 1))  # not a piece if infinite everywhere
     spread = spread[..., keep]
     return [Scalars(np.real(own[0]), np.imag(own).T / _STEP if slopes else np.zeros((own.shape[-1], 0)), extreme) for own in spread]
 

@@ -1,1 +1,1 @@
-"""Studies of many designs: what is varied, what is asked, how designs are planned, computed and kept."""
+"""Studies of many designs: variables, responses, plans, computation and storage of designs."""

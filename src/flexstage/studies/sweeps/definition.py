@@ -1,4 +1,4 @@
-"""A study: the design it starts from, what is varied and what is asked."""
+"""A study: its initial design, its variables and its responses."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from flexstage.studies.sweeps.variable import Variable, apply_columns
 
 @dataclass(frozen=True)
 class Asked:
-    """A measure that a study asks for, by the name that its file gives it."""
+    """A requested measure of a study, by its name in the file."""
 
     name: str
     measure: Annotated[Measure, INNER]
@@ -49,9 +49,9 @@ class Asked:
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """What a study's file says: `design` as it stands, `variables`, `responses` by name, `limits` on measures, the sampling `plan`.
+    """The contents of a study's file: nominal `design`, `variables`, `responses` by name, `limits` on measures, the sampling `plan`.
 
-    `text` is the file's own, kept with the results.
+    `text` is the file's own, stored with the results.
     """
 
     name: str
@@ -64,7 +64,7 @@ class Study:
 
     @property
     def names(self) -> tuple[tuple[str, str], ...]:
-        """Where the file says them, and the names of all columns of the results: variables, responses, what limits are on.
+        """Location in the file and name of all columns of the results: variables, responses, measures of limits.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().names
@@ -77,14 +77,14 @@ class Study:
 
     @property
     def columns(self) -> Mapping[str, Measure]:
-        """What is computed of each design, by name: the responses, and the measures that limits are on."""
+        """Computed measures of each design, by name: the responses, and the measures of limits."""
         asked = {(each.key, each.point) for each in self.responses.values()}
         further = [each for each in self.limits if (each.key, each.point) not in asked]
         return {**self.responses, **{each.key if each.key not in self.responses else f"limit {each.key}": each for each in further}}
 
     @property
     def facts(self) -> dict[str, str]:
-        """What results depend on, item by item in words: two studies with the same facts have the same results.
+        """Items that results depend on, as text: studies with equal facts have equal results.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> list(neck_study().facts)
@@ -118,7 +118,7 @@ class Study:
         return self.mechanism_at(tuple(values[..., number] for number in range(len(self.variables))))
 
     def mechanism_at(self, columns: tuple[Number, ...]) -> Mechanism:
-        """The same of values (...) by variable, real or complex: nothing becomes complex that does not depend on one that is.
+        """The same for values (...) by variable, real or complex: only numbers that depend on a complex one become complex.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().mechanism_at((0.0015,)).parts["neck"].thickness
@@ -128,7 +128,7 @@ class Study:
 
     @property
     def numbers(self) -> Numbers | None:
-        """The numbers of the description that designs differ in, where variables share them and a design is had by these more easily.
+        """The numbers of the description by which designs differ, if variables share them and they are faster than the variables.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().numbers  # what `drawn_from` makes of the variables will do
@@ -136,7 +136,7 @@ class Study:
         return None
 
     def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
-        """What is asked of a design or a batch, column by column (...) or those of `names`; where a stage has none, the reason in words.
+        """Measures of a design or a batch, column by column (...) or those of `names`; for a missing one, the reason as text.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> round(float(neck_study().evaluate(neck_study().design)[0]))
@@ -146,7 +146,7 @@ class Study:
         return measure_all(mechanism, tuple(columns[name] for name in (columns if names is None else names)))
 
     def feasible(self, responses: Array, limits: Sequence[Requirement] | None = None) -> Array:
-        """Which designs (n,) keep all the study's limits, or those, given all columns' responses (n, r); those without values keep none.
+        """Designs (n,) that keep all limits, of the study or `limits`, from all responses (n, r); those without values keep none.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().feasible(np.array([[100.0], [np.nan]])).tolist()
@@ -161,30 +161,30 @@ class Study:
 
 
 def _offer(asked: Measure) -> str:
-    """The package and version that offers a measure, if one does."""
+    """The package and version of a measure, if it is from another package."""
     offer = MEASURES.offer(asked.kind.form)
     return f", of {offer}" if offer else ""
 
 
 def name_findings(study: Study) -> Iterator[Finding]:
-    """Names that two columns of the results would have, and names that are none.
+    """Duplicate names of columns of the results, and invalid names.
 
     >>> from dataclasses import replace
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> print(*name_findings(replace(neck_study(), responses={"neck": neck_study().responses["tilt"]})))
-    responses.neck: the results have a column "neck" already, of variables.neck. Give every column a name of its own.
+    responses.neck: column "neck" exists already, from variables.neck. Use unique names.
     """
     owners = {"design": "the number of a design"}
     for where, name in study.names:
         if not name.strip() or not name.isprintable():
-            yield Finding(where, "its name is empty, or has control characters or formats in it", "Write a name of letters and digits")
+            yield Finding(where, "its name is empty, or contains control characters", "Use letters and digits")
         elif name in owners:
-            yield Finding(where, f'the results have a column "{name}" already, of {owners[name]}', "Give every column a name of its own")
+            yield Finding(where, f'column "{name}" exists already, from {owners[name]}', "Use unique names")
         owners[name] = where
 
 
 def _describe(value: Plan | Variable) -> str:
-    """All fields that results depend on, in words; what is absent is left out."""
+    """All fields that results depend on, as text; absent ones are left out."""
     kept = [(each.name, getattr(value, each.name)) for each in fields(value) if each.repr and each.name != "name"]
     return ", ".join(f"{name} {_word(item)}" for name, item in kept if item is not None and item is not False and item != ())
 

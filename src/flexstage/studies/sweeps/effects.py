@@ -25,20 +25,20 @@ from flexstage.studies.sweeps.plan import Plan, Sampling
 _BINS = 16
 _FEWEST = 8
 _SPARE = 4
-"""Designs for each bin's effect at least."""
+"""Smallest number of designs for each bin's effect."""
 
 
 @dataclass(frozen=True, eq=False)
 class Effects(InNotebook):
-    """What d variables do to r responses over the designs that have values.
+    """Effects of d variables on r responses over the designs with values.
 
     `used` designs of `computed`; `mean`, `deviation`, `low`, `high` (r,) in SI. `places` (d, b) and `means` (d, b, r): the mean response
-    where a variable lies in each of b bins of equal counts (for grids, at each level), less what the other variables happen to do
-    there: its main effect. `first` (d, r): share of the
-    variance that a variable alone explains; `total` (d, r): with all its interactions; `total` is None unless the plan is Saltelli's,
-    and `first` is then Sobol's, else the correlation ratio of the bins, corrected for their number. `pairs` (d, d, r): what two variables
-    explain together beyond each alone, `strongest` how the strongest of them act. `errors` (2, r): the largest standard error of a Sobol
-    index, and of one of second order; NaN for other plans. NaN where a response does not vary.
+    for a variable in each of b bins of equal counts (for grids, at each level). This main effect excludes the simultaneous effects
+    of the other variables. `first` (d, r): share of the variance explained by a variable alone; `total` (d, r): with all its
+    interactions. `total` is None unless the plan is Saltelli's; `first` is then Sobol's, else the correlation ratio of the bins, corrected
+    for their number. `pairs` (d, d, r): share of two variables together beyond each alone, `strongest` the strongest interactions.
+    `errors` (2, r): the largest standard error of a Sobol index, and of one of second order; NaN for other plans. NaN for a constant
+    response.
     """
 
     variables: tuple[str, ...]
@@ -61,10 +61,10 @@ class Effects(InNotebook):
 
 @check_arguments
 def effects(results: Results, plan: Plan) -> Effects:
-    """Effects of a study's variables on its responses, over all complete designs so far.
+    """Compute effects of a study's variables on its responses, over all complete designs so far.
 
     First-order index S_i = V[E(y | x_i)] / V(y), total index T_i = E[V(y | x_~i)] / V(y) (Sobol, Math. Comput. Simul. 55 (2001) 271;
-    estimators of Saltelli et al. 2010). Raises nothing: what too few designs cannot tell is NaN.
+    estimators of Saltelli et al. 2010). Raises nothing: NaN for too few designs.
 
     >>> plan = Plan(Sampling.GRID, 2, levels=(3, 3))
     >>> from flexstage.studies.sweeps.plan import shares
@@ -113,7 +113,7 @@ def _reduce(operation: object, values: Array) -> Array:
 
 
 def _bins(column: Array, plan: Plan) -> Array:
-    """Which bin (n,) each value falls into: levels of a grid, else bins of equal counts."""
+    """The bin (n,) of each value: levels of a grid, else bins of equal counts."""
     if plan.sampling is Sampling.GRID:
         return np.unique(column, return_inverse=True)[1]
     count = max(1, min(_BINS, len(column) // _FEWEST, 1 + len(column) // (_SPARE * plan.dimensions)))
@@ -121,7 +121,7 @@ def _bins(column: Array, plan: Plan) -> Array:
 
 
 def _ratios(bins: list[Array], values: Array, *, grid: bool) -> Array:
-    """Correlation ratios (d, r); of random designs less what bins of pure chance would explain, (b - 1)/(n - 1); NaN of one bin."""
+    """Correlation ratios (d, r); of random designs less the expectation for random bins, (b - 1)/(n - 1); NaN for one bin."""
     result = np.full((len(bins), values.shape[1]), np.nan)
     if not len(values):
         return result
@@ -140,7 +140,7 @@ def _sobol(blocks: Array, dimensions: int) -> tuple[Array, Array, Array]:
     """First-order and total indices (d, r) and their largest standard error (r,) of the blocks (d + 2 or more, n, r) of Saltelli's plan.
 
     S_i = E[f_B (f_AB,i - f_A)] / V, T_i = E[(f_A - f_AB,i)^2] / (2 V): estimators (b) and (f) of Table 2 of Saltelli et al., Computer
-    Physics Communications 181 (2010) 259, the mean taken away first. NaN where a response does not vary.
+    Physics Communications 181 (2010) 259, after subtraction of the mean. NaN for a constant response.
     """
     if not blocks.shape[1]:
         unknown = np.full((dimensions, blocks.shape[-1]), np.nan)
@@ -153,7 +153,7 @@ def _sobol(blocks: Array, dimensions: int) -> tuple[Array, Array, Array]:
 
 
 def _complete_blocks(results: Results, plan: Plan) -> Array:
-    """Responses (blocks, n, r) of Saltelli's plan, of those rows of its samples whose designs are all there and have values."""
+    """Responses (blocks, n, r) of Saltelli's plan, of the sample rows whose designs are all complete."""
     values = np.full((plan.designs, results.responses.shape[1]), np.nan)
     values[results.designs] = results.responses
     blocks = values.reshape(plan.blocks, plan.count, -1)
@@ -163,7 +163,7 @@ def _complete_blocks(results: Results, plan: Plan) -> Array:
 def _pairs(results: Results, plan: Plan, sound: Array) -> tuple[Array, Array]:
     """Shares of pairs (d, d, r) and their largest standard error (r,).
 
-    Second-order indices where the plan has them, else by analysis of variance over independent designs.
+    Second-order indices if the plan has them, else by analysis of variance over independent designs.
     """
     if plan.pairs:
         return second_order(_complete_blocks(results, plan), plan.dimensions)

@@ -1,4 +1,4 @@
-"""The study's file: TOML with unit strings, read with all its findings at once."""
+"""The study's file: TOML with unit strings, read with all its errors at once."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ _MOST = 10**9
 
 @check_arguments
 def load_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study's file; a design file that it names is looked for beside it.
+    """Read a study's file; its design file is searched in the same folder.
 
-    Raises `DesignError` with every finding: unknown keys, variables and measures (with the nearest names), empty ranges, wrong units.
+    Raises `DesignError` with every error: unknown keys, variables and measures (with the nearest names), empty ranges, wrong units.
 
     >>> load_study("nowhere/study.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/study.toml: there is no such file. Check the path; "flexstage new" writes a design file.
+    flexstage.base.finding.DesignError: nowhere/study.toml: file not found. Check the path; "flexstage new" writes a design file.
     """
     return loads_study(read_text(path), where=os.fspath(path), folder=Path(path).parent)
 
 
 def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -> Study:
-    """Read a study from its text; `folder` is where design files are looked for.
+    """Read a study from its text; `folder` is that of design files.
 
     >>> study = loads_study('''
     ... format = "flexstage study 1"
@@ -61,7 +61,7 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
     variables = _variables(file.variables, head)
     plan = _plan(file.sweep, variables, findings)
     if not file.responses:
-        findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
+        findings.append(Finding("responses", "no response", 'Name a measure, e.g. f1 = "frequency.platform.1"'))
     study = Study(file.name, design, variables, Table(head.responses), head.limits, plan, text)
     require(with_lines([*findings, *variable_findings(design, variables), *name_findings(study)], text, where))
     return study
@@ -69,9 +69,9 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
 
 @dataclass(frozen=True, eq=False)
 class Opening:
-    """What all studies' files have: the file as it is written, its design and what is asked of it, with the `findings` so far.
+    """Common part of all studies' files: the file as written, its design and responses, with the `findings` so far.
 
-    `variant` is the case that the design is drawn from; `None`: a design file.
+    `variant` is the case of the design; `None`: a design file.
     """
 
     file: StudyFile
@@ -83,7 +83,7 @@ class Opening:
 
 
 def read_opening(text: str, where: str, folder: Path | None) -> Opening:
-    """Read what all studies' files have. Raises `DesignError` where there is no design to go on with.
+    """Read the common part of all studies' files. Raises `DesignError` without a valid design.
 
     >>> text = 'format = "flexstage study 1"' + chr(10) + 'case = "parallelogram"' + chr(10) + 'responses.f = "frequency.1"'
     >>> list(read_opening(text, "here", None).responses)
@@ -99,9 +99,9 @@ def read_opening(text: str, where: str, folder: Path | None) -> Opening:
 
 
 def _variables(tables: Mapping[str, VariedTable], head: Opening) -> tuple[Variable, ...]:
-    """All variables; the name of one that gives no address is its address."""
+    """All variables; without an address, the name of a variable is its address."""
     if not tables:
-        what = 'Write for example neck = { address = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }'
+        what = 'Use e.g. neck = { address = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }'
         head.findings.append(Finding("variables", "nothing is varied", what))
     found = []
     for name, table in tables.items():
@@ -123,7 +123,7 @@ def _variable(table: VariedTable, name: str, head: Opening) -> Variable:
     shares = (is_share(table.low), is_share(table.high))
     findings: list[Finding] = []
     if shares[0] != shares[1]:
-        findings.append(Finding(f"{where}.to", "one end is relative (%), the other not", "Give both alike"))
+        findings.append(Finding(f"{where}.to", "one end is relative (%), the other not", "Use % for both or neither"))
     ends: list[float] = []
     for key, raw, share in zip(("from", "to"), (table.low, table.high), shares, strict=True):
         try:
@@ -146,14 +146,14 @@ def _step(table: VariedTable, quantity: Quantity, where: str, findings: list[Fin
         findings += error.findings
         return None
     if is_share(table.low):
-        findings.append(Finding(f"{where}.step", "the range is relative (%)", "Give the range with its unit, or leave out the step"))
+        findings.append(Finding(f"{where}.step", "the range is relative (%)", "Give the range with a unit, or leave out the step"))
     elif not step > 0.0:
-        findings.append(Finding(f"{where}.step", f"found {step:g}", 'Give a step above 0, for example step = "10 um"'))
+        findings.append(Finding(f"{where}.step", f"must be greater than 0 (got {step:g})", 'Use e.g. step = "10 um"'))
     return step
 
 
 def _quantity(where: str, addresses: tuple[str, ...], design: Mechanism) -> Quantity:
-    """The quantity of what is moved; all addresses must have the same."""
+    """The quantity of a variable; all addresses must have the same."""
     found: list[Quantity] = []
     findings: list[Finding] = []
     for address in addresses:
@@ -195,13 +195,13 @@ def _plan(table: SweepTable, variables: tuple[Variable, ...], findings: list[Fin
     levels = _levels(table, variables, findings) if grid else ()
     plan = Plan(table.sampling, len(variables), 0 if grid else table.designs or _DESIGNS, levels, table.seed, table.pairs)
     if plan.designs > _MOST:
-        findings.append(Finding("sweep.designs", f"these are {plan.designs:.3g} designs", f"Ask for at most {_MOST:.0e}"))
+        findings.append(Finding("sweep.designs", f"must be at most {_MOST:.0e} (got {plan.designs:.3g})", "Use fewer designs"))
     return plan
 
 
 def _levels(table: SweepTable, variables: tuple[Variable, ...], findings: list[Finding]) -> tuple[int, ...]:
     without = [each.name for each in variables if each.levels is None]
-    findings += (Finding(f"variables.{name}", "a grid needs its levels", "Add for example levels = 5") for name in without)
+    findings += (Finding(f"variables.{name}", "levels missing for a grid", "Add e.g. levels = 5") for name in without)
     if table.designs is not None:
-        findings.append(Finding("sweep.designs", "a grid has as many designs as its levels make", "Leave it out"))
+        findings.append(Finding("sweep.designs", "a grid gets its number of designs from the levels", "Leave it out"))
     return tuple(each.levels or 2 for each in variables)

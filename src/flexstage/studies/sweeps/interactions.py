@@ -1,4 +1,4 @@
-"""Interactions of two variables: the share of a response's variance that neither explains alone, and how it looks."""
+"""Interactions of two variables: the share of a response's variance that neither explains alone, and its shape."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Interaction:
-    """Means of a response over one variable, where another is low, in the middle, and high.
+    """Means of a response over one variable, for low, middle and high values of another.
 
-    `over`, `by` and `response` are their numbers, `share` that of the response's variance which only both together explain. `places` (b,)
-    and `levels` (3,) are mean values of the variables in SI, `means` (3, b) of the response; NaN where there is no design.
+    `over`, `by` and `response` are their numbers, `share` that of the response's variance explained only by both together. `places` (b,)
+    and `levels` (3,) are mean values of the variables in SI, `means` (3, b) of the response; NaN without a design.
     """
 
     over: int
@@ -37,14 +37,14 @@ class Interaction:
 def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
     """Shares (d, d, r) of the variance of responses (n, r) that two of the variables (n, d) explain beyond each alone; NaN on the diagonal.
 
-    Analysis of variance: variables fall into bins (levels of a `grid`); the effects of all single bins are fitted and taken away, and what
-    the cells of two variables explain of the rest is counted, less what cells would by chance: SS_ij - (b_i - 1)(b_j - 1) MSE over the
-    total sum of squares. Of a complete grid it is exact, else what happens within bins is missed: true shares are larger. NaN where there
-    are too few designs, or a response does not vary.
+    Analysis of variance: variables are divided into bins (levels of a `grid`). The effects of all single bins are fitted and subtracted;
+    the cells of two variables then explain a part of the residual, less its expectation. SS_ij - (b_i - 1)(b_j - 1) MSE over the
+    total sum of squares. For a complete grid it is exact, else effects within bins are missing: true shares are larger. NaN for
+    too few designs, or a constant response.
 
     >>> from itertools import product
     >>> at = np.array(list(product([-1.0, 0.0, 1.0], repeat=2)))
-    >>> paired_shares(at, at[:, :1] * at[:, 1:], grid=True)[0, 1].round(6).tolist()  # a product is nothing but interaction
+    >>> paired_shares(at, at[:, :1] * at[:, 1:], grid=True)[0, 1].round(6).tolist()  # a product has only interaction
     [1.0]
     >>> paired_shares(at, at[:, :1] + at[:, 1:], grid=True)[0, 1].round(6).tolist()
     [0.0]
@@ -68,7 +68,7 @@ def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
 
 
 def variance(values: Array) -> Array:
-    """Variance (r,) of responses (n, r); NaN where none varies by more than a billionth of itself: that is rounding.
+    """Variance (r,) of responses (n, r); NaN for relative variations below a billionth: that is rounding.
 
     >>> variance(np.array([[1.0, 2.0], [3.0, 2.0]])).tolist()
     [1.0, nan]
@@ -79,7 +79,7 @@ def variance(values: Array) -> Array:
 
 
 def rank_bins(column: Array, count: int) -> Array:
-    """Which of `count` bins of equal counts (n,) each value falls into.
+    """The bin (n,) of each value, of `count` bins with equal counts.
 
     >>> rank_bins(np.array([0.3, 0.1, 0.2, 0.9]), 2).tolist()
     [1, 0, 0, 1]
@@ -89,9 +89,9 @@ def rank_bins(column: Array, count: int) -> Array:
 
 
 def single_effects(bins: Sequence[Array], values: Array) -> list[Array]:
-    """Effects (b, r) of each variable's bins (n,) on responses (n, r), about their mean: least squares of all together, from sums alone.
+    """Effects (b, r) of each variable's bins (n,) on responses (n, r), about their mean: common least squares, from sums only.
 
-    So one variable's effect is not mistaken for another's where designs are few. Empty bins have effect 0.
+    Effects of variables are thus separated even for few designs. Empty bins have effect 0.
 
     >>> bins = [np.array([0, 0, 0, 1]), np.array([0, 0, 1, 1])]
     >>> [each[1] - each[0] for each in single_effects(bins, np.array([[1.0], [1.0], [3.0], [3.0]]))][0].round(9).tolist()
@@ -122,11 +122,11 @@ def _explained_sum(first: Array, second: Array, rest: Array) -> Array:
 def second_order(blocks: Array, dimensions: int) -> tuple[Array, Array]:
     """Second-order Sobol indices (d, d, r) and their largest standard error (r,) from the blocks (2 d + 2, n, r) of Saltelli's plan.
 
-    S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j, by products of designs that share x_i and x_j only: A with column j of B, and B with
-    column i of A (Saltelli, Computer Physics Communications 145 (2002) 280); the mean is taken away first, both orders are averaged. Errors
-    are those of independent rows: of a Sobol sequence's they are less.
+    S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j. Estimated by products of designs that share x_i and x_j only: A with column j of B,
+    and B with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280); the mean is subtracted first, both orders are
+    averaged. Errors are those of independent rows, and smaller for a Sobol sequence.
 
-    >>> second_order(np.zeros((6, 4, 1)), 2)[0][0, 1].tolist()  # nothing varies
+    >>> second_order(np.zeros((6, 4, 1)), 2)[0][0, 1].tolist()  # constant response
     [nan]
     """
     result = np.full((dimensions, dimensions, blocks.shape[-1]), np.nan)
@@ -155,12 +155,12 @@ def standard_error(rows: Array) -> Array:
 
 
 def strongest(at: Array, values: Array, shares: Array, *, grid: bool) -> tuple[Interaction, ...]:
-    """How the strongest pairs act, from one hundredth of a response's variance on, four at most: means of responses (n, r) over at (n, d).
+    """The strongest interactions, above one hundredth of a response's variance, four at most: means of responses (n, r) over at (n, d).
 
     >>> from itertools import product
     >>> at = np.array(list(product([-1.0, 0.0, 1.0], repeat=2)))
     >>> found = strongest(at, at[:, :1] * at[:, 1:], np.ones((2, 2, 1)), grid=True)[0]
-    >>> found.means.tolist()  # downwards where the other is low, upwards where it is high
+    >>> found.means.tolist()  # decreasing for a low, increasing for a high other variable
     [[1.0, 0.0, -1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 1.0]]
     """
     upper = [(pair, number) for pair in combinations(range(at.shape[1]), 2) for number in range(values.shape[1])]

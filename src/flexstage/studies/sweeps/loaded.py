@@ -1,4 +1,4 @@
-"""Designs of a study under their dead load: which do not hold, and how near to that the ranges come."""
+"""Stability of a study's designs under their permanent load, and its margin over the ranges."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from flexstage.models.lumped import lumped
 from flexstage.studies.sweeps.definition import Study
 
 _ENDS = 8
-"""Of more variables the first designs of the plan are looked at, not the ends of every range."""
+"""Largest number of variables with a check of all range ends; else the first designs of the plan are checked."""
 _FIRST = 16
 _AT_ONCE = 64
 _MARGIN = 2.0
-"""How far below what any end of the ranges has a design between them is reckoned with."""
+"""Assumed ratio between the load factor at the range ends and that of a design between them."""
 
 
 def needs_load_check(study: Study) -> bool:
-    """Whether designs must be asked one by one if they hold: an end of the ranges has a load factor that is not far above what is told.
+    """Whether designs need individual stability checks: the load factor at a range end is not far above the limit.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> needs_load_check(neck_study())
@@ -33,7 +33,7 @@ def needs_load_check(study: Study) -> bool:
 
 
 def unstable_designs(study: Study, values: Array) -> dict[int, str]:
-    """Why designs with `values` (n, d) of the variables do not hold, by row; those without an elastic model are told elsewhere.
+    """Reasons why designs with `values` (n, d) of the variables are unstable, by row; without an elastic model another check reports.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> unstable_designs(neck_study(), np.array([[0.00154]]))
@@ -41,13 +41,13 @@ def unstable_designs(study: Study, values: Array) -> dict[int, str]:
     """
     factors = _factors(study, values)
     return {
-        int(row): f"stage: the drawn position does not hold under weight, payloads and forces (load factor {factors[row]:.3g})"
+        int(row): f"stage: unstable under weight, payloads and forces (load factor {factors[row]:.3g})"
         for row in np.flatnonzero(factors < 1.0)
     }
 
 
 def loaded_findings(study: Study) -> tuple[Finding, ...]:
-    """The least load factor that an end of the ranges has, where weight, payloads and forces change what is computed there.
+    """The smallest load factor at the range ends, if weight, payloads and forces are significant there.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> loaded_findings(neck_study())
@@ -57,13 +57,13 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
     if least >= DOUBTFUL:
         return ()
     where = ", ".join(f"{each.name} {each.text(float(value))}" for each, value in zip(study.variables, values, strict=True))
-    told = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs below 1 do not hold: no results"
-    what = f"weight, payloads and forces soften designs: the load factor goes down to {least:.3g} ({where}); {told}"
-    return (Finding("variables", what, 'Add to [limits] for example buckling = "at least 20"'),)
+    told = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs below 1 are unstable: no results"
+    what = f"weight, payloads and forces reduce stiffness: smallest load factor {least:.3g} ({where}); {told}"
+    return (Finding("variables", what, 'Add to [limits] e.g. buckling = "at least 20"'),)
 
 
 def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
-    """Warnings about the design with `values` (d,) under its dead load. Raises `DesignError` where it does not hold.
+    """Warnings about the design with `values` (d,) under its permanent load. Raises `DesignError` if it is unstable.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> require_stable(neck_study(), np.array([0.00154]))
@@ -72,14 +72,14 @@ def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
     factors = load_factors(study.mechanism_for(values))
     if factors is None:
         return ()
-    advice = 'Add to [limits] for example buckling = "at least 2"'
+    advice = 'Add to [limits] e.g. buckling = "at least 2"'
     require(Finding("the best design", each.what, advice) for each in factors.refusals)
     return tuple(Finding("the best design", each.what, each.advice) for each in factors.warnings)
 
 
 @SESSION.keep(2)
 def _least(study: Study) -> tuple[float, Array]:
-    """The least load factor among the ends of every range, others as drawn, and the corner of the worse ends; and the values there."""
+    """The smallest load factor among the ends of every range, others nominal, and the corner of the worse ends; and the values there."""
     if not _has_load(study.design):
         return np.inf, np.zeros(len(study.variables))
     probes = _probes(study)
@@ -93,7 +93,7 @@ def _least(study: Study) -> tuple[float, Array]:
 
 
 def _probes(study: Study) -> Array:
-    """The design as drawn and the low and high end of each variable in turn; of many variables the first designs."""
+    """The nominal design and the low and high end of each variable in turn; of many variables the first designs."""
     if len(study.variables) > _ENDS:
         return study.sample(0, min(_FIRST, study.plan.designs))
     drawn = np.array([np.clip(each.nominal(study.design), each.low, each.high) for each in study.variables])
@@ -104,12 +104,12 @@ def _probes(study: Study) -> Array:
 
 
 def _has_load(design: Mechanism) -> bool:
-    """Whether there is any dead load: a study may vary it, so one that is stated as nothing counts only where it stays so."""
+    """Whether there is any permanent load, possibly varied by the study."""
     return bool(np.any(np.real(stack(design.gravity)) != 0.0)) or bool(design.forces)
 
 
 def _factors(study: Study, values: Array) -> Array:
-    """Load factors (n,) of the dead load; infinite where a design has no elastic model."""
+    """Load factors (n,) of the permanent load; infinite without an elastic model."""
     if len(values) > _AT_ONCE:
         return np.concatenate([_factors(study, values[start : start + _AT_ONCE]) for start in range(0, len(values), _AT_ONCE)])
     try:

@@ -1,4 +1,4 @@
-"""The numbers of the description that a study's designs differ in, where variables share them."""
+"""Numbers of the description by which a study's designs differ, if variables share them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Numbers:
         return self.nominal + values @ self.matrix
 
     def ranges(self, low: Array, high: Array) -> tuple[Array, Array]:
-        """Least and largest numbers (P,) for variables from `low` to `high` (d,), each wherever it likes.
+        """Smallest and largest numbers (P,) for independent variables from `low` to `high` (d,).
 
         >>> low, high = Numbers(("a",), np.array([5.0]), np.array([[-2.0]])).ranges(np.array([-1.0]), np.array([2.0]))
         >>> low.tolist(), high.tolist()

@@ -1,4 +1,4 @@
-"""Plans of designs: which points of the variables' ranges a study computes, the same whatever is computed first and by whom."""
+"""Plans of designs: points in the variables' ranges, independent of the order of computation."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.base.number import Array
 
 
 class Sampling(Enum):
-    """How designs are spread over the ranges."""
+    """Distribution of designs over the ranges."""
 
     GRID = "grid"
     LATIN_HYPERCUBE = "latin hypercube"
@@ -24,11 +24,11 @@ class Sampling(Enum):
 
 @dataclass(frozen=True)
 class Plan:
-    """A sampling of `count` designs with its `seed`; a grid takes `levels`, one number a variable, instead.
+    """A sampling of `count` designs with its `seed`; a grid has `levels` instead, one number for each variable.
 
-    Saltelli: two Sobol samples A and B of `count` designs each, and for each of d variables A with that variable's column from B: count
-    (d + 2) designs in all, from which Sobol indices follow (Saltelli et al., Computer Physics Communications 181 (2010) 259). With `pairs`
-    also B with each column from A: count (2 d + 2) designs, from which indices of second order follow.
+    Saltelli: two Sobol samples A and B of `count` designs each, and for each of d variables A with that variable's column from B. These are
+    count (d + 2) designs in all, for Sobol indices (Saltelli et al., Computer Physics Communications 181 (2010) 259). With `pairs`
+    also B with each column from A: count (2 d + 2) designs, for second-order indices.
     """
 
     sampling: Sampling
@@ -40,7 +40,7 @@ class Plan:
 
     @property
     def blocks(self) -> int:
-        """Number of samples that Saltelli's plan is made of.
+        """Number of samples of Saltelli's plan.
 
         >>> Plan(Sampling.SALTELLI, 3, count=8).blocks, Plan(Sampling.SALTELLI, 3, count=8, pairs=True).blocks
         (5, 8)
@@ -81,7 +81,7 @@ def shares(plan: Plan, start: int, stop: int) -> Array:
 
 
 def _random(plan: Plan, start: int, stop: int) -> Array:
-    """Independent random designs: the generator takes one step a number, so that any piece is had by stepping ahead."""
+    """Independent random designs: the generator takes one step for each number, so that any piece is accessible by stepping ahead."""
     bits = np.random.PCG64(plan.seed)
     bits.advance(start * plan.dimensions)
     return np.random.Generator(bits).random((stop - start, plan.dimensions))
@@ -96,7 +96,7 @@ def _sobol(dimensions: int, seed: int, start: int, stop: int) -> Array:
 
 
 def _draw(sequence: object, count: int) -> Array:
-    """Rows in powers of two: the sequence warns of other numbers, whose balance the plan does not need piece by piece."""
+    """Rows in powers of two: the sequence warns of other numbers, but the plan does not need balanced pieces."""
     rows = [np.zeros((0, sequence.d))]  # type: ignore[attr-defined]
     while count:
         piece = 1 << (count.bit_length() - 1)
@@ -106,13 +106,13 @@ def _draw(sequence: object, count: int) -> Array:
 
 
 def _latin(plan: Plan, start: int, stop: int) -> Array:
-    """Each variable's range in `count` equal strata, each taken once, in an order of its own, anywhere in the stratum."""
+    """Each variable's range in `count` equal strata, each used once, in a random order, at a random point of the stratum."""
     return np.stack([_strata(plan.count, plan.seed, number)[start:stop] for number in range(plan.dimensions)], axis=-1)
 
 
 @lru_cache(maxsize=64)
 def _strata(count: int, seed: int, number: int) -> Array:
-    """One variable's shares of all designs: kept, since every piece of a plan is cut from them."""
+    """One variable's shares of all designs: cached for all pieces of the plan."""
     generator = np.random.default_rng([seed, number])
     return (generator.permutation(count) + generator.random(count)) / count
 

@@ -1,4 +1,4 @@
-"""What a sweep found: how responses are distributed over the designs, which variables do it, and designs that failed."""
+"""Results of a sweep: distributions of responses, effects of variables, and failed designs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from flexstage.studies.sweeps.variable import Variable
 
 @dataclass(frozen=True)
 class DesignCount:
-    """How many designs are planned, how many of them are computed, and how many of these have no values."""
+    """Numbers of planned, computed and failed designs."""
 
     planned: int
     computed: int
@@ -32,7 +32,7 @@ class DesignCount:
 
 @dataclass(frozen=True)
 class PairShare:
-    """The share of a response's variance that two variables explain together, beyond each alone."""
+    """The share of a response's variance explained by two variables together, beyond each alone."""
 
     variables: tuple[str, str]
     share: float
@@ -40,9 +40,9 @@ class PairShare:
 
 @dataclass(frozen=True)
 class ResponseEffects(Asked):
-    """A response over the designs that have values [SI], and which variables do it.
+    """A response over the designs with values [SI], and the effects of variables.
 
-    By variable the shares of its variance of first and of total order; the latter are absent unless the plan is Saltelli's. The largest
+    By variable the first-order and total shares of its variance; the latter are absent unless the plan is Saltelli's. The largest
     standard errors of an index and of one of second order are those of Saltelli's plan, with pairs.
     """
 
@@ -72,7 +72,7 @@ class ResponseEffects(Asked):
 
 @dataclass(frozen=True, eq=False)
 class StudyResult(InNotebook):
-    """What a study of many designs tells: its `study`, and the `results` of all designs so far."""
+    """Result of a study of many designs: its `study`, and the `results` of all designs so far."""
 
     study: Annotated[Study, INNER]
     results: Annotated[Results, INNER]
@@ -84,12 +84,12 @@ class StudyResult(InNotebook):
 
     @property
     def sampling(self) -> Annotated[Sampling, VIEW]:
-        """How designs are spread over the ranges."""
+        """Distribution of designs over the ranges."""
         return self.study.plan.sampling
 
     @property
     def seed(self) -> Annotated[int, VIEW]:
-        """The seed of everything random."""
+        """The seed of all random numbers."""
         return self.study.plan.seed
 
     @property
@@ -100,37 +100,37 @@ class StudyResult(InNotebook):
 
 @dataclass(frozen=True, eq=False)
 class Sweep(StudyResult):
-    """A sweep: what variables do to responses. The designs themselves are in the results file."""
+    """A sweep: effects of variables on responses. The designs are in the results file."""
 
     effects: Annotated[Effects, INNER]
 
     @property
     def designs(self) -> Annotated[DesignCount, VIEW]:
-        """How many there are."""
+        """Numbers of designs."""
         return DesignCount(self.results.planned, len(self.results.designs), len(self.results.failures))
 
     @property
     def variables(self) -> Annotated[tuple[Variable, ...], VIEW]:
-        """What is varied."""
+        """The variables."""
         return self.study.variables
 
     @property
     def responses(self) -> Annotated[tuple[ResponseEffects, ...], VIEW]:
-        """What is asked, with the measures that limits are on."""
+        """The responses, and the measures of limits."""
         return tuple(self._response(index, name) for index, name in enumerate(self.effects.responses))
 
     @property
     def method(self) -> Annotated[str, VIEW]:
-        """How the shares were estimated."""
+        """Estimator of the shares."""
         return self.effects.method
 
     @property
     def made(self) -> Annotated[tuple[str, ...], VIEW]:
-        """Every combination of versions, processor and kernel that computed a part of the results."""
+        """Every combination of versions, processor and kernel in the results."""
         return self.results.made
 
     def _share_within_limits(self, name: str) -> float | None:
-        """Share of all designs that keep the limits on a measure; a failed design keeps none."""
+        """Share of all designs that keep the limits on a measure, with failed designs counted as violations."""
         measure, values = self.study.columns[name], self.results.column(name)
         limits = [each for each in self.study.limits if (each.key, each.point) == (measure.key, measure.point)]
         if not limits or not len(values):

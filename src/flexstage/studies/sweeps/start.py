@@ -1,4 +1,4 @@
-"""The design that a study starts from: a design file, or a shipped case with parameters; and the parameters that are varied."""
+"""Initial design of a study: a design file, or a shipped case with parameters; and the varied parameters."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from flexstage.studies.form import StudyFile, VariedTable
 
 
 def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
-    """The design that a study's file names, and the case that it is drawn from: `None` for a design file, looked for in `folder`.
+    """The design of a study's file, and its case: `None` for a design file, which is searched in `folder`.
 
-    Raises `DesignError` where there is none.
+    Raises `DesignError` without a design.
 
     >>> from flexstage.studies.form import study_file
     >>> text = 'format = "flexstage study 1"' + chr(10) + 'case = "hexapod"' + chr(10) + 'parameters.slope = "50 deg"'
@@ -30,27 +30,27 @@ def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
         found = "both a design file and a case are named" if file.design else "no design is named"
         findings.append(Finding("design", found, 'Write design = "stage.toml", or case = "double-triangle"'))
     if file.design and file.parameters:
-        findings.append(Finding("parameters", "a design file has numbers, no parameters", "Leave them out, or start from a case"))
+        findings.append(Finding("parameters", "a design file has no parameters", "Leave them out, or use a case"))
     require(findings)
     return (load(folder / file.design), None) if file.design else _draw(file.case or "", file.parameters)
 
 
 def _draw(name: str, table: Mapping[str, Any]) -> tuple[Mechanism, Variant]:
-    """The case with the parameters that the table states."""
+    """The case with the parameters of the table."""
     stated = _read_parameters(name, table)
     changed = case(name, stated)
     return changed, Variant(name, tuple((each, parameter(changed, each).value) for each in stated))
 
 
 def _read_parameters(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
-    """What the table states: numbers of a quantity with their units."""
+    """Parameters in the table: numbers of a quantity with their units."""
     found: dict[str, Stated] = {}
     findings: list[Finding] = []
     for key, value in _leaves(table):
         try:
             known = parameter(case(name), key, f"parameters.{key}")
             if known.quantity.si != "1" and not isinstance(value, str):
-                findings.append(Finding(f"parameters.{key}", f"found {value!r} without a unit", f'Write for example "{known.text}"'))
+                findings.append(Finding(f"parameters.{key}", f"unit missing (got {value!r})", f'Use e.g. "{known.text}"'))
             else:
                 found[key] = value
         except DesignError as error:
@@ -60,7 +60,7 @@ def _read_parameters(name: str, table: Mapping[str, Any]) -> dict[str, Stated]:
 
 
 def _leaves(tree: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
-    """Keys and values: dots of a key open tables in TOML, and are dots of a name here."""
+    """Keys and values: dots of a key open tables in TOML, but are part of a name here."""
     for key, value in tree.items():
         if isinstance(value, Mapping):
             yield from _leaves(value, f"{above}{key}.")
@@ -69,7 +69,7 @@ def _leaves(tree: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any
 
 
 def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> tuple[tuple[str, ...], Quantity]:
-    """The parameters that a variable's table at `where` names, by full name, and their quantity. Raises `DesignError` with all findings.
+    """The parameters in a variable's table at `where`, by full name, and their quantity. Raises `DesignError` with all errors.
 
     >>> names, quantity = read_parameters(VariedTable("1 mm", "2 mm", parameter=("neck_radius",)), "variables.r", Variant("hexapod"))
     >>> names, quantity.name
@@ -78,7 +78,7 @@ def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> 
     if table.address is not None:
         raise refuse(f"{where}.address", "both an address and a parameter are named", "Name one of them")
     if variant is None:
-        advice = 'Give the address of a number: address = "parts.neck.thickness"'
+        advice = 'Use the address of a number: address = "parts.neck.thickness"'
         raise refuse(f"{where}.parameter", "a design file has no parameters", advice)
     names: list[str] = []
     found: list[Quantity] = []
@@ -96,12 +96,12 @@ def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> 
 
 
 def one_quantity(where: str, found: list[Quantity]) -> Quantity:
-    """The quantity that all have; raises `DesignError` where they have several.
+    """The common quantity; raises `DesignError` for several.
 
     >>> from flexstage.base.units.quantity import ANGLE, LENGTH
     >>> one_quantity("variables.a.address", [LENGTH, LENGTH]).name
     'length'
     """
     if len({each.si for each in found}) > 1:
-        raise refuse(where, f"they are of different quantities: {', '.join(each.name for each in found)}", "Use two variables")
+        raise refuse(where, f"different quantities: {', '.join(each.name for each in found)}", "Use two variables")
     return found[0]

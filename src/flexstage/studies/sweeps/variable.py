@@ -1,4 +1,4 @@
-"""Variables: the numbers of a design that a study moves, and their ranges."""
+"""Variables: numbers of a design in a study, and their ranges."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ _STEP = 1e-20
 
 @dataclass(frozen=True)
 class Variable:
-    """One number that a study moves from `low` to `high` [SI of `quantity`], written to all its `addresses`.
+    """One number of a study from `low` to `high` [SI of `quantity`], written to all its `addresses`.
 
-    `relative`: low and high are factors on what the design states at each address. `logarithmic`: equal steps are equal ratios. `levels`:
-    into how many values a grid divides the range, ends included. `step` [SI]: only its multiples can be made. With a `variant`, its
-    addresses are parameters of that case, from which the design is drawn anew.
+    `relative`: low and high are factors on the design's value at each address. `logarithmic`: equal steps are equal ratios. `levels`:
+    number of values of a grid in the range, ends included. `step` [SI]: only its multiples can be made. With a `variant`, its
+    addresses are parameters of that case, from which the design is rebuilt.
     """
 
     name: str
@@ -45,17 +45,17 @@ class Variable:
 
     @property
     def numbers(self) -> Annotated[tuple[str, ...], VIEW, Called("addresses")]:
-        """The numbers of the design that it moves."""
+        """The numbers of the design that it sets."""
         return self.addresses if self.variant is None else ()
 
     @property
     def parameters(self) -> Annotated[tuple[str, ...], VIEW]:
-        """The parameters of the case that it moves."""
+        """The parameters of the case that it sets."""
         return () if self.variant is None else self.addresses
 
     @property
     def unit(self) -> Annotated[str, VIEW]:
-        """The SI unit of its range; 1 of a relative one."""
+        """The SI unit of its range; 1 for a relative one."""
         return self.quantity.si
 
     def at(self, shares: Array) -> Array:
@@ -71,7 +71,7 @@ class Variable:
         return self.low + (self.high - self.low) * shares
 
     def text(self, value: float) -> str:
-        """A value as a study's file has it: with its unit, or in percent of what the design states.
+        """A value as in a study's file: with its unit, or in percent of the design's value.
 
         >>> from flexstage.base.units.quantity import RATIO
         >>> Variable("t", ("parts.neck.thickness",), RATIO, 0.9, 1.1, relative=True).text(1.1)
@@ -80,7 +80,7 @@ class Variable:
         return f"{100.0 * (value - 1.0):+.4g} %" if self.relative else show(value, self.quantity, digits=6)
 
     def nominal(self, mechanism: Mechanism) -> float:
-        """The value that stands for the design as it is: 1 for a relative variable, else what the first address has.
+        """The value in the unchanged design: 1 for a relative variable, else that of the first address.
 
         >>> from flexstage.base.units.quantity import LENGTH
         >>> from flexstage.cases.double_triangle import double_triangle
@@ -96,8 +96,8 @@ class Variable:
 def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -> Mechanism:
     """The design with `values` (..., d) of the variables, in SI; with leading axes it is a batch.
 
-    Parameters of a case come first: the design is drawn from them. Then shared parts are written, then overrides of them, whatever the
-    order of the variables.
+    Parameters of a case come first, because the design is built from them. Then shared parts are written, then overrides of them, for
+    any order of the variables.
 
     >>> import numpy as np
     >>> from flexstage.base.units.quantity import LENGTH
@@ -111,7 +111,7 @@ def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) ->
 
 
 def apply_columns(mechanism: Mechanism, variables: tuple[Variable, ...], columns: tuple[Number, ...]) -> Mechanism:
-    """The same of values (...) by variable: those alone that are complex make the design complex.
+    """The same for values (...) by variable: only complex values make numbers of the design complex.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -129,7 +129,7 @@ def apply_columns(mechanism: Mechanism, variables: tuple[Variable, ...], columns
 
 
 def _draw(mechanism: Mechanism, moves: list[tuple[str, Variable, Number]]) -> Mechanism:
-    """The design drawn from the parameters that vary; as it stands where none does."""
+    """The design built from the varied parameters; unchanged without any."""
     variant = next((variable.variant for _, variable, _ in moves), None)
     if variant is None:
         return mechanism
@@ -137,7 +137,7 @@ def _draw(mechanism: Mechanism, moves: list[tuple[str, Variable, Number]]) -> Me
 
 
 def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> Iterator[Finding]:
-    """Ranges that are empty or inverted, numbers that two variables move, parameters that move none.
+    """Empty or inverted ranges, numbers set by two variables, parameters without effect.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -152,19 +152,21 @@ def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> It
             what = f"its range is empty: from {variable.text(variable.low)} to {variable.text(variable.high)}"
             yield Finding(where, what, "Give from < to")
         elif variable.logarithmic and variable.low <= 0.0:
-            yield Finding(where, f"a logarithmic range cannot begin at {variable.low:g}", "Begin above 0, or leave out the logarithm")
+            yield Finding(
+                where, f"a logarithmic range must start above 0 (got {variable.low:g})", "Use a positive start, or a linear range"
+            )
         if variable.levels is not None and variable.levels < 2:
-            yield Finding(where, f"it has {variable.levels} level", "Give 2 levels or more")
+            yield Finding(where, f"must be at least 2 levels (got {variable.levels})", "Use 2 levels or more")
         for address in variable.addresses:
             full = canonical(mechanism, address) if variable.variant is None else f"parameter {address}"
             if full in owners:
-                yield Finding(where, f"'{address}' is already moved by {owners[full]}", "Let one variable move it")
+                yield Finding(where, f"'{address}' is already set by {owners[full]}", "Use one variable")
             owners[full] = variable.name
     yield from _parameter_findings(mechanism, tuple(variables))
 
 
 def _parameter_findings(mechanism: Mechanism, variables: tuple[Variable, ...]) -> Iterator[Finding]:
-    """Parameters that move no number of the design, or one that an address overwrites."""
+    """Parameters without effect on the design, or with a number that an address overwrites."""
     overwritten = {
         canonical(mechanism, address): (variable.name, address)
         for variable in variables
@@ -178,11 +180,11 @@ def _parameter_findings(mechanism: Mechanism, variables: tuple[Variable, ...]) -
         for name in variable.addresses:
             moved = _numbers_moved_by(variable.variant, name)
             if not moved:
-                yield Finding(where, f"parameter {name} changes nothing of this design", "Vary another")
+                yield Finding(where, f"parameter {name} has no effect on this design", "Use another one")
             for address in sorted(moved & set(overwritten)):
                 other, text = overwritten[address]
-                what = f"parameter {name} moves {text}, which variable {other} sets too"
-                yield Finding(where, what, "Let one of them move it, or vary the address in percent of what the parameter makes it")
+                what = f"parameter {name} sets {text}, as variable {other} does"
+                yield Finding(where, what, "Remove one of them, or give the range of the address in percent")
 
 
 def _numbers_moved_by(variant: Variant, name: str) -> frozenset[str]:

@@ -9,6 +9,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
+
+from flexstage.analysis.assessment.judge import bench_of
+from flexstage.analysis.assessment.requirements import requirements
 from flexstage.analysis.caveats import check
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
@@ -18,6 +22,7 @@ from flexstage.base.units.expression import evaluate, parse_expression
 from flexstage.base.units.quantity import RATIO
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
+from flexstage.models.flexible_bodies import body_flexibilities, with_flexible_bodies
 from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.optimisation.result import Optimum
 from flexstage.studies.optimisation.search.optimum import optimise
@@ -32,16 +37,19 @@ from flexstage.studies.synthesis.architecture import (
     catalogue_actuators,
     draw,
     find_architectures,
+    measure_key,
     required_frequency,
     scope,
     specified_goal,
     study_text,
 )
-from flexstage.studies.synthesis.specification import Specification
+from flexstage.studies.synthesis.specification import FREQUENCY_KEYS, Specification
 
 Progress = Callable[[str, float], None]
 """Reports what is computed, and the share that is done."""
 
+_ROUNDS = 3
+"""Searches of a pair until elastic bodies keep the required frequencies."""
 _RELAXED = 3
 """Failed pairs whose requirements are relaxed."""
 
@@ -118,7 +126,8 @@ class Answer:
     """A stage that keeps all requirements in the lumped model: the text of its design file and study, goal [SI] and active requirements.
 
     `efficiency` is the stroke energy that it uses as a share of that of its actuators, at most 1 by `bounds.frequency_bound`; `None` of
-    coils. `warnings` are those of `flexstage check`; `status` is the verification of the answer.
+    coils. `warnings` are those of `flexstage check`; `elastic` has frequencies and stiffnesses with elastic bodies, estimated from their
+    outlines, `rounds` the number of searches until these kept the requirements.
     """
 
     architecture: str
@@ -132,7 +141,8 @@ class Answer:
     starts: int
     evaluated: int
     warnings: tuple[str, ...]
-    status: str = "lumped model"
+    elastic: dict[str, float]
+    rounds: int = 1
     design: Annotated[str, INNER] = ""
     study: Annotated[str, INNER] = ""
 
@@ -350,10 +360,44 @@ def search(spec: Specification, pair: CandidatePair, progress: Callable[[str], N
     >>> search(scanner(), pair).architecture
     'carriages'
     """
-    found = _optimised(spec, pair, specified_goal(pair.architecture, spec), frozenset(), progress)
-    if isinstance(found, str):
-        return FailedPair(pair.architecture.name, pair.actuator.name, None, {}, found)
-    return _failed(pair, found) if found.final is None else _answer(spec, pair, found, found.final)
+    raised, rounds = spec, 0
+    while True:
+        rounds += 1
+        found = _optimised(raised, pair, specified_goal(pair.architecture, spec), frozenset(), progress)
+        if isinstance(found, str):
+            return FailedPair(pair.architecture.name, pair.actuator.name, None, {}, found)
+        if found.final is None:
+            return _failed(pair, found)
+        answer = _answer(spec, pair, found, found.final, rounds)
+        missed = dict(_missed(spec, pair, answer))
+        if not missed:
+            return answer
+        if rounds == _ROUNDS:
+            reason = ", ".join(f"{key} {answer.elastic[measure_key(pair.architecture, spec, key)]:.4g} Hz" for key in missed)
+            return FailedPair(pair.architecture.name, pair.actuator.name, None, {}, f"with elastic bodies {reason}")
+        raised = replace(raised, requirements={**raised.requirements, **missed})
+
+
+def _missed(spec: Specification, pair: CandidatePair, answer: Answer) -> Iterator[tuple[str, str]]:
+    """Required frequencies that elastic bodies miss, raised by the ratio of rigid to elastic (space mapping)."""
+    for key in FREQUENCY_KEYS:
+        measure_, required = measure_key(pair.architecture, spec, key), spec.frequency_limit(key)
+        if required is not None and answer.elastic[measure_] < required:
+            yield key, f"at least {required * answer.values[measure_] / answer.elastic[measure_]:.9g} Hz"
+
+
+def elastic_values(stage: Mechanism) -> dict[str, float]:
+    """Return the required frequencies and stiffnesses of a stage with elastic bodies, estimated from their outlines.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> {key: round(value) for key, value in elastic_values(parallelogram()).items()}
+    {'frequency.platform.1': 866}
+    """
+    bench = bench_of(stage)
+    model = with_flexible_bodies(bench.model, stage, body_flexibilities(stage).found)
+    soft = bench.with_model(model)
+    lines = [each for each in requirements(stage) if each.key.startswith(("frequency", "stiffness"))]
+    return {each.key: float(np.real(each.kind.value(soft, each))) for each in lines}
 
 
 def _optimised(
@@ -377,12 +421,13 @@ def _failed(pair: CandidatePair, found: Optimum) -> FailedPair:
     return FailedPair(*names, first.violation, {each.key: each.text for each in first.limits})
 
 
-def _answer(spec: Specification, pair: CandidatePair, found: Optimum, point: Point) -> Answer:
+def _answer(spec: Specification, pair: CandidatePair, found: Optimum, point: Point, rounds: int) -> Answer:
     limits = found.design(point).limits
     first = next((each.value for each in limits if each.measure == "frequency.1"), None)
     coil = pair.actuator.kind == "voice_coil"
     used = None if coil or first is None else max(bounds.efficiency(first, *each, spec.masses) for each in _groups(spec, pair))
     text = write_optimum(draw(pair.architecture, spec, pair.actuator), found.study, found.definition, values_of(found.study, point.shares))
+    stage = loads(text)
     return Answer(
         pair.architecture.name,
         pair.actuator.name,
@@ -394,7 +439,9 @@ def _answer(spec: Specification, pair: CandidatePair, found: Optimum, point: Poi
         found.agreeing,
         len(found.starts),
         found.evaluated,
-        tuple(map(str, check(loads(text)))),
+        tuple(map(str, check(stage))),
+        elastic_values(stage),
+        rounds,
         design=text,
         study=found.study.text,
     )

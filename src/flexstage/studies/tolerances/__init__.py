@@ -1,1 +1,1 @@
-"""Tolerances: what manufacture and material do to a design, how many stages keep their specification, and what that allows."""
+"""Tolerances: scatter of manufacture and material, yield of the specification, and allowable tolerances."""

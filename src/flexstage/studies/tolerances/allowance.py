@@ -1,4 +1,4 @@
-"""How far dimensions may deviate, so that every line of the specification keeps its margin at the wanted yield."""
+"""Allowable tolerances: deviations for which every requirement keeps its margin at the required yield."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _NEGLIGIBLE = 1e-9
 
 @dataclass(frozen=True)
 class AllowedEntry:
-    """Factors on one entry's deviations: `alone`, the others as stated, and which line decides that; in `equal_shares` of the room.
+    """Factors on one entry's deviations: `alone`, the others unchanged, with the deciding requirement; with `equal_shares` of the margin.
 
-    Infinite where nothing depends on it.
+    Infinite without an effect.
     """
 
     name: str
@@ -36,13 +36,13 @@ class AllowedEntry:
 
 @dataclass(frozen=True, eq=False)
 class Allowance:
-    """Factors on the stated deviations that give each line at least the yield `wanted`, to first order.
+    """Factors on the specified deviations for which each requirement has at least the yield `wanted`, to first order.
 
-    `names` are those of the m entries. `reach` (l,): how far a line's value moves towards its limit at that yield, `share` (m, l): each
-    entry's share of its square. `together`: all deviations so many times as wide (above one: there is room; 0: a line fails as drawn).
-    `alone` (m,): one entry's, the others as stated; `equal` (m,): all at once, each entry with the same share of the room. Infinite where
-    nothing depends on an entry. `binding` and `binds` (m,) name the lines that decide. `then`: what the sample's own copies, their changes
-    scaled, say of the yield of all lines with all deviations `together` times as wide.
+    `names` are those of the m entries. `reach` (l,): change of a requirement's value towards its limit at that yield, `share` (m, l): each
+    entry's share of its square. `together`: factor on all deviations (above one: a margin; 0: the nominal design fails).
+    `alone` (m,): factor on one entry, the others unchanged; `equal` (m,): on all at once, each entry with the same share. Infinite without
+    an effect. `binding` and `binds` (m,) name the deciding requirements. `then`: yield of the sample with its changes scaled
+    by `together`.
     """
 
     wanted: Annotated[float, Called("yield")]
@@ -61,21 +61,21 @@ class Allowance:
 
     @property
     def decided_by(self) -> Annotated[str | None, VIEW]:
-        """The line that decides how far all may deviate alike."""
+        """The requirement that decides the common factor of all deviations."""
         return self.binding or None
 
     @property
     def entries(self) -> Annotated[tuple[AllowedEntry, ...], VIEW]:
-        """What each entry of `[scatter]` may deviate."""
+        """The allowable deviations of each entry of `[scatter]`."""
         parts = zip(self.names, self.alone.tolist(), self.binds, self.equal.tolist(), strict=True)
         return tuple(AllowedEntry(name, alone, binds or None, equal) for name, alone, binds, equal in parts)
 
 
 def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary) -> Allowance:
-    """What deviations the specification allows; raises nothing, without a specification all is allowed.
+    """Allowable deviations for the specification; raises nothing, unlimited without a specification.
 
-    Responses are taken as linear in the deviations where derivatives and sample agree; else the sample's own quantile is taken, with the
-    copies that scatter in one entry alone for its shares. Either way changes grow as the deviations do: near enough for small ones.
+    Responses are linearised in the deviations if derivatives and sample agree; else the sample's quantile is used, with shares from the
+    samples of single entries. In both cases changes are proportional to the deviations: accurate for small ones.
     """
     names = tuple(study.columns)
     columns = [names.index(line.column) for line in found.lines]
@@ -114,7 +114,7 @@ def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary)
 
 
 def _margin_ratio(margin: Array, reach: Array) -> Array:
-    """Margins over reaches; nought where a line fails as drawn, infinite where nothing moves it."""
+    """Margins over changes; zero if the nominal design fails, infinite without an effect."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(margin <= 0.0, 0.0, np.where(reach > 0.0, margin / reach, np.inf))
 
@@ -130,13 +130,13 @@ def _sign(line: Line) -> float:
 
 
 def _reach(study: Tolerance, line: Line, values: Array) -> float:
-    """How far the wanted share of the sample's copies stay from the nominal value, towards the limit; failed copies are infinitely far."""
+    """Largest change towards the limit of the required share of the sample; failed samples are infinitely far."""
     worse = np.where(np.isfinite(values), -_sign(line) * (values - line.nominal), np.inf)
     return float(np.quantile(worse, study.wanted, method="higher"))
 
 
 def _linear_reach(study: Tolerance, line: Line, gradient: Array) -> float:
-    """The same of a response that is linear in the deviations: exact for normal ones, else by draws from their distributions."""
+    """The same for a response that is linear in the deviations: exact for normal ones, else by sampling of their distributions."""
     deviations = study.deviations
     if all(each.distribution.shape is Shape.NORMAL and each.bounded is None for each in deviations):
         size = np.array([each.deviation for each in deviations])
@@ -149,7 +149,7 @@ def _linear_reach(study: Tolerance, line: Line, gradient: Array) -> float:
 
 
 def _scaled_yield(lines: tuple[Line, ...], factor: float, values: Array) -> Yield | None:
-    """The sample's yield with all changes so many times as large."""
+    """The sample's yield with all changes multiplied by a factor."""
     if not lines or not np.isfinite(factor):
         return None
     sign = np.array([_sign(line) for line in lines])

@@ -1,4 +1,4 @@
-"""Numbers that scatter could take to where nothing can be made: a thickness below nought."""
+"""Numbers that scatter could move out of their bounds, e.g. a negative thickness."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from flexstage.studies.tolerances.scatter import Deviation, Target
 
 
 def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tuple[Deviation, ...]) -> Iterator[Finding]:
-    """Numbers that deviations could take out of their bounds: five standard deviations of what is not truncated, all of what is bounded.
+    """Numbers with possible values out of bounds: within five standard deviations without truncation, else within the largest deviation.
 
-    One finding an entry of `[scatter]`, about the number that it takes farthest.
+    One error for each entry of `[scatter]`, about the number with the largest excess.
 
     >>> from flexstage.studies.tolerances.distribution import Distribution, Shape
     >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> wide = Deviation("t", ("parts.leaf.thickness",), LENGTH, -1, 1, distribution=Distribution(Shape.NORMAL, 3e-4), scatter="t")
     >>> [each.what for each in bound_findings(parallelogram(), [Target("parts.leaf.thickness", 1e-3, ((0, 1.0),))], (wide,))]
-    ['parts.leaf.thickness is 1 mm, and deviations reach 1.5 mm (5 standard deviations): it would be -0.5 mm, and is to be greater than 0']
+    ['parts.leaf.thickness is 1 mm, and deviations reach 1.5 mm (5 standard deviations): it would be -0.5 mm, and must be greater than 0']
     """
     told: set[tuple[str, ...]] = set()
     for target in reached:
@@ -44,12 +44,12 @@ def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tupl
         quantity = quantity_of(design, target.address)
         is_, far, there = (show(value, quantity, digits=4) for value in (target.nominal, reach, worst))
         how = "" if all(variables[number].bounded is not None for number, _ in target.factors) else f" ({REACH:g} standard deviations)"
-        what = f"{target.address} is {is_}, and deviations reach {far}{how}: it would be {there}, and is to be {bound.text()}"
-        yield Finding(f"scatter.{', '.join(owners)}", what, 'Give a smaller deviation, or say what is sorted out: within = "..."')
+        what = f"{target.address} is {is_}, and deviations reach {far}{how}: it would be {there}, and must be {bound.text()}"
+        yield Finding(f"scatter.{', '.join(owners)}", what, 'Use a smaller deviation, or truncate it with within = "..."')
 
 
 def _reach(target: Target, variables: tuple[Deviation, ...]) -> float:
-    """How far deviations go together: bounded ones add up, of the others five standard deviations of their sum."""
+    """Common reach of deviations: the sum of bounded ones, plus five standard deviations of the sum of the others."""
     bounded, spread = 0.0, 0.0
     for number, factor in target.factors:
         variable = variables[number]

@@ -1,4 +1,4 @@
-"""Crosstalk of a real stage that is commanded, and measured, through the mapping of the one on the drawing."""
+"""Crosstalk of a real stage, commanded and measured with the mapping of the nominal one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.analysis.assessment.measures import Measure, crosstalk
 from flexstage.analysis.bench import Bench
-from flexstage.base.finding import refuse
+from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import Quantity
 from flexstage.mechanism.mechanism import PLATFORM
@@ -26,11 +26,11 @@ _SINGULAR = 1e9
 
 @dataclass(frozen=True, eq=False)
 class Command:
-    """How the drawn stage is commanded: nominal numbers that a controller knows.
+    """Command of the nominal stage: nominal numbers known to a controller.
 
-    `gains` (n, f): strokes for a unit of each of the `coordinates` of the platform at `point`, lost motion made up for, from R_a;
-    `strokes` (n,): full strokes of the stacks, to which a voltage is proportional; `reference` (3,): where the point is; `sensing` (6, g):
-    R_s^-1, pose from gauges there, absent where the gauges do not determine it.
+    `gains` (n, f): strokes for a unit of each of the `coordinates` of the platform at `point`, with corrected lost motion, from R_a.
+    `strokes` (n,): full strokes of the stacks, proportional to a voltage; `reference` (3,): position of the point. `sensing` (6, g):
+    R_s^-1, pose from gauges there, absent if the gauges do not determine it.
     """
 
     point: str
@@ -44,7 +44,7 @@ class Command:
 
 @dataclass(frozen=True)
 class PoseMeasure(Measure):
-    """Motion of the platform along or about one axis per unit that was commanded along another."""
+    """Motion of the platform along or about one axis per unit of a command along another."""
 
 
 def command(bench: Bench, point: str) -> Command:
@@ -58,7 +58,7 @@ def command(bench: Bench, point: str) -> Command:
     (6, 6)
     """
     if point != PLATFORM and point not in bench.assembly.points:
-        raise refuse("tolerance.point", f'there is no point "{point}"', f"There are {', '.join((PLATFORM, *bench.assembly.points))}")
+        raise refuse("tolerance.point", f'unknown point "{point}"', suggest_nearest(point, (PLATFORM, *bench.assembly.points)))
     gains = bench.correction(point)
     reference = bench.assembly.bodies[PLATFORM].reference + bench.arm(point)
     return Command(
@@ -82,7 +82,7 @@ def _sensing_inverse(bench: Bench, reference: Array) -> Array | None:
 
 
 def _gauges(bench: Bench, reference: Array, length: float) -> Array:
-    """Readings per twist at the point (..., g, 6) of the gauges that no sum takes up; rotations count over a `length`."""
+    """Readings per twist at the point (..., g, 6) of the gauges outside sums; rotations are scaled by a `length`."""
     kinematics, carry = bench.kinematics, transport(bench.assembly.bodies[PLATFORM].reference - reference)
     if not kinematics.sums and set(kinematics.reading_units) <= {"m"}:
         return kinematics.sensing @ carry
@@ -97,7 +97,7 @@ def _strokes(bench: Bench) -> list[Array]:
 
 
 def pose_measures(asked: Command) -> Mapping[str, Measure]:
-    """What `poses` gives, by name: `open.x.rz` is the motion along x per command about z.
+    """Measures of `poses` by name: `open.x.rz` is the motion along x per command about z.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.analysis.assessment.judge import bench_of
@@ -120,11 +120,11 @@ def _quantity(row: str, column: str) -> Quantity:
 
 
 def poses(bench: Bench, asked: Command) -> tuple[Array, ...]:
-    """Motion per command (...) of a real stage, or a batch, entry by entry as `pose_measures` names them.
+    """Motion per command (...) of a real stage, or a batch, entry by entry with the names of `pose_measures`.
 
-    Open: the voltages that would move the drawn stage, x = X T (stroke / nominal stroke) C e_j, where C makes up for the drawn stage's
-    lost motion and T = dx/da is the real one's elastic gain. Held: a controller keeps the pose that it reads through the drawn R_s^-1, so
-    that the real one is x = (R_s^-1 R_s,real)^-1 e_j. Both at the drawn point. Of the drawn stage itself both are the identity (open, with
+    Open: the voltages for the nominal stage, x = X T (stroke / nominal stroke) C e_j. C corrects the nominal stage's
+    lost motion and T = dx/da is the real one's elastic gain. Held: a controller regulates the pose measured with the nominal R_s^-1, so
+    that the real one is x = (R_s^-1 R_s,real)^-1 e_j. Both at the nominal point. For the nominal stage both are the identity (open, with
     fewer than six motions: with its own parasitic motions).
 
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -1,4 +1,4 @@
-"""A tolerance study: copies of a design that scatter, and the specification that they are to keep."""
+"""A tolerance study: samples of a design with scatter, and their specification."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from flexstage.studies.tolerances.crosstalk import Command, PoseMeasure, command
 from flexstage.studies.tolerances.scatter import Deviation, Scatter, Target, apply_deviations, sums
 
 _MANY = 64
-"""How many copies for each number that scatters there must be for the engine of many designs to pay for its plan."""
+"""Samples for each number with scatter above which the engine of many designs is faster, including its plan."""
 
 
 @dataclass(frozen=True)
 class Copies(Plan):
-    """A plan of `count` copies in which everything scatters, then of `alone` more for each entry of `[scatter]`, which then scatters alone.
+    """A plan of `count` samples with all scatter, then of `alone` more for each entry of `[scatter]` with only its scatter.
 
-    Those are a Latin hypercube whatever the sampling: they are few. `groups` says how many variables each entry has, in order.
+    Those are always a Latin hypercube, because they are few. `groups` is the number of variables of each entry, in order.
     """
 
     alone: int = 0
@@ -37,7 +37,7 @@ class Copies(Plan):
 
     @property
     def designs(self) -> int:
-        """Number of copies in all.
+        """Number of all samples.
 
         >>> from flexstage.studies.sweeps.plan import Sampling
         >>> Copies(Sampling.SOBOL, 3, count=8, alone=2, groups=(1, 2)).designs
@@ -46,7 +46,7 @@ class Copies(Plan):
         return self.count + self.alone * len(self.groups)
 
     def parts(self, start: int, stop: int) -> list[tuple[Plan, int, int, tuple[bool, ...]]]:
-        """The stretches of a piece: a plan of its own for each, from and to which design of it, and which variables it moves.
+        """Intervals of a piece: for each its plan, first and last design, and the mask of its variables.
 
         >>> from flexstage.studies.sweeps.plan import Sampling
         >>> [part[1:] for part in Copies(Sampling.SOBOL, 2, count=8, alone=4, groups=(1, 1)).parts(6, 13)]
@@ -67,10 +67,10 @@ class Copies(Plan):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Tolerance(Study):
-    """A study of copies: `scatters` are the entries of `[scatter]`, whose variables are the study's; `limits` are the specification.
+    """A tolerance study: `scatters` are the entries of `[scatter]`, whose variables are the study's; `limits` are the specification.
 
-    `targets` are the numbers they reach. `wanted` is the yield that each line of the specification is to have. `commanded`: what the
-    nominal stage is commanded by, to see crosstalk at its point; absent: crosstalk is not asked.
+    `targets` are the numbers with scatter. `wanted` is the required yield of each requirement. `commanded`: the command of the
+    nominal stage, for crosstalk at its point; absent: no crosstalk.
     """
 
     scatters: tuple[Scatter, ...]
@@ -80,7 +80,7 @@ class Tolerance(Study):
 
     @property
     def copies(self) -> int:
-        """How many copies scatter in everything."""
+        """Number of samples with all scatter."""
         return self.plan.count
 
     @property
@@ -90,33 +90,33 @@ class Tolerance(Study):
 
     @property
     def owners(self) -> tuple[int, ...]:
-        """Which entry each variable belongs to."""
+        """The entry of each variable."""
         return tuple(number for number, each in enumerate(self.scatters) for _ in each.members)
 
     @property
     def lines(self) -> tuple[tuple[str, Requirement], ...]:
-        """The specification's lines, with the column that holds what each is about."""
+        """The requirements, with the column of each measure."""
         return tuple((line_name(each), each) for each in self.limits)
 
     @cached_property
     def measures(self) -> Mapping[str, Measure]:
-        """What is measured of each copy, by name: the responses, and what the specification is about."""
+        """Measures of each sample, by name: the responses, and those of the specification."""
         return {**self.responses, **{name: each for name, each in self.lines if name not in self.responses}}
 
     @property
     def columns(self) -> Mapping[str, Measure]:
-        """All that is computed of each copy: what is measured, then poses per command where crosstalk is asked."""
+        """Computed measures of each sample: also poses per command, if crosstalk is requested."""
         return {**self.measures, **(pose_measures(self.commanded) if self.commanded is not None else {})}
 
     @property
     def facts(self) -> dict[str, str]:
-        """What results depend on, item by item in words."""
+        """Items that results depend on, as text."""
         plain = {key: fact for key, fact in super().facts.items() if not key.startswith("variables.")}
         point = {} if self.commanded is None else {"crosstalk": f"at {self.commanded.point}"}
         return {**plain, **{f"scatter.{each.name}": repr(each) for each in self.scatters}, **point}
 
     def sample(self, start: int, stop: int) -> Array:
-        """Deviations (n, d) of copies from `start` to before `stop`; nought where an entry does not scatter."""
+        """Deviations (n, d) of samples from `start` to before `stop`; zero for an entry without scatter."""
         if not isinstance(self.plan, Copies):
             return super().sample(start, stop)
         rows = []
@@ -131,17 +131,17 @@ class Tolerance(Study):
 
     @property
     def numbers(self) -> Numbers | None:
-        """The numbers that copies differ in; `None` for so few copies that planning for them costs more than it saves."""
+        """The numbers by which samples differ; `None` for few samples, for which a plan would be slower."""
         return sums(self.targets, len(self.variables)) if self.plan.designs >= _MANY * len(self.targets) else None
 
     def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
-        """What is asked of a copy or a batch of them, column by column or those of `names`."""
+        """Measures of a sample or a batch, column by column or those of `names`."""
         columns = self.columns
         found = self.measure_on(bench_of(mechanism), tuple(columns[name] for name in (columns if names is None else names)))
-        return tuple("nothing is asked" if each is None else each for each in found)
+        return tuple("no measure" if each is None else each for each in found)
 
     def measure_on(self, bench: Bench, wanted: tuple[Measure | None, ...]) -> tuple[Array | str | None, ...]:
-        """Those of the study's columns that are wanted, on a bench; the others are left out."""
+        """The requested columns of the study, from a bench; the others are left out."""
         asked = any(isinstance(each, PoseMeasure) for each in wanted)
         found = {}
         if self.commanded is not None and asked:
@@ -151,7 +151,7 @@ class Tolerance(Study):
         )
 
     def scale(self, factors: tuple[float, ...]) -> Tolerance:
-        """The same study with the deviations of each entry so many times as wide."""
+        """The same study with the deviations of each entry multiplied by a factor."""
         scatters = tuple(
             replace(each, distribution=each.distribution.times(factor)) for each, factor in zip(self.scatters, factors, strict=True)
         )
@@ -159,7 +159,7 @@ class Tolerance(Study):
 
 
 def line_name(line: Requirement) -> str:
-    """The column of what a line of the specification is about.
+    """The column of a requirement's measure.
 
     >>> from flexstage.analysis.assessment.requirements import requirements
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -170,7 +170,7 @@ def line_name(line: Requirement) -> str:
 
 
 def nominal_command(design: Mechanism, point: str) -> Command:
-    """What the nominal design is commanded by at a point: raises `DesignError` where strokes do not determine its platform.
+    """The nominal design's command at a point; raises `DesignError` if strokes do not determine its platform.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> nominal_command(parallelogram(), "platform").coordinates

@@ -1,4 +1,4 @@
-"""Distributions of deviations: normal, perhaps truncated, and uniform; about zero or, for asymmetric tolerances, about an offset."""
+"""Distributions of deviations: normal, optionally truncated, and uniform; about zero or, for asymmetric tolerances, about an offset."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import scipy
 from flexstage.base.number import Array
 
 REACH = 5.0
-"""How many standard deviations an untruncated normal is taken to reach when a number is checked against its bounds."""
+"""Assumed reach of an untruncated normal distribution for bounds, in standard deviations."""
 _LEAST = 2.0**-54
 
 
@@ -61,7 +61,7 @@ class Distribution:
 
     @property
     def largest(self) -> float | None:
-        """The largest size of a deviation; None if it has no limit.
+        """The largest absolute deviation, if it is bounded.
 
         >>> Distribution(Shape.NORMAL, 1.0).largest is None, Distribution(Shape.UNIFORM, 3.0, offset=2.0).largest
         (True, 5.0)
@@ -70,7 +70,7 @@ class Distribution:
         return None if half is None else half + abs(self.offset)
 
     def times(self, factor: float) -> Distribution:
-        """The same shape, so many times as wide.
+        """The same shape, with a width multiplied by a factor.
 
         >>> Distribution(Shape.NORMAL, 1.0, within=2.0).times(2.0)
         Distribution(shape=<Shape.NORMAL: 'normal'>, size=2.0, within=4.0, offset=0.0)
@@ -79,4 +79,4 @@ class Distribution:
 
 
 NONE = Distribution(Shape.NORMAL, 0.0)
-"""What does not deviate."""
+"""No deviation."""

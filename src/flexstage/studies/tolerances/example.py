@@ -7,7 +7,7 @@ from flexstage.studies.tolerances.file import loads_tolerance
 
 
 def leaf_study(copies: int = 64) -> Tolerance:
-    """The parallelogram with leaves that are cut too thick or too thin, both alike and each for itself, and its stiffness to move.
+    """The parallelogram with scatter of leaf thickness, common and individual, and its stiffness along x.
 
     >>> leaf_study().plan.count
     64

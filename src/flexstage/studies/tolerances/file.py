@@ -35,21 +35,21 @@ _MOST = 10**7
 
 @check_arguments
 def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
-    """Read a study's file with sections `[scatter]` and, if need be, `[tolerance]`.
+    """Read a study's file with sections `[scatter]` and, optionally, `[tolerance]`.
 
-    Raises `DesignError` with every finding: what points nowhere (with the nearest names), deviations that are not above nought or wider
-    than the number, `independent` of what there is only one of.
+    Raises `DesignError` with every error: unknown addresses (with the nearest names), deviations that are not positive or exceed
+    the number, `independent` for a single number.
 
     >>> load_tolerance("nowhere/study.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/study.toml: there is no such file. Check the path; "flexstage new" writes a design file.
+    flexstage.base.finding.DesignError: nowhere/study.toml: file not found. Check the path; "flexstage new" writes a design file.
     """
     return loads_tolerance(read_text(path), where=os.fspath(path), folder=Path(path).parent)
 
 
 def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = None) -> Tolerance:
-    """Read a tolerance study from its text; `folder` is where design files are looked for.
+    """Read a tolerance study from its text; `folder` is that of design files.
 
     >>> study = loads_tolerance('''
     ... format = "flexstage study 1"
@@ -66,15 +66,13 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
     bench = _Reached(design)
     scatters = _scatters(file.scatter, bench, findings)
     if not file.scatter:
-        findings.append(
-            Finding("scatter", "nothing scatters", 'Write for example wire = { address = "hinges.thickness", normal = "5 um" }')
-        )
+        findings.append(Finding("scatter", "nothing scatters", 'Use e.g. wire = { address = "hinges.thickness", normal = "5 um" }'))
     if file.tolerance.copies > _MOST:
-        findings.append(Finding("tolerance.copies", f"these are {file.tolerance.copies:.3g} copies", f"Ask for at most {_MOST:.0e}"))
+        findings.append(Finding("tolerance.copies", f"must be at most {_MOST:.0e} (got {file.tolerance.copies:.3g})", "Use fewer samples"))
     asked = _command(file.tolerance, design, findings)
     limits = (*(_lines(design, findings) if file.tolerance.requirements else ()), *head.limits)
     if not head.responses and not limits and asked is None:
-        findings.append(Finding("responses", "nothing is asked", 'Name a measure, for example f1 = "frequency.platform.1"'))
+        findings.append(Finding("responses", "no response", 'Name a measure, e.g. f1 = "frequency.platform.1"'))
     require(with_lines(findings, text, where))
     study = _study(head, scatters, limits, bench.shared, text=text, command=asked)
     named = (replace(each, where=each.where.replace("variables.", "scatter.", 1)) for each in name_findings(study))
@@ -84,7 +82,7 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
 
 @dataclass(frozen=True, eq=False)
 class _Reached:
-    """The design, and which shared number each copy's own comes from."""
+    """The design, and the shared number behind each instance's own."""
 
     design: Mechanism
     shared: dict[str, str] = field(default_factory=dict)
@@ -137,7 +135,7 @@ def _scatters(tables: Mapping[str, ScatterTable], bench: _Reached, findings: lis
 
 
 def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
-    """One entry; raises `DesignError` with all findings about it."""
+    """One entry; raises `DesignError` with all errors in it."""
     where = f"scatter.{name}"
     sources = table.address or (name,)
     findings: list[Finding] = []
@@ -148,7 +146,7 @@ def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
     quantity = one_quantity(f"{where}.address", [quantity_of(bench.design, address) for address in addresses])
     distribution, relative = _distribution(table, where, shape, quantity)
     if table.independent and len(addresses) < 2:
-        findings.append(Finding(f"{where}.independent", f"{addresses[0]} is one number, and has no copies", "Leave it out"))
+        findings.append(Finding(f"{where}.independent", f"{addresses[0]} is a single number", "Leave it out"))
     if relative:
         findings += _no_share(where, addresses, bench.design)
     require(findings)
@@ -158,7 +156,7 @@ def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
 
 def _no_share(where: str, addresses: list[str], design: Mechanism) -> list[Finding]:
     nought = [address for address in addresses if float(get(design, address)) == 0.0]
-    advice = 'Give the deviation with its unit, for example "10 um"'
+    advice = 'Use a deviation with a unit, e.g. "10 um"'
     return [Finding(where, f"{nought[0]} is 0, and a share of it is 0", advice)] if nought else []
 
 
@@ -178,26 +176,26 @@ def _components(sources: tuple[str, ...], where: str, bench: _Reached, findings:
 
 
 def _shape(table: ScatterTable, where: str, findings: list[Finding]) -> Shape:
-    """Which distribution is meant."""
+    """The specified distribution."""
     given = [shape for shape, raw in ((Shape.NORMAL, table.normal), (Shape.UNIFORM, table.uniform)) if raw is not None]
     if len(given) != 1 and (given or table.interval is None):
-        what = "it is both normal and uniform" if given else "it is not said how far it deviates"
-        advice = 'Write normal = "2 um", a standard deviation, uniform = "5 um", a half width, or interval = ["-1 um", "5 um"]'
+        what = "must be normal or uniform, not both" if given else "deviation missing"
+        advice = 'Use normal = "2 um", a standard deviation, uniform = "5 um", a half width, or interval = ["-1 um", "5 um"]'
         findings.append(Finding(f"{where}.normal", what, advice))
     if table.within is not None and given == [Shape.UNIFORM]:
-        findings.append(Finding(f"{where}.within", "a uniform distribution ends by itself", "Leave it out"))
+        findings.append(Finding(f"{where}.within", "a uniform distribution is bounded", "Leave it out"))
     if table.interval is not None and (table.uniform is not None or table.within is not None):
-        findings.append(Finding(f"{where}.interval", "the limits are stated twice", "Leave out uniform or within"))
+        findings.append(Finding(f"{where}.interval", "limits given twice", "Leave out uniform or within"))
     return given[0] if given else Shape.UNIFORM if table.interval else Shape.NORMAL
 
 
 def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quantity) -> tuple[Distribution, bool]:
-    """The distribution, and whether its numbers are shares of what the design states."""
+    """The distribution, and whether its numbers are shares of the design's value."""
     low, high = table.interval or (None, None)
     raw = {"normal": table.normal, "uniform": table.uniform, "within": table.within, "interval.0": low, "interval.1": high}
     given = {key: text for key, text in raw.items() if text is not None}
     if len({is_share(text) for text in given.values()}) > 1:
-        raise refuse(f"{where}.within", "one is relative (%), the other not", "Give both alike")
+        raise refuse(f"{where}.within", "one is relative (%), the other not", "Use % for both or neither")
     sizes: dict[str, float] = {}
     findings: list[Finding] = []
     for key, text in given.items():
@@ -205,7 +203,9 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
         try:
             sizes[key] = parse_amount(text, wanted, f"{where}.{key}")
             if not sizes[key] > 0.0 and key not in ("interval.0", "interval.1"):
-                findings.append(Finding(f"{where}.{key}", f"found {show(sizes[key], wanted)}", "Give a deviation above 0"))
+                findings.append(
+                    Finding(f"{where}.{key}", f"must be greater than 0 (got {show(sizes[key], wanted)})", "Use a positive deviation")
+                )
         except DesignError as error:
             findings += error.findings
     require(findings)
@@ -214,13 +214,13 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
         return Distribution(shape, sizes[shape.value], sizes.get("within")), relative
     low, high = sizes["interval.0"], sizes["interval.1"]
     if not low < high:
-        raise refuse(f"{where}.interval", "the lower limit is not below the upper one", 'Write for example interval = ["-1 um", "5 um"]')
+        raise refuse(f"{where}.interval", "the lower limit is not below the upper one", 'Use e.g. interval = ["-1 um", "5 um"]')
     half, middle = 0.5 * (high - low), 0.5 * (high + low)
     return Distribution(shape, sizes.get("normal", half), half if shape is Shape.NORMAL else None, middle), relative
 
 
 def _command(table: ToleranceTable, design: Mechanism, findings: list[Finding]) -> Command | None:
-    """What the nominal stage is commanded by; nothing where it is not wanted, or not said and not to be had."""
+    """The nominal stage's command; nothing if it is disabled, or neither requested nor available."""
     if table.crosstalk is False:
         return None
     try:

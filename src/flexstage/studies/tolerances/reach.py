@@ -1,4 +1,4 @@
-"""What an entry of `[scatter]` reaches: kinds of things, shared parts and units taken apart into the numbers of single copies."""
+"""Numbers of an entry of `[scatter]`: kinds, shared parts and units expanded into numbers of single instances."""
 
 from __future__ import annotations
 
@@ -29,25 +29,25 @@ KINDS: Mapping[str, tuple[type, ...]] = {
     "rods": (Rod,),
     "stacks": (Piezo,),
 }
-"""Kinds of parts that an entry may name: `hinges.thickness` is that of every notch, neck, leaf and compound hinge."""
+"""Kinds of parts in an entry: `hinges.thickness` is that of every notch, neck, leaf and compound hinge."""
 PLACED = ("units", "gauges")
-"""Kinds that stand somewhere: `units.shift` is that of every copy of a unit."""
+"""Kinds with a placement: `units.shift` is that of every instance of a unit."""
 
 
 @dataclass(frozen=True)
 class Reached:
-    """Numbers that an entry reaches, by component (one where it has none), and the shared number that each one comes from."""
+    """Numbers of an entry, by component (one without components), and the shared number behind each."""
 
     components: Mapping[str, tuple[str, ...]]
     shared: Mapping[str, str]
 
 
 def reach(design: Mechanism, source: str) -> Reached:
-    """Take an address or a kind apart into numbers of single copies; vectors into their components.
+    """Expand an address or a kind into numbers of single instances; vectors into their components.
 
     Kinds are those of `KINDS`, `units`, `gauges` and `materials`, before a number's name: `hinges.thickness`, `units.rotation.z`,
-    `gauges.shift`, `stacks.stroke`, `materials.young`. The name of a unit or of a pattern means its copies: `horizontal.shift.x`,
-    `S1-S3.shift`. Raises `DesignError` for what points nowhere, with the nearest names.
+    `gauges.shift`, `stacks.stroke`, `materials.young`. The name of a unit or of a pattern means its instances: `horizontal.shift.x`,
+    `S1-S3.shift`. Raises `DesignError` for unknown addresses, with the nearest names.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> reach(parallelogram(), "hinges.thickness").components[""]
@@ -65,7 +65,7 @@ def reach(design: Mechanism, source: str) -> Reached:
 
 
 def _addresses(design: Mechanism, source: str) -> tuple[str, ...]:
-    """The addresses that a kind stands for, or the address itself."""
+    """The addresses of a kind, or the address itself."""
     owner, _, rest = source.partition(".")
     stem = rest.partition(".")[0]
     if owner in KINDS:
@@ -73,7 +73,7 @@ def _addresses(design: Mechanism, source: str) -> tuple[str, ...]:
     if owner == "materials" and stem not in design.materials:
         return _stated_addresses(design, source, (f"materials.{name}.{rest}" for name in design.materials))
     if owner in PLACED and stem not in (*MISALIGNED, *design.units, *design.gauges):
-        raise refuse(source, f'"{stem}" is not where copies stand', suggest_nearest(stem, MISALIGNED))
+        raise refuse(source, f'"{stem}" has no placement', suggest_nearest(stem, MISALIGNED))
     if stem in MISALIGNED and (names := _standing(design, owner)):
         return tuple(f"{name}.{rest}" for name in names)
     try:
@@ -82,18 +82,18 @@ def _addresses(design: Mechanism, source: str) -> tuple[str, ...]:
         known = (*KINDS, *PLACED)
         missed = any(f'"{owner}"' in each.what for each in error.findings)
         if missed and "/" not in source and "." in source and (near := suggest_nearest(owner, known)).startswith("The nearest"):
-            raise refuse(source, f'there is no "{owner}"', near) from error
+            raise refuse(source, f'unknown name "{owner}"', near) from error
         raise
     return (source,)
 
 
 def _described(design: Mechanism) -> tuple[PlacedLink, ...]:
-    """The links of all copies as the description has them, compounds whole."""
+    """The links of all instances as described, with compounds in one piece."""
     return tuple(dict.fromkeys(link.described for link in expand(design).links.values()))
 
 
 def _standing(design: Mechanism, owner: str) -> tuple[str, ...]:
-    """The copies that a kind, a unit or a pattern means."""
+    """The instances of a kind, a unit or a pattern."""
     copies = unit_of_copy(design)
     if owner == "units":
         return tuple(copies)
@@ -107,12 +107,12 @@ def _standing(design: Mechanism, owner: str) -> tuple[str, ...]:
 def _of_links(design: Mechanism, source: str, wanted: Callable[[PlacedLink], bool], rest: str) -> tuple[str, ...]:
     links = [link for link in _described(design) if wanted(link)]
     if not links:
-        raise refuse(source, "the design has none of this kind", f"Name parts that it has: {', '.join(design.parts)}")
+        raise refuse(source, "the design has no such part", f"Use one of its parts: {', '.join(design.parts)}")
     return _stated_addresses(design, source, (f"{_home(link)}.{rest}" for link in links))
 
 
 def _stated_addresses(design: Mechanism, source: str, candidates: Iterator[str]) -> tuple[str, ...]:
-    """Those that the design states; the first one's complaint where it states none."""
+    """The addresses that the design states; if none, the error of the first."""
     found: list[str] = []
     complaint: DesignError | None = None
     for address in candidates:
@@ -123,7 +123,7 @@ def _stated_addresses(design: Mechanism, source: str, candidates: Iterator[str])
             complaint = complaint or error
     if not found:
         what = complaint.findings[0] if complaint is not None else None
-        raise refuse(source, what.what if what else "the design does not state it", what.advice if what else "State it")
+        raise refuse(source, what.what if what else "missing in the design", what.advice if what else "Add it")
     return tuple(found)
 
 
@@ -136,20 +136,20 @@ def _home(link: PlacedLink) -> str:
 
 
 def _numbers(design: Mechanism, address: str) -> Iterator[tuple[str, str]]:
-    """The numbers of a vector by component; a number alone."""
+    """The numbers of a vector by component; a single number unchanged."""
     node = locate(design, address).node
     if isinstance(node, VectorNode) and not node.single:
         yield from ((name, f"{address}.{name}") for name in COMPONENTS[: len(node.items)])
     elif isinstance(node, NumberNode):
         if get(design, address) is None:
-            raise refuse(address, "the description does not state it", "State it, or choose another number")
+            raise refuse(address, "missing in the design", "Add it, or choose another number")
         yield "", address
     else:
-        raise refuse(address, "this is not a number", "Address one of its numbers")
+        raise refuse(address, "not a number", "Use the address of one of its numbers")
 
 
 def _copies(design: Mechanism, place: Place, links: tuple[PlacedLink, ...], shared: dict[str, str]) -> Iterator[str]:
-    """The same number of every copy of a part or of a link drawn in a unit, else the number itself."""
+    """The same number of every instance of a part or of a link drawn in a unit, else the number itself."""
     found = [(link, rest) for link in links if (rest := _rest(place, link)) is not None]
     of_part = not place.in_link and (bool(place.owners) or place.path[0] == "parts")
     for link, rest in found:
@@ -162,7 +162,7 @@ def _copies(design: Mechanism, place: Place, links: tuple[PlacedLink, ...], shar
 
 
 def _rest(place: Place, link: PlacedLink) -> tuple[str, ...] | None:
-    """The path within a link or its part, if the place is in this link."""
+    """The path within a link or its part, if the address is in this link."""
     if place.misaligned:
         return None
     if place.owners:

@@ -1,4 +1,4 @@
-"""A tolerance study run: copies computed, then told what they say and what they allow."""
+"""Run of a tolerance study: samples, their summary, and allowable tolerances."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from flexstage.studies.tolerances.summary import PERCENTILES, Crosstalk, Respons
 
 @dataclass(frozen=True)
 class CopyCount:
-    """How many copies are computed, and how many of them have no values."""
+    """Numbers of computed and failed samples."""
 
     computed: int
     failed: int
@@ -28,7 +28,7 @@ class CopyCount:
 
 @dataclass(frozen=True, eq=False)
 class Toleranced(StudyResult):
-    """A tolerance study with the `results` of all its copies, its `slopes`, what both say (`summary`) and what they allow (`allowance`)."""
+    """A tolerance study with the `results` of all its samples, its `slopes`, its `summary` and its `allowance`."""
 
     study: Annotated[Tolerance, INNER]
     slopes: Annotated[Slopes, INNER]
@@ -37,32 +37,32 @@ class Toleranced(StudyResult):
 
     @property
     def copies(self) -> Annotated[CopyCount, VIEW]:
-        """How many there are."""
+        """Numbers of samples."""
         return CopyCount(self.summary.copies, self.summary.failed)
 
     @property
     def scatter(self) -> Annotated[tuple[Scatter, ...], VIEW]:
-        """What deviates, and how far."""
+        """The deviations."""
         return self.study.scatters
 
     @property
     def yields(self) -> Annotated[Yields | None, VIEW, Called("yield")]:
-        """How many copies keep the specification; null without one."""
+        """Yields of the specification; null without one."""
         return None if self.summary.together is None else Yields(self.summary.together, self.summary.lines)
 
     @property
     def responses(self) -> Annotated[tuple[ResponseSpread, ...], VIEW]:
-        """What is asked, with the measures that the specification is about."""
+        """The responses, with the measures of the specification."""
         return tuple(self._response(column, name) for column, name in enumerate(self.study.measures))
 
     @property
     def allowed(self) -> Annotated[Allowance | None, VIEW]:
-        """What the specification allows; null without one."""
+        """Allowable tolerances; null without a specification."""
         return self.allowance if self.summary.lines else None
 
     @property
     def crosstalk(self) -> Annotated[tuple[Crosstalk, ...], VIEW]:
-        """Pose errors of the real stage, commanded and measured through the drawn one's mapping."""
+        """Pose errors of the real stage, commanded and measured with the nominal mapping."""
         return self.summary.crosstalk
 
     def _response(self, column: int, name: str) -> ResponseSpread:
@@ -89,7 +89,7 @@ def tolerance(
     how: Run = DEFAULT,
     progress: Progress | None = None,
 ) -> Toleranced:
-    """Run a tolerance study, its copies kept in the results file at `path` (absent: nowhere), as `sweep` keeps the designs of any study.
+    """Run a tolerance study; stores its samples in the results file at `path` (absent: none), as `sweep` does.
 
     Raises `DesignError` as `sweep` does.
 

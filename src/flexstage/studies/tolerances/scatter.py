@@ -1,4 +1,4 @@
-"""Scatter: what manufacture and material add to numbers of a design, common to all copies or each for itself."""
+"""Scatter: deviations of a design's numbers by manufacture and material, common to all instances or individual."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from flexstage.studies.tolerances.distribution import NONE, REACH, Distribution
 
 @dataclass(frozen=True)
 class Scatter:
-    """One entry of a study's `[scatter]`: a `distribution` of what is added to numbers, in SI of `quantity`.
+    """One entry of a study's `[scatter]`: a `distribution` of deviations of numbers, in SI of `quantity`.
 
-    `members` are the addresses that deviate together, member by member: one for what is common to all, one a copy for what each copy has
-    for itself. `relative`: deviations are shares of what the design states. `source` is the user's own words: `address`.
+    `members` are the addresses with common deviations, member by member: one for common scatter, one for each instance for individual
+    scatter. `relative`: deviations are shares of the design's value. `source` is the `address` in the file.
     """
 
     name: str
@@ -38,11 +38,11 @@ class Scatter:
 
     @property
     def unit(self) -> Annotated[str, VIEW]:
-        """The SI unit of the deviations; 1 of relative ones, which are shares of what the design states."""
+        """The SI unit of the deviations; 1 for relative ones, which are shares of the design's value."""
         return self.quantity.si
 
     def variables(self) -> tuple[Deviation, ...]:
-        """Its variables, one a member; where there are several, they are named after what they move."""
+        """Its variables, one for each member; several are named after their addresses."""
         low, high = -self._reach, self._reach
         several = len(self.members) > 1
         names = [f"{self.name}.{self._label(member)}" if several else self.name for member in self.members]
@@ -57,15 +57,15 @@ class Scatter:
         return REACH * self.distribution.size if bounded is None else bounded
 
     def _label(self, member: tuple[str, ...]) -> str:
-        """What tells a member apart: the copy, or the component of what is common."""
+        """Identifier of a member: the instance, or the component of common scatter."""
         return member[0] if self.independent else member[0].rpartition(".")[2]
 
 
 @dataclass(frozen=True)
 class Deviation(Variable):
-    """What is added to numbers, drawn from a distribution about nought; `scatter` is the entry it belongs to.
+    """A deviation of numbers, from a distribution about zero; `scatter` is its entry.
 
-    `low` and `high` are its reach. `relative`: the values are shares of what the design states, 0.01 for one per cent.
+    `low` and `high` are its reach. `relative`: the values are shares of the design's value, 0.01 for one per cent.
     """
 
     distribution: Distribution = NONE
@@ -82,13 +82,13 @@ class Deviation(Variable):
 
     @property
     def bounded(self) -> float | None:
-        """The largest deviation there is, if there is one."""
+        """The largest deviation, if it is bounded."""
         return self.distribution.largest
 
 
 @dataclass(frozen=True)
 class Target:
-    """A number that scatter reaches: its `address`, what the design states, and by which factors the variables' values are added."""
+    """A number with scatter: its `address`, the design's value, and the factors on the variables' values added to it."""
 
     address: str
     nominal: float
@@ -96,10 +96,10 @@ class Target:
 
 
 def targets(design: Mechanism, variables: Iterable[Variable], shared: dict[str, str]) -> tuple[Target, ...]:
-    """All numbers that deviations reach, in an order in which they may be written.
+    """All numbers with deviations, in an order for writing.
 
-    `shared` names the shared part's number that an address of a single copy comes from. Where all copies deviate alike that is written
-    instead: the fewer parts differ, the less there is to compute.
+    `shared` names the shared part's number behind an address of a single instance. If all instances have equal deviations, it is written
+    instead: fewer different parts are faster to compute.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.base.units.quantity import LENGTH
@@ -150,7 +150,7 @@ def _value(target: Target, values: Array) -> Array:
 
 
 def sums(reached: tuple[Target, ...], count: int) -> Numbers:
-    """The numbers of a description that `count` deviations add to.
+    """The numbers of a description with `count` deviations.
 
     >>> sums((Target("a", 1.0, ((0, 1.0), (1, 2.0))),), 2).at(np.array([[0.1, 0.2]])).round(9).tolist()
     [[1.5]]

@@ -1,4 +1,4 @@
-"""Exact derivatives of responses with respect to deviations, and whether there are any: the least of several equal things has none."""
+"""Exact derivatives of responses with respect to deviations, and their existence: a minimum of equal values has none."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _GAP = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Slopes:
-    """Values (r,) of the design as it stands, derivatives (r, d) by the deviations in SI, and which responses are `smooth` (r,) there.
+    """Values (r,) of the nominal design, derivatives (r, d) by the deviations in SI, and the mask of `smooth` (r,) responses.
 
-    A response that is not (the lowest of two equal frequencies, the largest of three equal losses) changes to one side whatever deviates;
-    its derivatives are those of one of the equals, of equal frequencies those of their mean.
+    Other responses (the lowest of two equal frequencies, the largest of three equal losses) change to one side for any deviation.
+    Their derivatives are those of one of the equal values, of equal frequencies those of their mean.
     """
 
     values: Array
@@ -38,8 +38,8 @@ class Slopes:
 def slopes(study: Tolerance) -> Slopes:
     """Derivatives of all columns of a study: by complex step, of frequencies d lambda = phi^T (dK - lambda dM) phi.
 
-    Smooth is what, a thousandth of the scatter away in eight random directions and their opposites, changes by opposite amounts, and by
-    what the derivatives say.
+    A response is smooth if it changes by opposite amounts, equal to its derivatives, a thousandth of the scatter away in eight random
+    directions and their opposites.
 
     >>> from flexstage.studies.tolerances.example import leaf_study
     >>> found = slopes(leaf_study())
@@ -61,14 +61,14 @@ def slopes(study: Tolerance) -> Slopes:
 
 
 def _numbers(study: Tolerance, values: Array) -> Array:
-    """All columns (n, r) as real numbers; NaN where there is none."""
+    """All columns (n, r) as real numbers; NaN without a value."""
     found = study.evaluate(study.mechanism_for(values))
     rows = [np.full(len(values), np.nan) if isinstance(each, str) else np.broadcast_to(np.real(each), len(values)) for each in found]
     return np.stack(rows, axis=-1)
 
 
 def _mode(bench: Bench, asked: Measure) -> tuple[float, Eigen]:
-    """The frequency that is asked, and the modes that share it."""
+    """The requested frequency, and its equal modes."""
     modes = bench.modes
     index = int(asked.name) - 1
     place = modes.platform[index] if asked.kind is platform_frequency else index
@@ -93,7 +93,7 @@ def _derivatives(study: Tolerance, step: Array, modes: dict[int, tuple[float, Ei
 
 
 def _smooth(study: Tolerance, values: Array, gradient: Array, size: Array) -> Array:
-    """Which responses change by opposite amounts in opposite directions, as their derivatives say."""
+    """Responses with opposite changes in opposite directions, equal to their derivatives."""
     way = np.random.default_rng(study.plan.seed).standard_normal((_DIRECTIONS, len(size))) * size * _NEAR
     there = _numbers(study, np.concatenate([way, -way])) - values
     odd, even = 0.5 * (there[:_DIRECTIONS] - there[_DIRECTIONS:]), 0.5 * (there[:_DIRECTIONS] + there[_DIRECTIONS:])

@@ -1,4 +1,4 @@
-"""What a sample of copies says: distributions, the yield line by line and together, which scatter does it, crosstalk."""
+"""Summary of samples: distributions, yield by requirement and total, variance contributions, crosstalk."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ _ERRORS = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """Distributions of r responses over the copies that have values; `nominal` is the design as it stands.
+    """Distributions of r responses over the samples with values; `nominal` is the nominal design.
 
-    `percentiles` (5, r) are the 1st, 5th, 50th, 95th and 99th. `linear` (r,): the deviation that first-order propagation gives,
-    sqrt(sum (dy/dx s)^2), `trusted` where the response is smooth and the sample agrees to a tenth, or to four standard errors.
-    `by_slope` (m, r): shares of the variance by the m entries of `[scatter]`, from derivatives; `by_sample`: what each does alone, over the
-    sum of these, from copies in which it scatters alone. NaN where nothing varies.
+    `percentiles` (5, r) are the 1st, 5th, 50th, 95th and 99th. `linear` (r,): the deviation by first-order propagation,
+    sqrt(sum (dy/dx s)^2), `trusted` if the response is smooth and the sample agrees to a tenth, or to four standard errors.
+    `by_slope` (m, r): shares of the variance by the m entries of `[scatter]`, from derivatives; `by_sample`: variance from samples of each
+    entry alone, over their sum. NaN for a constant response.
     """
 
     names: tuple[str, ...]
@@ -49,10 +49,10 @@ class Spread:
 
 @dataclass(frozen=True)
 class ResponseSpread(Asked):
-    """A response over the copies that have values [SI].
+    """A response over the samples with values [SI].
 
-    Its `percentiles`; the deviation that first-order propagation gives, and whether it holds (`linear`); by entry of `[scatter]` the shares
-    of its variance, by derivatives and by the copies in which one entry scatters alone; its derivatives by every number that deviates.
+    Its `percentiles`; the deviation by first-order propagation, and its validity (`linear`). By entry of `[scatter]` the shares
+    of its variance, by derivatives and by the samples of one entry alone; its derivatives by every number with scatter.
     """
 
     nominal: float
@@ -68,9 +68,9 @@ class ResponseSpread(Asked):
 
 @dataclass(frozen=True)
 class Yield:
-    """`kept` of `copies` keep a line, or all; `low` to `high` is the 95 % interval of Clopper and Pearson, exact for random copies.
+    """`kept` of `copies` keep a requirement, or all; `low` to `high` is the 95 % interval of Clopper and Pearson, exact for random samples.
 
-    Copies that failed keep nothing.
+    Failed samples keep nothing.
     """
 
     kept: int
@@ -80,7 +80,7 @@ class Yield:
 
     @property
     def share(self) -> Annotated[float, VIEW, SHARE, Heading("yield", mark=Graded(1.0, 0.9))]:
-        """Share of the copies."""
+        """Share of the samples."""
         return self.kept / self.copies
 
     @property
@@ -91,7 +91,7 @@ class Yield:
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A line of the specification, the column it is about, its nominal value and its yield."""
+    """A requirement of the specification, its column, its nominal value and its yield."""
 
     TABLE: ClassVar[Layout] = Layout("Yield", "column wanted nominal kept.share kept.interval")
 
@@ -107,7 +107,7 @@ class Line:
 
     @property
     def wanted(self) -> Annotated[str, VIEW, Heading("required")]:
-        """What it asks for."""
+        """The required range."""
         return self.requirement.text
 
     @property
@@ -119,7 +119,7 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Yields:
-    """The yields of all lines of the specification together, and of each."""
+    """The yields of all requirements of the specification together, and of each."""
 
     together: Annotated[Yield, Called("all")]
     lines: tuple[Line, ...]
@@ -127,10 +127,10 @@ class Yields:
 
 @dataclass(frozen=True, eq=False)
 class Crosstalk:
-    """Pose error per command (6, f) over the copies, rows the motion, columns the command; one taken off the diagonal.
+    """Pose error per command (6, f) over the samples, rows the motion, columns the command; one subtracted on the diagonal.
 
-    `kind` is `open` (commanded by the nominal R_a) or `held` (kept on the pose that the nominal R_s^-1 shows). `nominal`, `mean`,
-    `deviation`, and of the sizes the 95th percentile `usual` and the `worst`; SI.
+    `kind` is `open` (commanded by the nominal R_a) or `held` (regulated to the pose from the nominal R_s^-1). `nominal`, `mean`,
+    `deviation`, and of the magnitudes the 95th percentile `usual` and the `worst`; SI.
     """
 
     kind: str
@@ -144,13 +144,13 @@ class Crosstalk:
 
     @property
     def rows(self) -> Annotated[tuple[str, ...], VIEW]:
-        """The motion."""
+        """The axes of motion."""
         return COMPONENTS
 
 
 @dataclass(frozen=True, eq=False)
 class Summary:
-    """What a sample of copies says; `together` is absent without a specification."""
+    """Summary of a sample; `together` is absent without a specification."""
 
     copies: int
     failed: int
@@ -161,7 +161,7 @@ class Summary:
 
 
 def summary(study: Tolerance, results: Results, slope: Slopes) -> Summary:
-    """Distributions, yields, contributions and crosstalk of a study's copies.
+    """Compute distributions, yields, contributions and crosstalk of a study's samples.
 
     >>> from flexstage.studies.tolerances.example import leaf_study
     >>> from flexstage.studies.tolerances.slopes import slopes
@@ -188,7 +188,7 @@ def summary(study: Tolerance, results: Results, slope: Slopes) -> Summary:
 
 
 def binomial(passed: Array) -> Yield:
-    """The yield of copies that passed or not, with the interval of Clopper and Pearson (Biometrika 26 (1934) 404).
+    """The yield from a mask of passed samples, with the interval of Clopper and Pearson (Biometrika 26 (1934) 404).
 
     >>> found = binomial(np.array([True] * 9 + [False]))
     >>> found.share, round(found.low, 4), round(found.high, 4)
@@ -241,7 +241,7 @@ def _ratio(parts: Array, whole: Array) -> Array:
 
 
 def squares_alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
-    """Variance (m, r), or mean square about a centre, of the copies in which one entry scatters alone; a single entry is the sample."""
+    """Variance (m, r), or mean square about a centre, of the samples of one entry alone; of a single entry, the sample."""
     count, alone = study.copies, getattr(study.plan, "alone", 0)
     rows = []
     for number in range(len(study.scatters)):

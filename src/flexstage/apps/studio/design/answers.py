@@ -1,4 +1,4 @@
-"""Values that tasks of the studio return, apart from the messages to its page."""
+"""Values returned by tasks of the studio, without the messages to its page."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from flexstage.apps.studio.protocol import Amount, Channel, Problem
 
 @dataclass(frozen=True)
 class Reading:
-    """What a text says: problems alone, or a design with its numbers, channels and links; `values` are its numbers by address."""
+    """Contents of a text: problems only, or a design with its numbers, channels and links; `values` are its numbers by address."""
 
     problems: tuple[Problem, ...]
     name: str = ""

@@ -1,4 +1,4 @@
-"""The text of a design as it is edited: snapshots for undo and redo, pinned ones by name, and the file on disk it came from."""
+"""The text of an edited design: snapshots for undo and redo, named pinned designs, and its file on disk."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from flexstage.base.finding import refuse
 from flexstage.base.storage.store import write
 
 _MOST = 200
-"""Snapshots that are kept."""
+"""Number of stored snapshots."""
 _USUAL = 5_000_000
-"""Bytes up to which a file is read here; what is larger, and all that cannot be read, is told by the reader of designs."""
+"""Bytes up to which a file is read here; the reader of designs reports larger and unreadable ones."""
 _MARK = b"\xef\xbb\xbf"
 
 
 @dataclass(frozen=True)
 class Stored:
-    """A file on disk: its `text` with plain line ends, its digest, and how it marks its beginning and ends its lines."""
+    """A file on disk: its `text` with plain line ends, its digest, its byte order mark and line ends."""
 
     path: Path
     text: str
@@ -30,18 +30,18 @@ class Stored:
 
     @classmethod
     def read(cls, path: Path) -> Stored:
-        """What is on disk now; raises `DesignError` where it cannot be read."""
+        """The present file on disk; raises `DesignError` if it cannot be read."""
         raw, text = _read(path)
         mark = _MARK if raw.startswith(_MARK) else b""
         ending = "\r\n" if "\r\n" in text and text.count("\n") == text.count("\r\n") else "\n"
         return cls(path, text.replace("\r\n", "\n") if ending == "\r\n" else text, _digest(raw), mark, ending)
 
     def write(self, text: str, *, over: bool) -> Stored:
-        """The file with that text, written whole or not at all; refused where another program changed it, unless `over`."""
+        """The file with that text, written completely or not at all; refused after a change by another program, unless `over`."""
         found = _digest(self.path.read_bytes()) if self.path.exists() else ""
         if found != self.digest and not over:
-            what = "it was changed on disk since it was read here" if found else "it was removed since it was read here"
-            raise refuse(self.path.name, what, "Reload it (your text stays in undo), or save over it")
+            what = "changed on disk by another program" if found else "removed by another program"
+            raise refuse(self.path.name, what, "Reload it (your text remains in undo), or overwrite it")
         raw = self.mark + text.replace("\n", self.ending).encode() if self.ending != "\n" else self.mark + text.encode()
         write(self.path, raw)
         return replace(self, text=text, digest=_digest(raw))
@@ -49,7 +49,7 @@ class Stored:
 
 @dataclass(frozen=True)
 class History:
-    """The present text, those before it and those that were undone; `revision` counts all changes, `page` made the last one."""
+    """The present text, earlier ones and undone ones; `revision` counts all changes, `page` made the last one."""
 
     text: str
     past: tuple[str, ...] = ()
@@ -59,17 +59,17 @@ class History:
     pins: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def change(self, text: str, page: int) -> History:
-        """With another text; itself where that is the same."""
+        """With another text; unchanged for an equal one."""
         if text == self.text:
             return self
         return self._step(text, (*self.past, self.text)[-_MOST:], (), page)
 
     def undo(self, page: int) -> History:
-        """The text before."""
+        """The previous text."""
         return self._step(self.past[-1], self.past[:-1], (self.text, *self.future), page) if self.past else self
 
     def redo(self, page: int) -> History:
-        """The text that was undone."""
+        """The next undone text."""
         return self._step(self.future[0], (*self.past, self.text), self.future[1:], page) if self.future else self
 
     def _step(self, text: str, past: tuple[str, ...], future: tuple[str, ...], page: int) -> History:
@@ -81,13 +81,13 @@ class History:
         return replace(self, pins={**kept, name: self.text} if keep else kept)
 
     def require_known(self, revision: int, page: int) -> None:
-        """Refuse an edit of a page that has not seen what another page wrote."""
+        """Refuse an edit of a page without the last change of another page."""
         if revision < self.revision and page != self.page:
             raise refuse("text", "another window changed it first", "Its text is shown now; make the change again")
 
 
 def _read(path: Path) -> tuple[bytes, str]:
-    """A file's bytes and text; raises `DesignError` where there is none."""
+    """A file's bytes and text; raises `DesignError` if it does not exist."""
     with contextlib.suppress(OSError, ValueError):
         if path.is_file() and path.stat().st_size <= _USUAL:
             raw = path.read_bytes()

@@ -1,4 +1,4 @@
-"""Journal of unsaved edits: a file in the cache for each design and process, whole at any moment, which outlives its process."""
+"""Journal of unsaved edits: a file in the cache for each design and process, always complete, kept after its process."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FOLDER = "studio"
 
 @dataclass(frozen=True)
 class Draft:
-    """The text that a studio had not saved, since when [s since 1970], its pinned designs, the digest of its file, its port and token."""
+    """The unsaved text of a studio, its time [s since 1970], its pinned designs, the digest of its file, its port and token."""
 
     time: float
     text: str
@@ -38,7 +38,7 @@ class Journal:
     _is_kept: bool = field(default=False, init=False)
 
     def keep(self, text: str, pins: Mapping[str, str], digest: str) -> None:
-        """Replace what is kept, as a whole. Raises `DesignError` where that cannot be written."""
+        """Replace the stored text. Raises `DesignError` if it cannot be written."""
         draft = Draft(time.time(), text, pins, digest, self.port, self.token)
         place = _folder() / f"{_stem(self.path)}-{process_mark()}.json"
         try:
@@ -51,7 +51,7 @@ class Journal:
         self._is_kept = True
 
     def clear(self) -> None:
-        """Remove it: there is no unsaved edit."""
+        """Remove the journal: no unsaved edit remains."""
         if self._is_kept:
             discard(_folder() / f"{_stem(self.path)}-{process_mark()}.json")
             self._is_kept = False
@@ -64,7 +64,7 @@ def discard(place: Path) -> None:
 
 
 def drafts(path: Path) -> dict[Path, Draft]:
-    """What studios of this design that have ended did not save, by journal, the newest first."""
+    """Unsaved texts of ended studios of this design, by journal, the newest first."""
     found: dict[Path, Draft] = {}
     with contextlib.suppress(OSError, DesignError):
         for place in _folder().glob(f"{_stem(path)}-*.json"):
@@ -79,5 +79,5 @@ def _folder() -> Path:
 
 
 def _stem(path: Path) -> str:
-    """The part of a journal's name that says which design it is of."""
+    """The part of a journal's name that identifies its design."""
     return hashlib.sha256(str(path.resolve()).encode(errors="surrogateescape")).hexdigest()[:24]

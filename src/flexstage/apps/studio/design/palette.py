@@ -1,4 +1,4 @@
-"""The palette: parts, units and gauges as texts of a design file, with what a person fills in."""
+"""The palette: parts, units and gauges as texts of a design file, with fields to fill in."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 
 @lru_cache(maxsize=1)
 def snippets() -> tuple[Snippet, ...]:
-    """All that the palette offers."""
+    """All snippets of the palette."""
     found = tomllib.loads(resources.files("flexstage.apps.studio").joinpath("palette.toml").read_text(encoding="utf-8"))
     return tuple(
         Snippet(name, each["group"], each["title"], each["text"].strip("\n") + "\n", each["fields"]) for name, each in found.items()
@@ -21,17 +21,15 @@ def snippets() -> tuple[Snippet, ...]:
 
 
 def insert(text: str, snippet: str, fields: Mapping[str, str]) -> str:
-    """The text with a snippet's tables behind those that it has, entries of one table behind the entries there are.
+    """The text with a snippet's tables after the existing ones, and its entries of an existing table after the existing entries.
 
-    Raises `DesignError` for a snippet or field that is none, for a text that is no TOML, and for names that are taken.
+    Raises `DesignError` for an unknown snippet or field, for a text that is not TOML, and for names in use.
     """
     known = {each.name: each for each in snippets()}
     if snippet not in known:
-        raise refuse(snippet, "the palette has no such snippet", suggest_nearest(snippet, known))
+        raise refuse(snippet, "unknown snippet", suggest_nearest(snippet, known))
     wanted = known[snippet]
-    require(
-        Finding(f"{snippet}.{name}", "it has no such field", suggest_nearest(name, wanted.fields)) for name in fields.keys() - wanted.fields
-    )
+    require(Finding(f"{snippet}.{name}", "unknown field", suggest_nearest(name, wanted.fields)) for name in fields.keys() - wanted.fields)
     filled = _fill(wanted.text, {**wanted.fields, **fields})
     _require_free(text, filled, snippet)
     result = text if text.endswith("\n") or not text else f"{text}\n"
@@ -43,7 +41,7 @@ def insert(text: str, snippet: str, fields: Mapping[str, str]) -> str:
 def _fill(text: str, fields: Mapping[str, str]) -> str:
     for name, value in fields.items():
         if any(not sign.isprintable() or sign in '"\\' for sign in value):
-            raise refuse(name, "it has quotes, backslashes or line ends", "Write a name or a value with its unit, without quotes")
+            raise refuse(name, "it has quotes, backslashes or line ends", "Use a name or a value with its unit, without quotes")
         text = text.replace("{" + name + "}", value)
     return text
 
@@ -55,7 +53,7 @@ def _require_free(text: str, filled: str, snippet: str) -> None:
     heads = [head for head, _ in _tables(filled)]
     entries = [key for key in line_numbers(filled) if key not in heads]
     known = [key for key in (*entries, *(head for head in heads if head.count(".") >= 1)) if key in taken]
-    require(Finding(key, f"it stands in the text already, at line {taken[key]}", f"Give {snippet} another name") for key in known[:1])
+    require(Finding(key, f"exists already at line {taken[key]}", f"Give {snippet} another name") for key in known[:1])
 
 
 def _tables(filled: str) -> list[tuple[str, list[str]]]:

@@ -1,4 +1,4 @@
-"""A design's text read for the studio: what it says number by number, or what is wrong with it and where."""
+"""A design's text read for the studio: its numbers, or its errors and their positions."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ from flexstage.show.display import field_unit, preferred_unit
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS
 
 _REACH = 0.5
-"""How far a slider goes either way, over the value."""
+"""Range of a slider in both directions, over the value."""
 _FROM_NOUGHT = 10.0
-"""How far it goes from nought, in the unit that is shown."""
+"""Range of a slider from zero, in the display unit."""
 
 
 @SESSION.keep(8)
 def design(text: str, file: str) -> Mechanism:
-    """The design that a text says; raises `DesignError` with all that is wrong with it."""
+    """The design in a text; raises `DesignError` with all errors."""
     return loads(text, where=Path(file).name, folder=Path(file).parent)
 
 
 def read(text: str, file: str, stored: str) -> Reading:
-    """What a text says, and what its numbers were in the `stored` one."""
+    """Contents of a text, and its numbers in the `stored` one."""
     try:
         found = design(text, file)
         requirements(found)
@@ -80,7 +80,7 @@ def link_lines(mechanism: Mechanism, lines: Mapping[str, int]) -> dict[str, int 
 
 
 def address_of(mechanism: Mechanism, link: PlacedLink | PlacedSuperelement) -> str:
-    """Where a link is drawn in the description (`units.vertical.links.pivot`)."""
+    """Address of a link's drawing in the description (`units.vertical.links.pivot`)."""
     drawn = link.described if isinstance(link, PlacedLink) else link
     return ".".join(link_path(mechanism, drawn.drawn.removeprefix("links.")))
 
@@ -93,7 +93,7 @@ def _problem(finding: Finding, rows: list[str], lines: Mapping[str, int], where:
 
 
 def _column(row: str, address: str) -> int:
-    """Where the innermost step of an address stands in a row; else where its text begins."""
+    """Column of the innermost step of an address in a row; else of the start of its text."""
     for step in reversed(address.replace('"', "").replace("/", ".").split(".")):
         if step and (found := re.search(rf"(?<![\w-]){re.escape(step)}(?![\w-])", row)):
             return found.start() + 1
@@ -145,27 +145,27 @@ def _amounts(mechanism: Mechanism, lines: Mapping[str, int], stored: Mapping[str
 
 @lru_cache(maxsize=4096)
 def _text(bits: str, quantity: Quantity) -> str:
-    """A number as the file says it; most of a design's stay when one is changed."""
+    """A number as in the file; cached, as most numbers of a design are unchanged."""
     value = float.fromhex(bits)
     return show(value, quantity) if quantity.si not in ("1", "mixed") else f"{value:.12g}"
 
 
 @lru_cache(maxsize=256)
 def _shown(quantity: Quantity) -> tuple[str, float]:
-    """The unit that a quantity is shown in, and what one is in SI."""
+    """The display unit of a quantity, and its value in SI."""
     form = field_unit(quantity)
     return ("", 1.0) if form.unit == "1" else (form.unit, 1.0 / form.factor)
 
 
 def _span(value: float, factor: float, bound: Bound | None) -> tuple[float, float]:
-    """Between what a slider goes, within the bound."""
+    """The range of a slider, within the bound."""
     reach = _REACH * abs(value) if value else _FROM_NOUGHT * factor
     low, high = value - reach, value + reach
     return (low, high) if bound is None else (max(low, bound.low), min(high, bound.high))
 
 
 def _group(address: str) -> str:
-    """The table of the file that an address stands in."""
+    """The table of an address in the file."""
     if "/" in address.partition(".")[0]:
         return "overrides"
     steps = address.split(".")
@@ -193,7 +193,7 @@ def _gauges(assembly: Assembly) -> Iterator[Channel]:
 
 
 def finite(value: Any) -> float | None:
-    """A number of the first design; nothing for one that is not finite, or absent."""
+    """A number of the first design; nothing if not finite, or absent."""
     found = np.nan if value is None else float(np.ravel(np.real(value))[0])
     return found if np.isfinite(found) else None
 

@@ -1,4 +1,4 @@
-"""Changes of a design's text: single numbers written into it, everything else left as it is."""
+"""Changes of a design's text: single numbers are written, everything else is unchanged."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _DIGITS, _EXACT = 6, 12
 def write(text: str, file: str, address: str, value: str | float) -> str:
     """The text with a number set: a text in any unit of its quantity, a formula or a change; or an SI number, to six digits.
 
-    Raises `DesignError` in the checks' words where that is no such number, or where the design would not be one any more.
+    Raises `DesignError` with the checks' text for an unknown number, or if the design would become invalid.
     """
     stated = _tidy(text, file, address, value) if isinstance(value, str) else _shown(text, file, address, value, _DIGITS)
     patched = patch(text, {address: stated}, where=file)
@@ -25,7 +25,7 @@ def write(text: str, file: str, address: str, value: str | float) -> str:
 
 
 def _tidy(text: str, file: str, address: str, value: str) -> str:
-    """What a person wrote; of a change in percent the number that it comes to."""
+    """The user's text; for a change in percent, the resulting number."""
     if not value.strip().endswith("%"):
         return value
     found = set_text(design(text, file), address, value)
@@ -34,8 +34,8 @@ def _tidy(text: str, file: str, address: str, value: str) -> str:
 
 def _shown(text: str, file: str, address: str, value: float, digits: int) -> str:
     if not np.isfinite(value):
-        raise refuse(address, "it is not finite", "Give it a value")
+        raise refuse(address, "must be finite", "Use a finite value")
     found = design(text, file)
     if get(found, address) is None:
-        raise refuse(address, "the description does not state it", "Write it into the text first")
+        raise refuse(address, "missing in the design", "Write it into the text first")
     return show(value, quantity_of(found, address), digits=digits)

@@ -1,1 +1,1 @@
-"""Loops and controllers as C: generated, compiled and run."""
+"""Loops and controllers as generated C, compiled and run."""

@@ -1,4 +1,4 @@
-"""The controller as C: from reference and readings to volts, as fixed numbers or with gains and limits that can be changed."""
+"""Controller as C: from reference and readings to voltages, with fixed numbers or with adjustable gains and limits."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ LARGEST = number(Precision.DOUBLE.largest)
 
 
 def controller_code(given: Machine, name: str = "controller", about: str = "") -> Program:
-    """The part of a machine that a computer runs: pose, error, controller, inverse of the hysteresis, converter, limits, volts.
+    """Generate the computer's part of a machine: pose, error, controller, inverse hysteresis, converter, limits, voltages.
 
-    Inputs are `reference.<c>` and the readings `<gauge>` as the gauges give them; outputs `pose`, `error`, `command`, `asked`, `given`
-    (free strokes [m] from the bias), `volts` where stacks state their range, and `status`. Limits are part of it, so that its integrators
-    know what is applied. A reading that is no finite number or beyond its gauge's range is not taken, nor a reference that is no finite
-    number: the last good one stays (at first: rest) and `status` says so, until the next good one. No state becomes other than finite.
+    Inputs are `reference.<c>` and the readings `<gauge>` in the gauges' units. Outputs are `pose`, `error`, `command`, `asked`, `given`
+    (free strokes [m] from the bias), `volts` if the stacks' ranges are known, and `status`. Limits are included, so that the integrators
+    use the applied strokes. Non-finite readings, readings beyond the gauge's range and non-finite
+    references are rejected: the last valid value is held (initially zero) and `status` reports it, until the next valid one. All states
+    stay finite.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -60,15 +61,15 @@ def _comment(given: Machine, about: str) -> tuple[str, ...]:
 
 
 _HELD = (
-    "A reading that is no finite number (NaN, infinity) or beyond its gauge's range is not taken, nor a reference that is no number.",
-    "The last good one stays in its place, at first that at rest, and status tells which and why; the next good one is taken again.",
-    "A held reading closes no loop: strokes may creep to their ends. Watch status; how long is too long is the caller's to say.",
+    "Readings that are not finite (NaN, infinity) or beyond the gauge's range are rejected, and references that are not finite.",
+    "The last valid value is held (initially zero). status reports which input and why. The next valid value is used again.",
+    "A held reading opens the loop: strokes may drift to their limits. The caller must monitor status and limit the duration.",
 )
-_STATUS = "for each reading, then each reference: 0 taken; held instead, 1 it is no finite number, 2 it is beyond the range"
+_STATUS = "for each reading, then each reference: 0 valid; held: 1 not finite, 2 beyond the range"
 
 
 def inputs(given: Machine) -> tuple[Signal, Signal]:
-    """Reference and readings.
+    """Signals of reference and readings.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -81,7 +82,7 @@ def inputs(given: Machine) -> tuple[Signal, Signal]:
 
 
 def outputs(given: Machine) -> tuple[Signal, ...]:
-    """Outputs of a controller, volts where they are known.
+    """Output signals of a controller, with voltages if they are known.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -90,11 +91,11 @@ def outputs(given: Machine) -> tuple[Signal, ...]:
     'pose.x'
     """
     noun = "strokes" if all(each.unit == "m" for each in given.strokes()) else "inputs"
-    poses = {"pose": "pose estimated from the readings", "error": "reference less pose"}
+    poses = {"pose": "pose estimated from the readings", "error": "reference minus pose"}
     strokes = {
         "command": f"commands of the controller, {'free strokes' if noun == 'strokes' else noun}",
-        "asked": f"{noun} asked of the amplifiers, behind inverse and converter",
-        "given": f"{noun} the amplifiers give, within their limits",
+        "asked": f"{noun} requested of the amplifiers, after inverse and converter",
+        "given": f"{noun} applied by the amplifiers, within their limits",
     }
     volts = tuple(Channel(f"volts.{name}", "V") for name in given.actuators)
     status = tuple(Channel(f"status.{name}", "1") for name in (*given.gauges, *(f"reference.{name}" for name in given.names)))
@@ -104,7 +105,7 @@ def outputs(given: Machine) -> tuple[Signal, ...]:
             for kind, text in poses.items()
         ),
         *(Signal(kind, given.strokes(f"{kind}."), text) for kind, text in strokes.items()),
-        *((Signal("volts", volts, "volts for the amplifiers"),) if has_volts(given) else ()),
+        *((Signal("volts", volts, "voltages for the amplifiers"),) if has_volts(given) else ()),
         Signal("status", status, _STATUS),
     )
 
@@ -122,7 +123,7 @@ def has_volts(given: Machine) -> bool:
 
 
 def controller_states(given: Machine, core: Core) -> tuple[State, ...]:
-    """What a controller keeps: its states, the strokes last given, readings and reference last taken, plays of the compensated model."""
+    """State of a controller: its own states, the last applied strokes, valid readings and references, and plays of the inverse model."""
     model = given.compensation
     plays = () if model is None else (hysteresis_step("model", model, given.amplifiers.bias)[1],)
     taken = ("last", len(given.actuators)), ("seen", len(given.gauges)), ("wanted", len(given.names))
@@ -130,7 +131,7 @@ def controller_states(given: Machine, core: Core) -> tuple[State, ...]:
 
 
 def limit_settings(given: Machine) -> tuple[ProgramSetting, ...]:
-    """Limits of strokes, and of their change in a sample."""
+    """Limits of strokes, and of their change per sample."""
     powers = given.amplifiers
     return (
         ProgramSetting("low", powers.low, "limits of the strokes (or inputs)"),
@@ -140,12 +141,12 @@ def limit_settings(given: Machine) -> tuple[ProgramSetting, ...]:
 
 
 def bounded(setting: ProgramSetting, precision: Precision) -> ProgramSetting:
-    """A setting whose numbers are finite."""
+    """Setting with its numbers limited to finite values."""
     return ProgramSetting(setting.field, np.clip(setting.values, -precision.largest, precision.largest), setting.meaning)
 
 
 def _tables(given: Machine, precision: Precision, *, fixed: bool) -> list[str]:
-    """Tables and functions of what is not linear: limits, volts, and the inverse of the hysteresis."""
+    """Tables and functions of the nonlinear parts: limits, voltages, and inverse hysteresis."""
     powers, model, lines = given.amplifiers, given.compensation, table("reach", np.minimum(given.reach, precision.largest))
     for each in limit_settings(given) if fixed else ():
         lines += table(each.field, bounded(each, precision).values)
@@ -159,9 +160,9 @@ def _tables(given: Machine, precision: Precision, *, fixed: bool) -> list[str]:
 
 
 def controller_part(given: Machine, core: Core, reading: str, precision: Precision = Precision.DOUBLE, *, fixed: bool = True) -> Code:
-    """Tables and statements of one sample of a controller whose readings are called `reading`.
+    """Tables and statements of one sample of a controller whose readings are named `reading`.
 
-    Not `fixed`, limits and gains are read from the parameters `set`, and where `set->enable` is 0 the strokes given last are held.
+    If not `fixed`, limits and gains are read from the parameters `set`, and `set->enable` = 0 holds the last applied strokes.
     """
     f, g, m, largest = len(given.names), len(given.gauges), len(given.actuators), number(precision.largest)
     pose = product("seen", "out->pose", [(given.pose, "state->seen")], f)
@@ -194,7 +195,7 @@ def controller_part(given: Machine, core: Core, reading: str, precision: Precisi
 
 
 def _accept_inputs(count: int, value: str, reach: str, kept: str, *, place: str, largest: str) -> list[str]:
-    """Numbers that come in, if they are good; a comparison with NaN is false."""
+    """Statements that accept valid inputs; a comparison with NaN is false."""
     return [
         f"for (i = 0; i < {count}; i++) {{",
         f"    const double value = {value};",
@@ -206,9 +207,9 @@ def _accept_inputs(count: int, value: str, reach: str, kept: str, *, place: str,
 
 
 def _one_actuator(given: Machine, precision: Precision, *, fixed: bool) -> list[str]:
-    """From the command of actuator i to its volts, in the order of the simulation."""
+    """Statements from command to voltage of actuator i, in the order of the simulation."""
     compensated, largest = given.compensation is not None, number(precision.largest)
-    half = number(1.5 * 2.0**precision.digits)  # added and taken away, it rounds to a whole number
+    half = number(1.5 * 2.0**precision.digits)  # adding and subtracting it rounds to an integer
     rounded = "rint(stroke / converter[i])" if fixed else f"((stroke / converter[i] + {half}) - {half})"
     lines = ["double stroke = out->command[i];"]
     if compensated:
@@ -228,7 +229,7 @@ def _one_actuator(given: Machine, precision: Precision, *, fixed: bool) -> list[
 
 
 def limited(where: str, most: str, last: str, place: str) -> list[str]:
-    """Statements that keep `stroke` within the range, and within a change from the `last` one.
+    """Statements that limit `stroke` to the range, and its change from `last`.
 
     >>> limited("set->", "most", "last", "i")[0]
     'if (stroke > set->high[i]) stroke = set->high[i];'

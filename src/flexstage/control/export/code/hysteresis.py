@@ -1,4 +1,4 @@
-"""Hysteresis models as functions of C: plays between envelopes, their inverse, and Bouc-Wen."""
+"""Hysteresis models as C functions: plays between envelopes, their inverse, and Bouc-Wen."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from flexstage.control.hysteresis.models.protocol import Hysteresis
 
 
 def hysteresis_step(name: str, model: Hysteresis, bias: Array) -> tuple[list[str], State]:
-    """A function `double <name>(double *state, int axis, double value)` that takes one axis on, and its state, at the bias at first.
+    """Generate a function `double <name>(double *state, int axis, double value)` that advances one axis, and its initial state at the bias.
 
-    Raises `DesignError` for a model that has no form in C.
+    Raises `DesignError` for a model without a C form.
 
     >>> lines, state = hysteresis_step("stack", PrandtlIshlinskii([0.0, 2.0], [1.0, 0.5]), np.zeros(1))
     >>> state.sizes, lines[-1]
@@ -33,12 +33,12 @@ def hysteresis_step(name: str, model: Hysteresis, bias: Array) -> tuple[list[str
         lines = _bouc_wen(name, model)
     else:
         advice = "Export a loop with a Prandtl-Ishlinskii or Bouc-Wen hysteresis, or simulate this one without a compiler"
-        raise refuse("hysteresis", f"{type(model).__name__} has no form in C", advice)
+        raise refuse("hysteresis", f"{type(model).__name__} has no C form", advice)
     return [*head, *lines], State(name, start.shape, f"{name}_rest")
 
 
 def _plays(name: str, model: PrandtlIshlinskii, call: str, *, head: str, play: str, loop: tuple[str, ...] = ()) -> list[str]:
-    """Tables of a model, and a function that sums its plays between its envelopes; in its loop the plays are called `play`."""
+    """Tables of a model, and a function that sums its plays between its envelopes; its loop names the plays `play`."""
     before, after = (_envelope(f"{name}_{which}", each, model.axes) for which, each in (("before", model.before), ("after", model.after)))
     return [
         *table(f"{name}_thresholds", model.thresholds),
@@ -70,7 +70,7 @@ if (u - thresholds[i] > {0}) {0} = u - thresholds[i];"""
 
 
 def _envelope(name: str, envelope: Envelope, axes: int) -> tuple[list[str], str]:
-    """Tables and function of an envelope, and the expression of its value; nothing for the identity."""
+    """Tables and function of an envelope, and its value expression; nothing for the identity."""
     if envelope is IDENTITY:
         return [], "{}"
     changes = np.broadcast_to(envelope.changes, (axes, envelope.changes.shape[1]))
@@ -96,9 +96,9 @@ def _envelope(name: str, envelope: Envelope, axes: int) -> tuple[list[str], str]
 
 
 def hysteresis_inverse(name: str, model: PrandtlIshlinskii) -> list[str]:
-    """A function `double <name>_invert(const double *plays, int axis, double value)`: the input that makes a value from where plays stand.
+    """Generate `double <name>_invert(const double *plays, int axis, double value)`: the input for an output at the given plays.
 
-    The model stays where it is; z'_j = P_j z_j + sum_{i>j} p_i z_i are the plays of its inverse (see `inverse_state`).
+    The model's state does not change; z'_j = P_j z_j + sum_{i>j} p_i z_i are the plays of its inverse (see `inverse_state`).
 
     >>> hysteresis_inverse("model", PrandtlIshlinskii([0.0, 2.0], [1.0, 0.5]))[-1]
     '}'

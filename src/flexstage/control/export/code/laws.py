@@ -1,4 +1,4 @@
-"""Laws as C: single loops whose gains can be changed, or any law as matrices, in modal form on a processor of its own."""
+"""Control laws as C: single loops with adjustable gains, or any law as matrices, in modal form for embedded processors."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from flexstage.models.linear.model import Channel
 
 @dataclass(frozen=True)
 class Core:
-    """The law as C: arrays of its state with their sizes, its settings, and its statements.
+    """Control law as C: state arrays with sizes, settings, and statements.
 
-    `locals` are declared at the head; `command` follows from errors and states, `begin` sets states so that the command is that given
-    last, `next` states go to arrays `next_<state>`. `tables` stand at the file's level.
+    `locals` are declared at the head. `command` follows from errors and states. `begin` sets states so that the command equals the last
+    applied one. `next` states go to arrays `next_<state>`. `tables` are at file level.
     """
 
     states: tuple[tuple[str, int], ...]
@@ -43,7 +43,7 @@ class Core:
 
 
 def law_as_c(given: Machine, law: Decentralised | None) -> Core:
-    """The law of a machine: single loops under PI or PID as such, any other in modal form."""
+    """Law of a machine: PI or PID loops individually, any other law in modal form."""
     if law is not None and all(isinstance(each, (PI, PID)) for each in law.laws):
         return _single_loops(given, law)
     linear = parts(replace(given, controller=modal_form(given.controller)))
@@ -52,7 +52,7 @@ def law_as_c(given: Machine, law: Decentralised | None) -> Core:
 
 
 def matrix_core(linear: Parts) -> Core:
-    """Any law: z+ = A z + ..., command = C z + ..., by the matrices of plant and controller.
+    """Any law by the matrices of plant and controller: z+ = A z + ..., command = C z + ...
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -69,7 +69,7 @@ def matrix_core(linear: Parts) -> Core:
 
 
 def _start(linear: Parts) -> list[tuple[Array, str]]:
-    """States at rest under what is seen, integrators so that the command is that given last."""
+    """Equilibrium states for the present inputs; integrators such that the command equals the last applied one."""
     A, f = linear.controller, linear.from_reference.shape[1]
     slow = np.abs(np.diag(A) - 1.0) < 1e-9
     slow &= np.count_nonzero(np.abs(A) > 1e-300, axis=1) == 1
@@ -83,7 +83,7 @@ def _start(linear: Parts) -> list[tuple[Array, str]]:
 
 
 def _single_loops(given: Machine, law: Decentralised) -> Core:
-    """Single loops: the gains of their laws are settings, notches, prefilters and what is fed forward are fixed."""
+    """Single loops: gains are settings; notches, prefilters and feedforward are fixed."""
     step, sense, drive = given.step, np.asarray(law.loops.sense), np.asarray(law.loops.drive)
     behind, ahead, laws = _notches(law, step), _ahead(law, step), [_as_pid(each) for each in law.laws]
     k, f, m, n, s = len(laws), len(given.names), len(given.actuators), len(behind.A), len(ahead.A)
@@ -143,31 +143,31 @@ def _single_loops(given: Machine, law: Decentralised) -> Core:
 
 
 def _settled(system: System) -> Array:
-    """States (s, m) in which a system rests under inputs of one: (I - A)^-1 B."""
+    """Equilibrium states (s, m) of a system for unit inputs: (I - A)^-1 B."""
     return np.linalg.solve(np.eye(len(system.A)) - system.A, system.B) if len(system.A) else np.zeros_like(system.B)
 
 
 def _gains(law: Decentralised, laws: list[PID], step: float) -> tuple[ProgramSetting, ...]:
-    """What may be changed at run time, with its unit."""
+    """Settings that may change at run time, with their units."""
     named = f"gains of the loops {', '.join(law.loops.names)} [1]"
     follows = [step * tracking_rate(each.tracking_time, step) if each.integral else 0.0 for each in laws]
     return (
         ProgramSetting("proportional", np.array([each.proportional for each in laws]), named),
         ProgramSetting("integral", np.array([each.integral for each in laws]), "[1/s]"),
         ProgramSetting("derivative", np.array([each.derivative for each in laws]), "[s]"),
-        ProgramSetting("tracking", np.array(follows), "share by which an integrator follows, in a sample, what a limit took"),
+        ProgramSetting("tracking", np.array(follows), "fraction of the saturated part that an integrator recovers per sample"),
     )
 
 
 def _derivative_tables(laws: list[PID], step: float) -> tuple[str, ...]:
-    """The low-pass filters of derivatives in samples: what is kept of a state, and how quickly it follows."""
+    """Sampled low-pass filters of derivatives: decay factor of the state, and input rate."""
     corners = np.array([2.0 * np.pi * each.filter if each.derivative else 0.0 for each in laws])
     slow = (1.0 - 0.5 * corners * step) / (1.0 + 0.5 * corners * step)
     return (*table("slow", slow), *table("lead", corners / (1.0 + 0.5 * corners * step)))
 
 
 def _as_pid(law: Law) -> PID:
-    """A PI as a PID without a derivative."""
+    """PI as a PID without derivative."""
     if isinstance(law, PI):
         return PID(law.proportional, law.integral, 0.0, 1.0, law.tracking)
     if isinstance(law, PID):
@@ -176,7 +176,7 @@ def _as_pid(law: Law) -> PID:
 
 
 def _notches(law: Decentralised, step: float) -> System:
-    """All loops' notches, from their laws to what they drive, in modal form."""
+    """Notches of all loops in modal form."""
     port = (Channel("raw", "m"),)
     groups = [[each.system(step) for each in group] for group in law.notches or ((),) * len(law.laws)]
     chains = [modal_form(reduce(filtered, group, static(np.eye(1), port, port, step))) for group in groups]
@@ -186,7 +186,7 @@ def _notches(law: Decentralised, step: float) -> System:
 
 
 def _ahead(law: Decentralised, step: float) -> System:
-    """From the reference to what is added to errors and to commands: prefilters and what is fed forward."""
+    """Prefilters and feedforward: from the reference to the additions to errors and commands."""
     coordinates = law.loops.coordinates
     f, m = len(coordinates.names), len(coordinates.actuators)
     inputs = tuple(Channel(f"error.{name}", "m") for name in coordinates.names)

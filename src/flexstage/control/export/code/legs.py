@@ -1,4 +1,4 @@
-"""Force feedback in the legs as C: in a controller that is stepped as they are, or a function beside the step of the pose."""
+"""Force feedback in the legs as C: inside a controller stepped at the legs' rate, or a separate function."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ _SWEPT, _LARGEST = 200, 1e-6
 
 
 def with_legs(outer: Program, given: Machine, legs: SampledLegs) -> Program:
-    """A controller's program with the inner loops in it, stepped every `legs.step`; what it gives of the pose stays in between.
+    """Generate a controller program with inner loops, stepped every `legs.step`; the pose controller's outputs are held in between.
 
-    Further inputs are `tension.<actuator>` [N], positive where a leg is pulled; outputs `added`, what force feedback adds to the strokes,
-    and `total`, the strokes of both loops within what the amplifiers give; `volts` are those of the total. A tension that is no finite
-    number is held, and `tension_status` says so.
+    Further inputs are `tension.<actuator>` [N], positive in tension. Outputs are `added`, the strokes of force feedback, and `total`, the
+    strokes of both loops within the amplifiers' limits; `volts` belong to the total. A tension that is not finite is held, and
+    `tension_status` reports it.
     """
     strokes = {channel.name: channel for channel in given.strokes()}
     own, total = [strokes[name] for name in legs.actuators], given.strokes("total.")
     further = (
         Signal("added", tuple(Channel(f"added.{each.name}", each.unit) for each in own), "added by force feedback"),
-        Signal("total", total, "strokes of both loops, within what the amplifiers give"),
+        Signal("total", total, "strokes of both loops, within the amplifiers' limits"),
         Signal("tension_status", tuple(Channel(f"status.tension.{each.name}", "1") for each in own), _STATUS),
     )
     before = f"One call of the step every {outer.step:.12g} s"
-    about = (*(line.replace(before, "Loop of the pose") for line in outer.about), _about(legs))
+    about = (*(line.replace(before, "Pose loop") for line in outer.about), _about(legs))
     inner = _settings(given, legs)
     tables = [line for each in inner for line in table(each.field, bounded(each, Precision.DOUBLE).values)]
     held = [State(f"held_{each.field}", (len(each.channels),)) for each in outer.outputs]
@@ -50,14 +50,14 @@ def with_legs(outer: Program, given: Machine, legs: SampledLegs) -> Program:
     )
 
 
-_STATUS = "for each tension: 0 taken; 1 it is no finite number, the last good one is held"
+_STATUS = "for each tension: 0 valid; 1 not finite, the last valid one is held"
 
 
 def _about(legs: SampledLegs) -> str:
-    first = f"of {legs.turns} the first runs the loop of the pose, every {legs.turns * legs.step:.12g} s, from the readings of then"
+    first = f"of {legs.turns} calls the first runs the pose loop, every {legs.turns * legs.step:.12g} s, from the readings of that call"
     return (
         f"One call of the step every {legs.step:.12g} s: {first}; all run force feedback in the legs of {', '.join(legs.actuators)}. "
-        "Tension counts positive; total is what the amplifiers shall give."
+        "Tension is positive; total is the amplifiers' input."
     )
 
 
@@ -70,7 +70,7 @@ def _settings(given: Machine, legs: SampledLegs) -> tuple[ProgramSetting, ...]:
     named = ", ".join(legs.actuators)
     return (
         ProgramSetting("leg", legs.gains, f"g / (a k) of the legs {named} [m/N]"),
-        ProgramSetting("quick", given.amplifiers.slew * legs.step, "largest change of both loops together in a sample of the legs"),
+        ProgramSetting("quick", given.amplifiers.slew * legs.step, "largest change of the total stroke per sample of the legs"),
     )
 
 
@@ -101,7 +101,7 @@ def _sample(outer: Program, given: Machine, legs: SampledLegs) -> list[str]:
 
 
 def legs_beside(outer: Program, given: Machine, legs: SampledLegs, precision: Precision) -> Program:
-    """A program with settings and a further function, `<name>_damp`, for the inner loops in samples of their own."""
+    """Program with settings and a separate function, `<name>_damp`, for the inner loops at their own rate."""
     m, largest, places = len(given.actuators), number(precision.largest), _places(given, legs)
     volts = [f", double volts[{m}]", "volts[i] = stroke * per_metre[i] + bias[i];"] if has_volts(given) else ["", ""]
     sizes = f"const double tension[{len(places)}], double total[{m}]{volts[0]}"
@@ -143,7 +143,7 @@ def _good(value: str, largest: str) -> str:
 
 
 def _one_leg(legs: SampledLegs, target: str, gain: str, tension: str, *, place: str, largest: str) -> list[str]:
-    """Statements of a leg's law: from a tension to a target, on with `state->slow` and `slower`."""
+    """Statements of a leg's law, from a tension to a target, with states `state->slow` and `slower`."""
     share, twice = number(legs.share), number(2.0 * legs.share)
     second = [
         f"entry = {share} * slow;",
@@ -163,7 +163,7 @@ def _one_leg(legs: SampledLegs, target: str, gain: str, tension: str, *, place: 
 
 
 def legs_test(given: Machine, legs: SampledLegs, name: str) -> Sequence[str]:
-    """A function that replays tensions, which sweep up to a tenth of the rate: how far strokes are from those of the law."""
+    """Function that replays tensions swept up to a tenth of the rate, and returns the largest stroke deviation from the law."""
     tensions, wanted = _swept(given, legs)
     m, volts = len(given.actuators), ", volts" if has_volts(given) else ""
     return [
@@ -195,7 +195,7 @@ def legs_test(given: Machine, legs: SampledLegs, name: str) -> Sequence[str]:
 
 
 def _swept(given: Machine, legs: SampledLegs) -> tuple[Array, Array]:
-    """Tensions (n, legs), and the strokes (n, actuators) of them, a micrometre at most."""
+    """Tensions (n, legs), and their strokes (n, actuators), a micrometre at most."""
     times = np.arange(_SWEPT)[:, None]
     tensions = np.sin(0.1 * np.pi * times**2 / _SWEPT + np.arange(len(legs.gains))) / legs.gains
     wanted = np.zeros((_SWEPT, len(given.actuators)))

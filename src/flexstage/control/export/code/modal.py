@@ -1,4 +1,4 @@
-"""A controller in modal form: states that do not feel one another, one by one or in pairs."""
+"""Controller in modal form: decoupled states, single or in pairs."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ _WORST = 1e8
 
 
 def modal_form(given: System) -> System:
-    """The same system with A of blocks of one and two states: z = V^-1 x, V real vectors of the modes, each of unit length.
+    """Transform a system to blocks of one and two states in A: z = V^-1 x, V real vectors of the modes, each of unit length.
 
-    As it is, where its modes are not independent: where V is worse conditioned than 1e8.
+    Unchanged if its modes are not independent: V worse conditioned than 1e8.
 
     >>> from flexstage.control.example import integral_loop
     >>> closed = integral_loop().system
@@ -35,7 +35,7 @@ def modal_form(given: System) -> System:
 
 
 def _real_basis(values: Array, vectors: Array) -> Array:
-    """Real parts, and of pairs imaginary parts behind them; of a pair only the first is taken."""
+    """Real parts, followed by imaginary parts for pairs; only the first of a pair is used."""
     columns: list[Array] = []
     for value, vector in zip(values, vectors.T, strict=True):
         if value.imag == 0.0:
@@ -46,7 +46,7 @@ def _real_basis(values: Array, vectors: Array) -> Array:
 
 
 def _blocks(values: Array) -> Array:
-    """The blocks that go with the real basis."""
+    """Diagonal blocks of A in the real basis."""
     found, row = np.zeros((len(values), len(values))), 0
     for value in values:
         if value.imag == 0.0:

@@ -1,4 +1,4 @@
-"""The numbers of a controller for hardware: their type, and text in it."""
+"""Number type of a controller for hardware, and C text in it."""
 
 from __future__ import annotations
 
@@ -12,39 +12,39 @@ _CONSTANT = re.compile(r"(?<![\w.])(\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+)(?![\w.]
 
 
 class Precision(Enum):
-    """The type of the controller's numbers."""
+    """Number type of the controller."""
 
     SINGLE = "float32"
     DOUBLE = "float64"
 
     @property
     def word(self) -> str:
-        """The type in C."""
+        """C name of the type."""
         return "float" if self is Precision.SINGLE else "double"
 
     @property
     def bytes(self) -> int:
-        """Bytes of a number."""
+        """Size of a number [bytes]."""
         return np.dtype(self.value).itemsize
 
     @property
     def digits(self) -> int:
-        """Binary digits behind the first."""
+        """Binary digits after the first."""
         return int(np.finfo(self.value).nmant)
 
     @property
     def tolerance(self) -> float:
-        """How far outputs may be from the simulation's, of the largest: rounding of some hundred samples that add up."""
+        """Allowed deviation of outputs from the simulation, relative to the largest: accumulated rounding of some hundred samples."""
         return 1e-4 if self is Precision.SINGLE else 1e-11
 
     @property
     def largest(self) -> float:
-        """The largest number."""
+        """Largest number."""
         return float(np.finfo(self.value).max)
 
 
 def typed(text: str, precision: Precision) -> str:
-    """Text in a precision: constants and their type."""
+    """Convert constants and types in a text to a precision."""
     if precision is Precision.DOUBLE:
         return text
     marked = re.sub(r"/\*.*?\*/", lambda comment: re.sub(r"(\d)", "\\1\0", comment.group()), text, flags=re.DOTALL)  # no constants
@@ -52,7 +52,7 @@ def typed(text: str, precision: Precision) -> str:
 
 
 def count_constants(lines: Sequence[str]) -> int:
-    """How many numbers stand in a text.
+    """Count the numeric constants of a text.
 
     >>> count_constants(["{1.0, 2.5e-3}", "x[3]"])
     2

@@ -1,4 +1,4 @@
-"""Code in C: tables at the file's level, statements that use them; products of matrices and vectors."""
+"""Matrix products as C code: file-level tables, and the statements that use them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 from flexstage.control.export.code.text import number, table, wrap
 
 _SPARSE, _FEW, _ROWS = 0.2, 36, 8
-"""A matrix with more entries that are not zero, or a larger share of them, is a table."""
+"""A matrix with more nonzero entries, or a larger share of them, is a table."""
 MULTIPLY = (
     "/* sum += matrix vector; the matrix by groups of eight rows, each column by column: a compiler keeps eight sums at once. */",
     "static void multiply(const double *matrix, int groups, int columns, const double *vector, double *sum)",
@@ -28,15 +28,15 @@ MULTIPLY = (
     "    }",
     "}",
 )
-"""The function that products by tables call."""
+"""C function for products with tables."""
 
 Term = tuple[Array, str]
-"""A matrix (rows, n) and the name of the vector it is applied to."""
+"""A matrix (rows, n) and the name of the vector that it multiplies."""
 
 
 @dataclass(frozen=True)
 class Code:
-    """Tables and functions at the file's level, statements of the body that use them, and additions and multiplications of these."""
+    """C code: file-level tables and functions, body statements, and the number of additions and multiplications."""
 
     tables: tuple[str, ...] = ()
     body: tuple[str, ...] = ()
@@ -44,9 +44,9 @@ class Code:
 
 
 def product(name: str, target: str, terms: Iterable[Term], size: int) -> Code:
-    """target[i] = sum over the terms of matrix[i, j] vector[j], for i below `size`; tables are called after `name`.
+    """Generate target[i] = sum over the terms of matrix[i, j] vector[j], for i below `size`; table names start with `name`.
 
-    Sparse matrices are written out, dense ones are tables.
+    Sparse matrices are unrolled, dense ones are tables.
 
     >>> product("seen", "y", [(np.array([[2.0, 0.0], [0.0, -1.0]]), "x")], 2).body
     ('y[0] = 2.0 * x[0];', 'y[1] = -x[1];')

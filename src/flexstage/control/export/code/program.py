@@ -1,4 +1,4 @@
-"""A program of C that is stepped: its signals, its state, its settings, its text."""
+"""Fixed-step C program: signals, state, settings, text."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from flexstage.models.linear.model import Channel
 
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")
 FLAGS = ("-std=c99", "-O3", "-ffp-contract=off", "-fPIC", "-shared", *WARNINGS)
-"""How programs are compiled. Without contraction: a product and a sum round as written, here as elsewhere."""
+"""Compiler flags. Without contraction, a product and a sum round as written on every machine."""
 
 
 @dataclass(frozen=True)
 class Signal:
-    """A group of numbers that goes in or out: its `field` in the struct, its channels in order, and what it means."""
+    """Group of input or output numbers: its `field` in the struct, its channels in order, and its meaning."""
 
     field: str
     channels: tuple[Channel, ...]
@@ -26,7 +26,7 @@ class Signal:
 
 @dataclass(frozen=True)
 class State:
-    """A group of numbers kept from step to step: `field`, sizes of its axes, and the table they begin with (absent: zero)."""
+    """Group of state numbers: `field`, sizes of its axes, and the table of initial values (default: zero)."""
 
     field: str
     sizes: tuple[int, ...]
@@ -35,7 +35,7 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class ProgramSetting:
-    """A group of numbers that may be changed between two steps: `field`, the values they begin with, and what they mean."""
+    """Group of numbers adjustable between steps: `field`, initial values, and meaning."""
 
     field: str
     values: Array
@@ -44,7 +44,7 @@ class ProgramSetting:
 
 @dataclass(frozen=True)
 class ProgramFunction:
-    """A further function of a program: how it is called, the lines of its body, and notes."""
+    """Further function of a program: its declaration, body lines, and notes."""
 
     call: str
     body: tuple[str, ...]
@@ -53,11 +53,11 @@ class ProgramFunction:
 
 @dataclass(frozen=True)
 class Program:
-    """C99 of fixed step: `code` whose body is run every `step` [s].
+    """Fixed-step C99 program: the body of `code` is run every `step` [s].
 
-    The header declares `<name>_input`, `_output`, `_state`, `<name>_init(state)` and `<name>_step(state, in, out)`; all numbers are
-    doubles, in SI. There is no heap and nothing is static but tables. With `settings` both take `<name>_parameters` too: those numbers,
-    and whether it is enabled; then nothing of a library is called.
+    The header declares `<name>_input`, `_output`, `_state`, `<name>_init(state)` and `<name>_step(state, in, out)`. All numbers are
+    doubles, in SI units. It uses no heap; only tables are static. With `settings` both functions also have a `<name>_parameters` argument,
+    the settings and an enable flag; no library function is then called.
     """
 
     name: str
@@ -84,17 +84,17 @@ class Program:
             'extern "C" {',
             "#endif",
             "",
-            *comment("Time between two calls of the step [s]: the caller sees to it."),
+            *comment("Time between two calls of the step [s], kept by the caller."),
             f"#define {name.upper()}_PERIOD {number(self.step)}",
             "",
             *_signals(f"{name}_input", self.inputs),
             *_signals(f"{name}_output", self.outputs),
             *_struct(f"{name}_state", [_array(each) for each in self.states if all(each.sizes)], self._is_set("int is_on;")),
             *self._parameters(),
-            *comment("Set the state to rest; call it once before the first step."),
+            *comment("Initialise the state; call once before the first step."),
             f"{init};",
             "",
-            *comment("One sample: read the inputs, write the outputs, move the state on to the next sample."),
+            *comment("One sample: read the inputs, write the outputs, advance the state."),
             f"{step};",
             *(line for each in self.functions for line in ("", *comment(each.notes), f"{each.call};")),
             "",
@@ -131,7 +131,7 @@ class Program:
 
     @property
     def _calls(self) -> tuple[str, str]:
-        """How the state is set to rest, and how a sample is taken."""
+        """Declarations of the initialisation and the step."""
         name, (changed, read) = self.name, ("", "")
         if self.settings is not None:
             changed, read = f", {name}_parameters *set", f" const {name}_parameters *set,"
@@ -139,14 +139,14 @@ class Program:
         return f"void {name}_init({name}_state *state{changed})", step
 
     def _is_set(self, *lines: str) -> tuple[str, ...]:
-        """Lines that only a program with settings has."""
+        """Lines only for a program with settings."""
         return () if self.settings is None else lines
 
     def _parameters(self) -> list[str]:
         if self.settings is None:
             return []
         arrays = [line for each in self.settings for line in (*comment(each.meaning), f"double {each.field}[{len(each.values)}];")]
-        notes = comment("What may be changed between two steps; enable is 0 or 1.")
+        notes = comment("Adjustable between two steps; enable is 0 or 1.")
         return [f"typedef double {self.name}_real;", "", *notes, *_struct(f"{self.name}_parameters", arrays, ("int enable;",))]
 
     def _first_settings(self) -> list[str]:
@@ -159,7 +159,7 @@ class Program:
 
 _NO_FAST_MATH = (
     "#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)",
-    "#error Compile without fast math: what is no finite number would not be seen, and sums would be in another order.",
+    "#error Compile without fast math: it disables the check for non-finite numbers and reorders sums.",
     "#endif",
 )
 _ROUNDED = (
@@ -199,7 +199,7 @@ def _array(state: State) -> str:
 
 
 def _initialise(state: State) -> list[str]:
-    """Every number of a group set, axis by axis."""
+    """Statements that set every number of a group, axis by axis."""
     if not all(state.sizes):
         return []
     names = "ij"[: len(state.sizes)]

@@ -1,4 +1,4 @@
-"""Pieces of C text: numbers, tables, comments, identifiers."""
+"""C text: numbers, tables, comments, identifiers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _WIDTH = 110
 
 
 def number(value: float) -> str:
-    """A constant of the type double, to the bit.
+    """Format a constant of the type double, exact to the bit.
 
     >>> number(0.1), number(-3.0), number(float("inf")), number(1e-300)
     ('0.1', '-3.0', 'HUGE_VAL', '1e-300')
@@ -26,7 +26,7 @@ def number(value: float) -> str:
 
 
 def table(name: str, values: Array) -> list[str]:
-    """A constant table of one or two axes.
+    """Format a constant table of one or two axes.
 
     >>> table("low", np.array([1.0, 2.0]))
     ['static const double low[2] = {1.0, 2.0};']
@@ -40,7 +40,7 @@ def table(name: str, values: Array) -> list[str]:
 
 
 def indent(lines: Iterable[str], depth: int = 1) -> list[str]:
-    """Lines moved in.
+    """Indent lines.
 
     >>> indent(["a;", ""])
     ['    a;', '']
@@ -49,7 +49,7 @@ def indent(lines: Iterable[str], depth: int = 1) -> list[str]:
 
 
 def comment(text: str) -> list[str]:
-    r"""A comment of one line or several, wrapped; what would end it early is taken apart, what cannot be seen is escaped.
+    r"""Comment of one or several lines, wrapped; an end mark inside is split, invisible characters are escaped.
 
     >>> comment("low is */ fine"), comment("name \u202e")
     (['/* low is * / fine */'], ['/* name \\u202e */'])
@@ -63,7 +63,7 @@ def comment(text: str) -> list[str]:
 
 
 def wrap(line: str, further: str = "    ") -> list[str]:
-    """Long statements over several lines, broken at blanks.
+    """Break long statements at blanks.
 
     >>> wrap("a;")
     ['a;']
@@ -77,9 +77,9 @@ def wrap(line: str, further: str = "    ") -> list[str]:
 
 
 def identifier(text: str) -> str:
-    """A name by which functions, types, files and an FMU can be called: letters, digits and underlines, begun by a letter.
+    """Convert a name to an identifier for functions, types, files and an FMU: letters, digits and underscores, first a letter.
 
-    Where it would mean something else (a word of C, a header of a system, a name of FMI) it is headed by `stage_`.
+    Reserved names (C keywords, system headers, FMI names) get the prefix `stage_`.
 
     >>> identifier("double triangle"), identifier("2nd"), identifier("int"), identifier("math"), identifier("fmi2")
     ('double_triangle', 'stage_2nd', 'stage_int', 'stage_math', 'stage_fmi2')

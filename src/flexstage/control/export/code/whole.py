@@ -1,4 +1,4 @@
-"""A whole loop as C: controller, hysteresis, plant and gauges in one step."""
+"""Whole loop as C: controller, hysteresis, plant and gauges in one step."""
 
 from __future__ import annotations
 
@@ -15,10 +15,9 @@ from flexstage.control.simulation.parts import parts
 
 
 def loop_code(given: Machine, name: str = "loop") -> Program:
-    """A machine as one program: reference, disturbances and noise in; poses, commands, volts, readings, strokes and motions out.
+    """Generate the program of a machine: reference, disturbances and noise in; poses, commands, voltages, readings, strokes, motions out.
 
-    Its step gives what one sample of `simulate` does, but for the order of summation. Raises `DesignError` for a hysteresis that has no
-    form in C.
+    One step equals one sample of `simulate`, except for the order of summation. Raises `DesignError` for a hysteresis without a C form.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -55,14 +54,14 @@ def loop_code(given: Machine, name: str = "loop") -> Program:
         step=given.step,
         inputs=(
             inputs(given)[0],
-            Signal("disturbance", given.disturbances, "disturbances, held over a sample"),
+            Signal("disturbance", given.disturbances, "disturbances, constant over a sample"),
             Signal("noise", given.read("noise."), "added to readings before rounding; NaN: lost"),
             Signal("added", given.strokes("noise."), "added to free strokes"),
         ),
         outputs=(
             *outputs(given),
-            Signal("rounded", given.read(), "readings as the gauges give them"),
-            Signal("stroke", given.strokes(), "free strokes that reach the stage"),
+            Signal("rounded", given.read(), "readings in the gauges' units"),
+            Signal("stroke", given.strokes(), "free strokes applied to the stage"),
             Signal("motion", given.motions, "true motions"),
         ),
         states=(State("x", (states,)), *controller_states(given, core), *kept),
@@ -91,7 +90,7 @@ def _stack(given: Machine) -> tuple[list[str], tuple[State, ...]]:
 
 
 def _moving(given: Machine) -> list[str]:
-    """Statements from what the amplifiers give to free strokes."""
+    """Statements from amplifier outputs to free strokes."""
     moved = "stack_move(state->stack[j], j, out->volts[j]) - unmoved[j]" if given.hysteresis is not None else "out->given[j]"
     head = f"for (j = 0; j < {len(given.actuators)}; j++)"
     if given.relief is None:

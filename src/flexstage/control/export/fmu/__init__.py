@@ -1,1 +1,1 @@
-"""Functional mock-up units: programs of loops for other simulators."""
+"""Functional mock-up units: loop programs for other simulators."""

@@ -16,7 +16,7 @@ _BASE = {"mass": "kg", "length": "m", "time": "s", "current": "A", "temperature"
 
 
 def guid(program: Program) -> str:
-    """An identifier that follows from the program's text: the same program, the same identifier.
+    """Identifier computed from the program's text: equal programs have equal identifiers.
 
     >>> from flexstage.control.export.code.product import Code
     >>> one, other = (guid(Program(name, (), 1.0, (), (), (), Code())) for name in ("one", "other"))
@@ -28,7 +28,7 @@ def guid(program: Program) -> str:
 
 
 def description(program: Program, sources: Iterable[str]) -> bytes:
-    """`modelDescription.xml` of a program: inputs and outputs are discrete real variables with units.
+    """Generate `modelDescription.xml` of a program: inputs and outputs are discrete real variables with units.
 
     >>> from flexstage.control.export.code.product import Code
     >>> description(Program("none", (), 1.0, (), (), (), Code()), ["none.c"])[:38]

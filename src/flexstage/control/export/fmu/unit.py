@@ -19,11 +19,11 @@ _FOLDERS = {("linux", "x86_64"): ("linux64", "so"), ("darwin", "x86_64"): ("darw
 
 
 def fmu(program: Program, *, sources_only: bool = False) -> bytes:
-    """An FMI 2.0 co-simulation unit (`.fmu`) of a program: `modelDescription.xml`, sources, and a library for this machine.
+    """Build an FMI 2.0 co-simulation unit (`.fmu`) of a program: `modelDescription.xml`, sources, and a library for this machine.
 
-    A step of the importer takes the samples that lie within it, at multiples of the program's own step from the start on; inputs are those
-    set before it. The same program and compiler give the same bytes. Raises `DesignError` where there is no compiler, or no name in FMI
-    2.0 for this kind of machine; `sources_only` leaves the library out.
+    A step of the importer includes the program's samples within it, at multiples of the program's step from the start; inputs are those set
+    before it. Equal program and compiler give equal bytes. Raises `DesignError` without a compiler, or if FMI 2.0 has no name for this
+    machine type; `sources_only` omits the library.
 
     >>> from flexstage.control.export.code.controller import controller_code
     >>> from flexstage.control.example import integral_loop
@@ -43,7 +43,7 @@ def fmu(program: Program, *, sources_only: bool = False) -> bytes:
 
 
 def fmu_sources(program: Program) -> dict[str, str]:
-    """The sources of a unit by file name: the program, the functions of FMI around it, and the header that joins them.
+    """Generate the sources of a unit by file name: the program, its FMI functions, and the header that connects them.
 
     >>> from flexstage.control.export.code.product import Code
     >>> sorted(fmu_sources(Program("none", (), 1.0, (), (), (), Code())))
@@ -57,7 +57,7 @@ def fmu_sources(program: Program) -> dict[str, str]:
 def _shared_name(program: Program) -> str:
     name, upper = program.name, program.name.upper()
     lines = [
-        "/* Which program the functions of FMI 2.0 are about. */",
+        "/* The program of the FMI 2.0 functions. */",
         "#ifndef MODEL_H",
         "#define MODEL_H",
         "",
@@ -85,13 +85,13 @@ def _count(signals: tuple[Signal, ...]) -> int:
 def _place() -> tuple[str, str]:
     kind = (sys.platform, platform.machine())
     if kind not in _FOLDERS:
-        what = f"FMI 2.0 has no name for libraries of {kind[0]} on {kind[1]}, or they are not built here"
+        what = f"no FMI 2.0 name for libraries of {kind[0]} on {kind[1]}, or no build for them"
         raise refuse("functional mock-up unit", what, "Write it with sources only: its importer compiles them")
     return _FOLDERS[kind]
 
 
 def _zip(members: Mapping[str, bytes]) -> bytes:
-    """An archive without times: the same members give the same bytes."""
+    """Archive without times: equal members give equal bytes."""
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, value in members.items():

@@ -1,1 +1,1 @@
-"""Models of hysteresis and their inverse."""
+"""Hysteresis models and their inverse."""

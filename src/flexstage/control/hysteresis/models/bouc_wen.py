@@ -1,4 +1,4 @@
-"""The Bouc-Wen model: a hysteresis of another kind, to test compensation honestly."""
+"""The Bouc-Wen model: an independent hysteresis model for tests of compensation."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from flexstage.control.hysteresis.models.protocol import Hysteresis, freeze_by_a
 from flexstage.control.hysteresis.models.shape import Range, major_loop
 
 _TINY = 1e-300
-"""A rate in place of 0: the formulas have their limits there, to rounding."""
+"""A rate that replaces 0: the formulas reach their limits there, to rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class BoucWen(Hysteresis):
-    """w = offset + d v - h,  dh/dt = A dv/dt - beta |dv/dt| h - gamma dv/dt |h|, each (axes,); h(v = 0) = 0 at rest.
+    """Bouc-Wen hysteresis w = offset + d v - h,  dh/dt = A dv/dt - beta |dv/dt| h - gamma dv/dt |h|, each (axes,); initially h(v = 0) = 0.
 
     (Low and Guo, J. Microelectromech. Syst. 4, 1995, 230-237, exponent 1.) `gain` d and `lag` A in m/V, `beta` and `gamma` in 1/V. Rate
-    independent; where the volts move monotonically by e = |dv|, with s = sign(dv) and g = s h, dg/de = A - (beta -+ gamma) g for g below
-    and above 0, hence exactly, c = beta - gamma and C = beta + gamma:
+    independent. For a monotonic voltage change e = |dv|, s = sign(dv) and g = s h, dg/de = A - (beta -+ gamma) g for g below and above 0.
+    Exact solution with c = beta - gamma and C = beta + gamma:
 
         g < 0:   g <- g e^{-c e} + A (1 - e^{-c e})/c   up to e* = ln(1 - c g/A)/c, where g is 0
         g >= 0:  g <- g e^{-C e} + A (1 - e^{-C e})/C   over the rest
 
-    The state (axes, 2) is (v, h). Its inner loops do not close, which no Prandtl-Ishlinskii model follows. Raises `DesignError` for
-    -beta < gamma <= beta broken (loops would not dissipate), and where the stroke would fall while the volts rise.
+    The state (axes, 2) is (v, h). Its inner loops do not close, which no Prandtl-Ishlinskii model reproduces. Raises `DesignError` unless
+    -beta < gamma <= beta (otherwise loops do not dissipate), and for a stroke that falls with rising voltage.
     """
 
     gain: Array
@@ -39,7 +39,6 @@ class BoucWen(Hysteresis):
     offset: Array | float = 0.0
 
     def __post_init__(self) -> None:
-        """Make all (axes,) and read-only, and check them."""
         freeze_by_axis(self)
         require(_findings(self))
 
@@ -49,11 +48,11 @@ class BoucWen(Hysteresis):
         return len(self.gain)
 
     def start(self, value: Array) -> Array:
-        """The state (axes, 2) after a monotone travel from rest at 0 V to the volts (axes,)."""
+        """State (axes, 2) after a monotonic path from 0 V to the voltages (axes,)."""
         return self.step(np.zeros((self.axes, 2)), np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[0]
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
-        """The next volts and lag (axes, 2) and the strokes (axes,) for the next volts (axes,)."""
+        """Return the next state (axes, 2) of voltage and lag, and the strokes (axes,), for the next voltages (axes,)."""
         volts, lag = state.T
         slow, fast = np.maximum(self.beta - self.gamma, _TINY), self.beta + self.gamma
         sign, way = np.sign(value - volts), np.abs(value - volts)
@@ -76,21 +75,21 @@ def _findings(model: BoucWen) -> Iterator[Finding]:
         gain, lag, beta, gamma = (float(getattr(model, name)[axis]) for name in ("gain", "lag", "beta", "gamma"))
         where = f"Bouc-Wen model of axis {axis}"
         if not np.all(np.isfinite([gain, lag, beta, gamma])) or lag <= 0.0:
-            yield Finding(where, f"lag is {lag:g} m/V, or a number is not finite", "Give finite numbers, the lag above 0")
+            yield Finding(where, f"lag is {lag:g} m/V (expected above 0), or a number is not finite", "Use finite numbers, the lag above 0")
         elif not -beta < gamma <= beta:
             what = f"gamma is {gamma:g} 1/V, not above {-beta:g} and at most {beta:g} (beta): its loops would not dissipate"
             yield Finding(where, what, "Choose -beta < gamma <= beta")
         elif 2.0 * lag * beta / (beta + gamma) > gain * (1.0 + 1e-12):
-            what = f"just after a reversal h moves by {2.0 * lag * beta / (beta + gamma):g} m/V, more than the gain {gain:g} m/V"
-            yield Finding(where, f"{what}: the stroke would fall while the volts rise", "Choose a smaller lag, which makes narrower loops")
+            what = f"just after a reversal h changes by {2.0 * lag * beta / (beta + gamma):g} m/V, more than the gain {gain:g} m/V"
+            yield Finding(where, f"{what}: the stroke would fall with rising voltage", "Choose a smaller lag, which makes narrower loops")
 
 
 @check_arguments
 def bouc_wen(stroke: float, volts: Range, width: float, *, sharpness: float = 4.0, skew: float = 0.5) -> BoucWen:
-    """A Bouc-Wen stack of this `stroke` [m] between `volts`, whose settled major loop is `width` (0.15 for 15 %) of the stroke wide.
+    """Construct a Bouc-Wen stack of this `stroke` [m] between `volts`, with a settled major loop of relative `width` (0.15: 15 %).
 
-    `sharpness` is beta times the range (the larger, the sooner h saturates), `skew` is gamma/beta. All loops scale with the lag, so that
-    lag and gain follow from two linear equations. Raises `DesignError` where no such loop rises everywhere.
+    `sharpness` is beta times the range (the larger, the earlier h saturates), `skew` is gamma/beta. All loops scale with the lag: lag and
+    gain follow from two linear equations. Raises `DesignError` if no such loop rises everywhere.
 
     >>> model = bouc_wen(150e-6, (0.0, 1000.0), 0.15)
     >>> loop = major_loop(model, (0.0, 1000.0), count=101)
@@ -99,8 +98,8 @@ def bouc_wen(stroke: float, volts: Range, width: float, *, sharpness: float = 4.
     """
     span = volts[1] - volts[0]
     if not (stroke > 0.0 and span > 0.0 and 0.0 < width < 1.0):
-        what = f"stroke {stroke:g} m, {volts[0]:g} V to {volts[1]:g} V and width {width:g} make no loop"
-        raise refuse("Bouc-Wen model", what, "Give a stroke above 0, volts that ascend, and a width between 0 and 1")
+        what = f"no loop (got stroke {stroke:g} m, {volts[0]:g} V to {volts[1]:g} V, width {width:g})"
+        raise refuse("Bouc-Wen model", what, "Use a stroke above 0, ascending volts, and a width between 0 and 1")
     beta = sharpness / span
     largest = 0.5 * (1.0 + skew)
     unit = major_loop(_stack(1.0, largest, beta, skew), volts, count=201, cycles=6)

@@ -1,4 +1,4 @@
-"""Envelopes: piecewise straight functions without memory, before and after the plays of a hysteresis."""
+"""Envelopes: piecewise linear functions without memory, before and after the plays of a hysteresis."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from flexstage.base.number import Array, freeze
 
 
 def freeze_rows(record: Any, *names: str) -> None:
-    """Make arrays of a frozen record (axes, m), and read-only."""
+    """Convert arrays of a frozen record to (axes, m), and make them read-only."""
     for name in names:
         object.__setattr__(record, name, freeze(np.atleast_2d(np.asarray(getattr(record, name), dtype=float))))
 
 
 @dataclass(frozen=True, eq=False)
 class Envelope:
-    """A piecewise straight function for each axis: through `values` (axes, m) at `knots` (axes, m), m >= 2, end slopes carried on.
+    """Piecewise linear function per axis, through `values` (axes, m) at `knots` (axes, m), m >= 2, with extrapolated end slopes.
 
-    With slopes s_j = (y_{j+1} - y_j)/(k_{j+1} - k_j) it is computed, here and wherever else it is, as
-    g(x) = y_0 + s_0 (x - k_0) + sum_{j=1}^{m-2} (s_j - s_{j-1}) max(x - k_j, 0).
+    With slopes s_j = (y_{j+1} - y_j)/(k_{j+1} - k_j) the order of evaluation, also in generated code, is g(x) = y_0 + s_0 (x - k_0) +
+    sum_{j=1}^{m-2} (s_j - s_{j-1}) max(x - k_j, 0).
 
-    The inverse of an ascending one swaps knots and values. One axis may be given as (m,); it then serves any number of axes alike. Raises
-    `DesignError` for knots that do not ascend, shapes that differ and numbers that are not finite.
+    The inverse of an ascending function swaps knots and values. A single axis may have shape (m,), and then serves any number of axes.
+    Raises `DesignError` for knots that do not ascend, different shapes, and numbers that are not finite.
     """
 
     knots: Array
@@ -34,7 +34,6 @@ class Envelope:
     changes: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        """Make both (axes, m) and read-only, and check them."""
         freeze_rows(self, "knots", "values")
         require(_findings(self))
         slopes = self.slopes
@@ -42,7 +41,7 @@ class Envelope:
 
     @property
     def axes(self) -> int:
-        """Number of axes it tells apart."""
+        """Number of distinct axes."""
         return len(self.knots)
 
     @property
@@ -63,21 +62,23 @@ class Envelope:
 def _findings(envelope: Envelope) -> Iterator[Finding]:
     knots, values = envelope.knots, envelope.values
     if knots.shape != values.shape or knots.ndim != 2 or knots.shape[1] < 2:
-        yield Finding("envelope", f"its knots are {knots.shape} and its values {values.shape}", "Give as many of both, at least two")
+        yield Finding(
+            "envelope", f"different lengths (got knots {knots.shape}, values {values.shape})", "Use equal numbers of both, at least two"
+        )
     elif not np.all(np.isfinite(knots)) or not np.all(np.isfinite(values)):
-        yield Finding("envelope", "a knot or a value is not finite", "Mend the numbers")
+        yield Finding("envelope", "a knot or a value is not finite", "Correct the numbers")
     else:
         for axis, knot in np.argwhere(np.diff(knots) <= 0.0):
-            what = f"knot {knot + 1} of axis {axis} at {knots[axis, knot + 1]:g} follows {knots[axis, knot]:g}"
-            yield Finding("envelope", what, "Let the knots ascend")
+            what = f"knots must ascend (got knot {knot + 1} of axis {axis} at {knots[axis, knot + 1]:g} after {knots[axis, knot]:g})"
+            yield Finding("envelope", what, "Sort the knots")
 
 
 IDENTITY = Envelope(np.array([0.0, 1.0]), np.array([0.0, 1.0]))
-"""Passes all on as it is."""
+"""Identity function."""
 
 
 def straight(slope: Sequence[float] | Array, start: Sequence[float] | Array | float = 0.0) -> Envelope:
-    """Straight envelopes y = `start` + `slope` x, one an axis.
+    """Construct linear envelopes y = `start` + `slope` x, one per axis.
 
     >>> straight([2.0, 1.0], [1.0, 0.0]).at(np.array([3.0, 3.0])).tolist()
     [7.0, 3.0]
@@ -99,14 +100,14 @@ def invert(envelope: Envelope) -> Envelope:
 
 
 def descent_findings(envelope: Envelope, where: str) -> list[Finding]:
-    """A finding for each piece of an envelope that does not ascend: there no value has one argument.
+    """Findings for each piece of an envelope that does not ascend: the inverse is not unique there.
 
     >>> descent_findings(Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 1.0]), "envelope")[0].what
-    'from 1 to 2 on axis 0 it goes from 2 to 1, and only what ascends can be inverted'
+    'from 1 to 2 on axis 0 it goes from 2 to 1 (expected ascending values)'
     """
     found = []
     for axis, piece in np.argwhere(np.diff(envelope.values) <= 0.0):
         (left, right), (low, high) = (each[axis, piece : piece + 2] for each in (envelope.knots, envelope.values))
-        what = f"from {left:g} to {right:g} on axis {axis} it goes from {low:g} to {high:g}, and only what ascends can be inverted"
-        found.append(Finding(where, what, "Keep the input to where it ascends, or identify from a record that ascends"))
+        what = f"from {left:g} to {right:g} on axis {axis} it goes from {low:g} to {high:g} (expected ascending values)"
+        found.append(Finding(where, what, "Limit the input to the ascending range, or identify from a record that ascends"))
     return found

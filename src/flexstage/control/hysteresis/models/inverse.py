@@ -1,4 +1,4 @@
-"""The exact inverse of a Prandtl-Ishlinskii model: which input makes the wanted output."""
+"""The exact inverse of a Prandtl-Ishlinskii model: the input for a required output."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlin
 
 @check_arguments
 def inverse(model: PrandtlIshlinskii) -> PrandtlIshlinskii:
-    """The model whose run undoes that of `model`, sample by sample and exactly: again plays, between the envelopes' inverses.
+    """Compute the model that inverts `model` exactly, sample by sample: plays between the envelopes' inverses.
 
     With P_j = p_0 + ... + p_j (the slope of the curve from rest beyond r_j), its thresholds, weights and envelopes are
 
         s_j = sum_{i<=j} p_i (r_j - r_i),   q_0 = 1/p_0,   q_j = -p_j / (P_j P_{j-1}),   a' = b^-1,   b' = a^-1
 
-    (Kuhnen 2003, eqs. 17 to 19). It exists exactly where every P_j > 0 and both envelopes ascend; raises `DesignError` naming each
-    threshold or piece where it does not. Both start from rest together; `inverse_state` starts it beside a model that is elsewhere.
+    (Kuhnen 2003, eqs. 17 to 19). It exists if and only if every P_j > 0 and both envelopes ascend; raises `DesignError` for each threshold
+    or piece that violates this. Both start from the unloaded state; `inverse_state` starts it at another state.
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> wanted = np.array([0.0, 70e-6, 60e-6, 5e-6])
@@ -38,7 +38,7 @@ def inverse(model: PrandtlIshlinskii) -> PrandtlIshlinskii:
 
 
 def inverse_state(model: PrandtlIshlinskii, state: Array) -> Array:
-    """The state (axes, n) of `inverse(model)` that belongs to a state of the model: z'_j = P_j z_j + sum_{i>j} p_i z_i.
+    """Compute the state (axes, n) of `inverse(model)` for a state of the model: z'_j = P_j z_j + sum_{i>j} p_i z_i.
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> state, there = model.step(model.start(np.array([500.0])), np.array([400.0]))
@@ -50,10 +50,10 @@ def inverse_state(model: PrandtlIshlinskii, state: Array) -> Array:
 
 
 def inverse_findings(model: PrandtlIshlinskii) -> list[Finding]:
-    """Why a model has no inverse: thresholds beyond which it does not rise, and pieces of envelopes that do not ascend.
+    """Findings for a model without inverse: thresholds beyond which it does not rise, and pieces of envelopes that do not ascend.
 
     >>> inverse_findings(PrandtlIshlinskii([0.0, 50.0, 100.0], [1e-7, 5e-8, -2e-7]))[0].what
-    'the weights up to 2 (threshold 100) add up to -5e-08: beyond it the output does not rise with the input, and no inverse exists'
+    'the weights up to 2 (threshold 100) sum to -5e-08: beyond it the output does not rise with the input, and no inverse exists'
     """
     around = [*descent_findings(model.before, "envelope before the plays"), *descent_findings(model.after, "envelope after the plays")]
     return [*_slope_findings(model), *around]
@@ -63,11 +63,11 @@ def _slope_findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
     partial = np.cumsum(model.weights, axis=1)
     for axis, place in np.argwhere(~(partial > 0.0)):
         threshold = model.thresholds[axis, place]
-        what = f"the weights up to {place} (threshold {threshold:g}) add up to {partial[axis, place]:g}"
+        what = f"the weights up to {place} (threshold {threshold:g}) sum to {partial[axis, place]:g}"
         reason = f"{what}: beyond it the output does not rise with the input, and no inverse exists"
-        advice = "Identify with weights of 0 or more and the first positive, or leave this play out"
+        advice = "Identify with weights of 0 or more, the first positive, or omit this play"
         yield Finding(f"hysteresis of axis {axis}", reason, advice)
 
 
 hysteresis_inverse = inverse
-"""`inverse` under the name it has in `flexstage` itself."""
+"""`inverse` under its name in `flexstage`."""

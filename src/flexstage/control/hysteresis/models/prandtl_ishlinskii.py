@@ -1,4 +1,4 @@
-"""The generalised Prandtl-Ishlinskii model: plays side by side between two envelopes."""
+"""The generalised Prandtl-Ishlinskii model: parallel plays between two envelopes."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from flexstage.control.hysteresis.models.protocol import Hysteresis
 
 @dataclass(frozen=True, eq=False)
 class PrandtlIshlinskii(Hysteresis):
-    """y = b( sum_i p_i F_{r_i}[a(x)] ): plays F of thresholds r_i weighted by p_i, envelopes a before and b after them.
+    """Prandtl-Ishlinskii hysteresis y = b( sum_i p_i F_{r_i}[a(x)] ): plays F, thresholds r_i, weights p_i, envelopes a before, b after.
 
-    One sample, for each axis, in this order (what code made elsewhere must repeat):
+    One sample, for each axis, in this order (also in generated code):
 
         u   = a(x)
         z_i = max(u - r_i, min(u + r_i, z_i))     for every i, z_i the state
         y   = b(sum_i p_i z_i)
 
-    (Kuhnen, Eur. J. Control 9, 2003, 407-418, with the envelopes of Al Janaideh, Rakheja and Su, IEEE/ASME Trans. Mechatronics 16,
-    2011, 734-744.) `thresholds` (axes, n) ascend from r_0 = 0, which is the part without memory; `weights` (axes, n). Of a stack:
-    x volts, `before` volts to volts, thresholds in V, weights in m/V, `after` m to m with the offset of the gauge, y metres of free
-    stroke. Its inverse is of the same form with volts and metres exchanged (`inverse`). At rest all z_i = 0. Where all weights are
-    positive and `before` ascends, each loop is run through with the stroke behind the volts, at an energy of 0 or more.
+    (Kuhnen, Eur. J. Control 9, 2003, 407-418, with the envelopes of Al Janaideh, Rakheja and Su, IEEE/ASME Trans. Mechatronics 16, 2011,
+    734-744.) `thresholds` (axes, n) ascend from r_0 = 0, the part without memory; `weights` (axes, n). For a stack x are volts, `before`
+    maps volts to volts, thresholds are in V, weights in m/V. `after` maps m to m with the gauge's offset, and y is the free stroke in
+    metres. The inverse has the same form with volts and metres exchanged (`inverse`). Initially all z_i = 0. With positive weights and
+    ascending `before`, the stroke lags the voltage in each loop, with dissipated energy of 0 or more.
 
-    One axis may be given as (n,). Raises `DesignError` for thresholds that do not ascend from 0, and shapes that differ.
+    A single axis may have shape (n,). Raises `DesignError` for thresholds that do not ascend from 0, and different shapes.
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> (1e6 * model.run(np.array([0.0, 500.0, 400.0, 0.0]))).round(9).tolist()
@@ -42,7 +42,6 @@ class PrandtlIshlinskii(Hysteresis):
     after: Envelope = IDENTITY
 
     def __post_init__(self) -> None:
-        """Make the arrays (axes, n) and read-only, and check them."""
         freeze_rows(self, "thresholds", "weights")
         require(_findings(self))
 
@@ -52,12 +51,12 @@ class PrandtlIshlinskii(Hysteresis):
         return len(self.thresholds)
 
     def start(self, value: Array) -> Array:
-        """Outputs of the plays (axes, n) after a monotone travel from rest, all at 0, to the input (axes,)."""
+        """Play outputs (axes, n) after a monotonic path from the initial state, all 0, to the input (axes,)."""
         effective = self.before.at(np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[:, None]
         return np.maximum(effective - self.thresholds, np.minimum(effective + self.thresholds, 0.0))
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
-        """The next outputs of the plays (axes, n) and the output (axes,) for the next input (axes,)."""
+        """Return the next play outputs (axes, n) and the output (axes,) for the next input (axes,)."""
         effective = self.before.at(value)[:, None]
         plays = np.maximum(effective - self.thresholds, np.minimum(effective + self.thresholds, state))
         return plays, self.after.at(np.vecdot(self.weights, plays))
@@ -66,16 +65,24 @@ class PrandtlIshlinskii(Hysteresis):
 def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
     thresholds, weights = model.thresholds, model.weights
     if thresholds.shape != weights.shape or thresholds.ndim != 2 or not thresholds.size:
-        yield Finding("hysteresis", f"thresholds are {thresholds.shape}, weights {weights.shape}", "Give as many of both, at least one")
+        yield Finding(
+            "hysteresis",
+            f"different lengths (got thresholds {thresholds.shape}, weights {weights.shape})",
+            "Use equal numbers of both, at least one",
+        )
         return
     if not np.all(np.isfinite(thresholds)) or not np.all(np.isfinite(weights)):
-        yield Finding("hysteresis", "a threshold or a weight is not finite", "Mend the numbers")
+        yield Finding("hysteresis", "a threshold or a weight is not finite", "Correct the numbers")
     for axis in np.flatnonzero(thresholds[:, 0] != 0.0):
-        what = f"the first threshold of axis {axis} is {thresholds[axis, 0]:g}"
-        yield Finding("thresholds", what, "Let it be 0: the part without memory, of whatever weight")
+        what = f"the first threshold of axis {axis} must be 0 (got {thresholds[axis, 0]:g})"
+        yield Finding("thresholds", what, "Add the threshold 0: the part without memory, of any weight")
     for axis, place in np.argwhere(np.diff(thresholds) <= 0.0):
-        what = f"threshold {place + 1} of axis {axis}, {thresholds[axis, place + 1]:g}, follows {thresholds[axis, place]:g}"
-        yield Finding("thresholds", what, "Let them ascend")
+        what = f"thresholds of axis {axis} must ascend (got {thresholds[axis, place + 1]:g} after {thresholds[axis, place]:g})"
+        yield Finding("thresholds", what, "Sort the thresholds")
     for name, envelope in (("before", model.before), ("after", model.after)):
         if envelope.axes not in (1, model.axes):
-            yield Finding(f"envelope {name}", f"it has {envelope.axes} axes, the plays {model.axes}", "Give one to each, or one to all")
+            yield Finding(
+                f"envelope {name}",
+                f"wrong number of axes (got {envelope.axes}, expected {model.axes} as the plays)",
+                "Use one per axis, or one for all",
+            )

@@ -1,4 +1,4 @@
-"""What every hysteresis offers to a loop: a start, a step and a run."""
+"""Protocol of hysteresis models in a loop: a start, a step and a run."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from flexstage.base.number import Array, freeze
 
 
 class Hysteresis(Protocol):
-    """Hystereses of `axes` actuators side by side, rate independent: the output depends on the order of the inputs, not on their times.
+    """Rate-independent hysteresis of `axes` actuators: the output depends on the order of the inputs, not on their times.
 
-    Between two samples the input is taken to move monotonically, so that one update a sample is exact where a converter holds the
-    input. Inputs and outputs are (axes,), plants take volts and give metres of free stroke; the form of the state is the model's own.
+    The input is monotonic between two samples, so that one update per sample is exact behind a hold. Inputs and outputs are (axes,); plants
+    map volts to metres of free stroke. The state's form belongs to the model.
     """
 
     @property
@@ -24,11 +24,11 @@ class Hysteresis(Protocol):
         ...
 
     def start(self, value: Array) -> Array:
-        """The state after a monotone travel from the state of rest to the input `value` (axes,)."""
+        """State after a monotonic path from the initial state to the input `value` (axes,)."""
         ...
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
-        """The next state and the output (axes,) for the next input (axes,); `state` itself is left as it is.
+        """Return the next state and the output (axes,) for the next input (axes,); `state` is not modified.
 
         >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
         >>> (1e6 * PrandtlIshlinskii([0.0], [2e-7]).step(np.zeros((1, 1)), np.array([100.0]))[1]).round(9).tolist()
@@ -37,7 +37,7 @@ class Hysteresis(Protocol):
         ...
 
     def run(self, values: Array, state: Array | None = None) -> Array:
-        """Outputs for inputs (k, axes), or (k,) of a single actuator, from `state`, or else from rest.
+        """Simulate outputs for inputs (k, axes), or (k,) of a single actuator, from `state` (default: the initial state).
 
         Raises `DesignError` for inputs of another shape and for numbers that are not finite.
 
@@ -49,7 +49,7 @@ class Hysteresis(Protocol):
         if values.shape[1:] != (self.axes,) and not (values.ndim == 1 and self.axes == 1):
             raise refuse("hysteresis", f"inputs are {values.shape} for {self.axes} axes", f"Give (samples, {self.axes})")
         if not np.all(np.isfinite(values)):
-            raise refuse("hysteresis", "an input is not finite", "Mend the inputs")
+            raise refuse("hysteresis", "an input is not finite", "Correct the inputs")
         rows = values.reshape(len(values), self.axes)
         found = np.empty_like(rows)
         for place, value in enumerate(rows):
@@ -58,7 +58,7 @@ class Hysteresis(Protocol):
 
 
 def freeze_by_axis(model: Any) -> None:
-    """Make all numbers of a dataclass (axes,) and read-only.
+    """Convert all numbers of a dataclass to (axes,), read-only.
 
     >>> from flexstage.control.hysteresis.models.bouc_wen import BoucWen
     >>> BoucWen(np.array([1e-7, 2e-7]), 4e-8, 4e-3, 2e-3).lag.tolist()

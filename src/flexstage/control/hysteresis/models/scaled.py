@@ -1,4 +1,4 @@
-"""One stack's hysteresis for others of its kind: the same loop over other volts, with other strokes."""
+"""Hysteresis of one stack scaled to others of its type: the same loop over other voltages and strokes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flexstage.control.hysteresis.models.shape import Range, major_loop
 
 @dataclass(frozen=True, eq=False)
 class Stacks:
-    """Ranges of volts `low` and `high` (n,) [V] and full `stroke` (n,) [m] of some stacks."""
+    """Voltage ranges `low` to `high` (n,) [V] and full `stroke` (n,) [m] of several stacks."""
 
     low: Array
     high: Array
@@ -23,11 +23,11 @@ class Stacks:
 
 
 def scale_to_stacks(model: PrandtlIshlinskii, volts: Range, stacks: Stacks) -> PrandtlIshlinskii:
-    """A model of one axis over `volts` as one of n axes whose major loops have the same form over each stack's own range and stroke.
+    """Scale a one-axis model over `volts` to n axes: major loops of the same form over each stack's own range and stroke.
 
-    Volts and strokes are stretched: knots of the envelope before the plays, and values of the one after them; thresholds and weights stay.
-    The full stroke is that of the settled loop, counted from 0 at its lower end. Raises `DesignError` for a model of more axes, and for
-    ranges and strokes that are none.
+    Scales the knots of the envelope before the plays, and values of the envelope after them; thresholds and weights do not change. The full
+    stroke is that of the settled loop, from 0 at its lower end. Raises `DesignError` for a model of more axes, and for invalid ranges and
+    strokes.
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> two = Stacks(np.array([0.0, -100.0]), np.array([1000.0, 400.0]), np.array([150e-6, 30e-6]))
@@ -52,9 +52,9 @@ def scale_to_stacks(model: PrandtlIshlinskii, volts: Range, stacks: Stacks) -> P
 def _findings(volts: Range, stacks: Stacks) -> list[Finding]:
     found = []
     if not volts[0] < volts[1]:
-        found.append(Finding("volts", f"{volts[0]:g} V to {volts[1]:g} V is no range", "Give the lower voltage first"))
+        found.append(Finding("volts", f"no range (got {volts[0]:g} V to {volts[1]:g} V)", "Use the lower voltage first"))
     for axis, (low, high, stroke) in enumerate(zip(stacks.low, stacks.high, stacks.stroke, strict=True)):
         if not (low < high and stroke > 0.0):
-            what = f"{low:g} V to {high:g} V and a stroke of {stroke:g} m are none of a stack"
-            found.append(Finding(f"stack {axis}", what, "Give volts that ascend and a positive stroke"))
+            what = f"no stack range (got {low:g} V to {high:g} V and a stroke of {stroke:g} m)"
+            found.append(Finding(f"stack {axis}", what, "Use ascending volts and a positive stroke"))
     return found

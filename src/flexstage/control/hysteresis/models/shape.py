@@ -16,9 +16,9 @@ Range: TypeAlias = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class MajorLoop:
-    """The settled loop over a range: outputs (k, axes) on the way `up` and `down` at inputs `volts` (k,) that ascend.
+    """Settled major loop over a range: outputs (k, axes) of the branches `up` and `down` at ascending inputs `volts` (k,).
 
-    `stroke` (axes,) is the output between the ends, `width` (axes,) the largest distance of the branches at one input, as a part of it.
+    `stroke` (axes,) is the output span between the ends, `width` (axes,) the largest distance of the branches at one input, relative to it.
     """
 
     volts: Array
@@ -27,17 +27,17 @@ class MajorLoop:
 
     @property
     def stroke(self) -> Array:
-        """Output between the ends of the loop (axes,)."""
+        """Output span between the ends of the loop (axes,)."""
         return self.up[-1] - self.up[0]
 
     @property
     def width(self) -> Array:
-        """Largest distance of the branches at one input (axes,), as a part of the stroke."""
+        """Largest distance of the branches at one input (axes,), relative to the stroke."""
         return np.max(self.down - self.up, axis=0) / self.stroke
 
 
 def major_loop(model: Hysteresis, volts: Range, count: int = 401, cycles: int = 8) -> MajorLoop:
-    """The loop of a hysteresis between two inputs after `cycles` cycles, at `count` inputs a branch.
+    """Compute the loop of a hysteresis between two inputs after `cycles` cycles, at `count` inputs per branch.
 
     >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
     >>> loop = major_loop(PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8]), (0.0, 1000.0))

@@ -1,4 +1,4 @@
-"""A stack's test, drawn: its loops with the model over them, the error, and the straight line that the inverse makes of them."""
+"""Figure of a stack's test: loops with the model, the error, and the line that the inverse makes of them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _POINTS = 900
 
 
 def stack_figure(test: StackTest) -> Any:
-    """Strokes over volts (record and model), the model's error in per cent of the stroke, and the inverse's volts over those applied.
+    """Plot stroke over voltage (record and model), the model error in per cent of the stroke, and the inverse's over the applied voltage.
 
     >>> from flexstage.control.hysteresis.example import example_test
     >>> len(stack_figure(example_test()).axes)
@@ -44,7 +44,7 @@ def stack_figure(test: StackTest) -> Any:
 
 
 def _drawn_rows(volts: Array, kept: Array) -> Array:
-    """About so many of the samples, all turning points among them."""
+    """Indices of about so many samples, with all turning points."""
     even = kept[:: max(1, len(kept) // _POINTS)]
     turns = 1 + np.flatnonzero(np.diff(np.sign(np.diff(volts))) != 0.0)
     wanted = turns[turns >= kept[0]] if len(turns) < _POINTS else turns[:0]

@@ -1,4 +1,4 @@
-"""Tables of a stack's test: how well its hysteresis is known, and its plays."""
+"""Tables of a stack's test: accuracy of the hysteresis model, and its plays."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from flexstage.show.table import Table, array_table, result_table
 
 
 def stack_tables(test: StackTest) -> tuple[Table | None, Table]:
-    """The range of a record and the errors of the model; the thresholds and weights of its plays.
+    """Tabulate the range of a record, the model errors, and the thresholds and weights of the plays.
 
     >>> from flexstage.control.hysteresis.example import example_test
     >>> [table.texts()[1] for table in stack_tables(example_test()) if table is not None]

@@ -1,4 +1,4 @@
-"""The block diagram of a loop: what stands between the commanded and the true pose, the computer's part set apart."""
+"""Block diagram of a loop, from the commanded to the true pose, with the computer's part shaded."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SPELLED = {"R_a": "R\u2090", "R_s^-1": "R\u209b⁻¹"}
 
 @dataclass(frozen=True)
 class Block:
-    """A block: its name, what it is here (lines of a few words), and whether the computer does it."""
+    """Block of a diagram: its name, its text (lines of a few words), and whether the computer computes it."""
 
     name: str
     detail: str = ""
@@ -29,10 +29,10 @@ class Block:
 
 @dataclass(frozen=True)
 class Diagram:
-    """What a diagram says: blocks from the error to the pose, blocks back from the pose to its estimate, in the order of the signal.
+    """Content of a block diagram: blocks from error to pose, and from pose to its estimate, in signal order.
 
-    `onto` are signals that enter from outside, each with the name of the block it enters. `fed_forward` says that the reference passes the
-    controller by. Without `closed` the loop ends at the pose.
+    `onto` are external signals, each with the name of the block it enters. `fed_forward`: the reference bypasses the controller. Without
+    `closed` the loop ends at the pose.
     """
 
     forward: tuple[Block, ...]
@@ -43,7 +43,7 @@ class Diagram:
 
 
 def loop_diagram(diagram: Diagram) -> Any:
-    """The block diagram as a matplotlib Figure: error to pose above, pose to its estimate below; shaded what the computer does.
+    """Plot the block diagram as a matplotlib Figure: error to pose above, pose to its estimate below; the computer's part is shaded.
 
     >>> blocks = (Block("controller", "PI", True), Block("stage"))
     >>> len(loop_diagram(Diagram(blocks, (Block("gauges"), Block("R_s^-1", digital=True)))).axes)
@@ -68,7 +68,7 @@ def loop_diagram(diagram: Diagram) -> Any:
 
 
 def _places(blocks: Sequence[Block], edge: float) -> list[float]:
-    """Middles of blocks: the computer's set evenly left of the edge, the others right of it."""
+    """Centres of blocks: the computer's spaced evenly left of the edge, the others right of it."""
     inside = sum(block.digital for block in blocks)
     left = _spread(_LEFT + 0.1, edge, inside)
     return [*left, *_spread(edge, _RIGHT, len(blocks) - inside)]
@@ -102,7 +102,7 @@ def _forward(axes: Any, diagram: Diagram, places: Sequence[float], width: float)
 
 
 def _chain(axes: Any, blocks: Sequence[Block], places: Sequence[float], start: tuple[float, float], half: float) -> float:
-    """Blocks of a half width one after the other, to the left if it is negative; returns where the last one ends."""
+    """Draw blocks of a half width in series, to the left if it is negative; returns the end position."""
     x, level = start
     for block, place in zip(blocks, places, strict=True):
         _arrow(axes, (x, level), (place - half, level))
@@ -112,7 +112,7 @@ def _chain(axes: Any, blocks: Sequence[Block], places: Sequence[float], start: t
 
 
 def _feed_forward(axes: Any, places: Sequence[float], width: float) -> None:
-    """The reference led over the first block, to a sum behind it."""
+    """Draw the feedforward path over the first block, to a sum behind it."""
     behind = 0.5 * (places[0] + places[1]) if len(places) > 1 else places[0] + 0.6 * width
     over = _UPPER + 0.44
     axes.plot([0.28, 0.28, behind], [_UPPER, over, over], color=INK, linewidth=0.8)

@@ -1,4 +1,4 @@
-"""Loops over frequency: open loops, sensitivities, poles."""
+"""Frequency-domain figures of loops: open loops, sensitivities, poles."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LEAST = 1e-300
 
 
 def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) -> Any:
-    """Open loops, each alone with the others closed: magnitude over phase, gain 1 and -180 degrees drawn in, modes and `spots` marked."""
+    """Plot open loops, each with the others closed (Nichols plot): magnitude over phase, gain 1 and -180 degrees, modes and `spots`."""
     with style_context():
         figure = canvas(FULL, 3.9)
         grid = panels(figure, 2, 1, Margins(left=0.68, top=0.32, down=0.12), heights=[1.6, 1.0])
@@ -46,7 +46,7 @@ def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) ->
 
 
 def sensitivity_figure(found: Curves, highest: float) -> Any:
-    """Sensitivity |S| of each loop and complementary sensitivity |T|, with the highest peak of S allowed."""
+    """Plot the sensitivity |S| of each loop and complementary sensitivity |T|, with the limit for the peak of S."""
     own = np.diagonal(found.sensitivity, axis1=1, axis2=2)
     with style_context():
         figure = canvas(FULL, 2.5)
@@ -66,7 +66,7 @@ def sensitivity_figure(found: Curves, highest: float) -> Any:
 
 
 def measured_figure(found: ReadLines, names: tuple[str, ...]) -> Any:
-    """|S| of every loop by measured responses, shaded by its 95 % interval, over fit and model; one panel a loop."""
+    """Plot |S| of every loop by measured responses, shaded 95 % interval, over fit and model; one panel per loop."""
     columns = min(3, len(names))
     rows = -(-len(names) // columns)
     with style_context():
@@ -96,7 +96,7 @@ def _measured_panel(axes: Any, found: ReadLines, index: int) -> None:
 
 
 def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
-    """Poles (n,) of the closed loop: in the z plane, and as damping ratio over frequency, beside those of the stage `alone`; unstable red.
+    """Plot closed-loop poles (n,): z plane, and damping ratio over frequency, with poles of the stage `alone`; unstable poles red.
 
     >>> len(pole_figure(np.array([0.9 + 0.1j, 0.9 - 0.1j]), 1e-4).axes)
     2
@@ -117,7 +117,7 @@ def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
 
 
 def _damping_panel(axes: Any, poles: Array, step: float, alone: Array | None) -> None:
-    """Damping ratio over frequency."""
+    """Plot damping ratio over frequency."""
     if alone is not None:
         frequencies, ratios = _damping(alone, step)
         axes.plot(frequencies, ratios, "o", color=MUTED, markersize=3.5, markerfacecolor="none", markeredgewidth=0.6, label="stage alone")
@@ -130,7 +130,7 @@ def _damping_panel(axes: Any, poles: Array, step: float, alone: Array | None) ->
 
 
 def thin_out(x: Array, y: Array) -> tuple[Array, Array]:
-    """A curve by fewer points: the least and the largest of each of many stretches."""
+    """Reduce the points of a curve: the minimum and maximum of each of many intervals."""
     if len(x) <= 2 * _POINTS:
         return x, y
     stretches = np.array_split(np.arange(len(x)), _POINTS)
@@ -139,18 +139,18 @@ def thin_out(x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def _phase(values: Array) -> Array:
-    """Unwrapped from the lowest frequency [deg], begun between -270 and 90."""
+    """Phase unwrapped from the lowest frequency [deg], starting between -270 and 90."""
     angle = np.rad2deg(np.unwrap(np.angle(values)))
     return angle - _TURN * np.ceil((angle[0] - 90.0) / _TURN)
 
 
 def look(index: int) -> dict[str, Any]:
-    """Colour of a series; every second one is dashed."""
+    """Return the line style of a series: its colour; every second one is dashed."""
     return {"color": SERIES[index % (len(SERIES) - 1)], "linestyle": (0, (4.0, 2.0)) if index % 2 else "-"}
 
 
 def _span(frequencies: Array, values: Array) -> tuple[float, float]:
-    """From where the loops have fallen to a hundred to the end."""
+    """Frequency range from a loop gain of about a hundred to the end."""
     sizes = np.max(np.abs(values), axis=1)
     high = np.flatnonzero(sizes > _CEILING)
     first = 0 if not len(high) or len(high) == len(sizes) else min(int(high[-1]), len(sizes) - 2)
@@ -177,7 +177,7 @@ def _phase_ticks(axes: Any) -> None:
 
 
 def plain_ticks(*axes: Any, steps: tuple[float, ...] = (1.0,)) -> None:
-    """Ticks of logarithmic axes at these multiples of powers of ten, as plain numbers."""
+    """Set ticks of logarithmic axes at these multiples of powers of ten, as plain numbers."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
     for axis in axes:
@@ -187,13 +187,13 @@ def plain_ticks(*axes: Any, steps: tuple[float, ...] = (1.0,)) -> None:
 
 
 def legend_of_lines(figure: Any, panels: Iterable[Any], columns: int = 8) -> None:
-    """A legend above all panels, of their lines that have names."""
+    """Add a legend above all panels, for their named lines."""
     handles = [line for axes in panels for line in axes.get_lines() if not line.get_label().startswith("_")]
     figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=columns, handlelength=1.4, borderaxespad=0.2)
 
 
 def legend_above(axes: Any, columns: int = 8) -> None:
-    """The legend of a panel, over it."""
+    """Add the legend of a panel above it."""
     axes.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=columns, handlelength=1.6, columnspacing=1.1, borderaxespad=0.2)
 
 
@@ -207,7 +207,7 @@ def _circles(axes: Any) -> None:
 
 
 def _damping(poles: Array, step: float) -> tuple[Array, Array]:
-    """Frequency [Hz] and damping ratio [%] of the poles of the upper half plane, registers at 0 left out."""
+    """Frequency [Hz] and damping ratio [%] of the poles of the upper half plane, without registers at 0."""
     poles = poles[(np.abs(poles) > 1e-6) & (np.imag(poles) >= 0.0)]
     rates = np.log(poles.astype(complex)) / step
     size = np.abs(rates)

@@ -1,4 +1,4 @@
-"""What controllers trade: rejection against noise, settling and delay margin."""
+"""Trade-off between controllers: sensitivity crossover, noise, settling and delay margin."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.show.figures.style import FULL, SERIES, Margins, canvas, panels, 
 
 
 def front_figure(found: Mapping[str, DetunedController], front: Collection[str]) -> Any:
-    """Each controller as it was tuned, a dot, filled on the `front`, and a line of it with less gain."""
+    """Plot each tuned controller as a dot, filled on the Pareto `front`, and its line for reduced gain."""
     told = {
         "noise [nm]": (lambda one: one.noise, 1e9),
         "settling [ms]": (lambda one: one.settling, 1e3),

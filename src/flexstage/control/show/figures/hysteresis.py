@@ -1,4 +1,4 @@
-"""Hysteresis of stacks, drawn: strokes over what was wanted, with and without the inverse."""
+"""Figure of stack hysteresis: actual over requested stroke, with and without the inverse."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexstage.show.figures.style import FULL, INK, SERIES, Margins, canvas, pan
 
 
 def hysteresis_figure(wanted: Array, reached: Mapping[str, Array]) -> Any:
-    """Strokes (n,) [m] over those `wanted` (n,), by name, and the difference of both.
+    """Plot strokes (n,) [m] over the requested ones, `wanted` (n,), by name, and the difference of both.
 
     >>> way = 1e-6 * np.sin(np.linspace(0.0, 6.0, 50))
     >>> len(hysteresis_figure(way, {"without inverse": 0.9 * way}).axes)
@@ -32,7 +32,7 @@ def hysteresis_figure(wanted: Array, reached: Mapping[str, Array]) -> Any:
             look = {"color": SERIES[(1, 0, 2)[index % 3]], "linewidth": 1.0, "label": name}
             grid[0, 0].plot(form.factor * wanted[::step], form.factor * each[::step], **look)
             grid[0, 1].plot(form.factor * wanted[::step], fine.factor * (each - wanted)[::step], **look)
-        for axes, label in zip(grid[0], (f"stroke [{form.unit}]", f"stroke less wanted [{fine.unit}]"), strict=True):
+        for axes, label in zip(grid[0], (f"stroke [{form.unit}]", f"actual minus requested stroke [{fine.unit}]"), strict=True):
             axes.set(xlabel=to_typography(f"wanted stroke [{form.unit}]"), ylabel=to_typography(label))
         legend_above(grid[0, 0], 3)
     return figure

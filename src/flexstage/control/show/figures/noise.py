@@ -1,4 +1,4 @@
-"""Noise of a loop: whose it is, and at which frequencies."""
+"""Noise of a loop by source and frequency."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ROW = 0.24
 
 
 def noise_share_figure(found: NoiseBudget) -> Any:
-    """Share of every source in the mean square of each coordinate, and its rms."""
+    """Plot the share of every source in the mean square of each coordinate, and its rms."""
     squares, coordinates = np.asarray(found.by_kind.values), short_names(found.output_names)
     total = np.sum(squares, axis=1)
     with style_context():
@@ -42,7 +42,7 @@ def noise_share_figure(found: NoiseBudget) -> Any:
 
 
 def noise_spectrum_figure(found: NoiseBudget) -> Any:
-    """Amplitude densities of each coordinate, and its rms summed up from the lowest frequency; a column for each unit."""
+    """Plot amplitude densities of each coordinate, and its cumulative rms from the lowest frequency; a column for each unit."""
     units = tuple(dict.fromkeys(found.units))
     with style_context():
         figure = canvas(FULL, 3.5)
@@ -67,6 +67,6 @@ def _column(grid: Any, found: NoiseBudget, chosen: Sequence[int], unit: str) -> 
     largest = form.factor * float(np.sqrt(np.max(density, initial=0.0)))
     grid[0].set(ylim=(1e-4 * largest, 3.0 * largest), ylabel=to_typography(f"density [{form.unit}/Hz^0.5]"))
     span = float(found.frequencies[0]), float(found.frequencies[-1])
-    grid[1].set(ylim=(0.0, None), xlim=span, xlabel="frequency [Hz]", ylabel=to_typography(f"rms summed up [{form.unit}]"))
+    grid[1].set(ylim=(0.0, None), xlim=span, xlabel="frequency [Hz]", ylabel=to_typography(f"cumulative rms [{form.unit}]"))
     grid[0].tick_params(labelbottom=False)
     plain_ticks(grid[0].xaxis, grid[1].xaxis, grid[0].yaxis)

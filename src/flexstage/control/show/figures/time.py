@@ -1,4 +1,4 @@
-"""Loops over time: steps, errors, paths in plan with the error magnified."""
+"""Time-domain figures of loops: steps, errors, paths in plan with magnified error."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _ACROSS = 3
 _OF_SIZE = 0.05
 _BAND, _SHOWN = 0.02, 2.5
 _FEW = 1.5
-"""Decades; fewer are ticked between powers of ten too."""
+"""Decades; axes with fewer also have ticks between powers of ten."""
 
 
 def step_figure(found: Sequence[tuple[str, Simulated]]) -> Any:
-    """The answers to steps, one panel a coordinate: the reference, the true motion and, paler, the others of the same unit.
+    """Plot step responses, one panel per coordinate: the reference, the true motion and, paler, the others of the same unit.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -65,14 +65,14 @@ def _step(axes: Any, name: str, test: Simulated) -> None:
 
 
 def _settling_band(test: Simulated, name: str) -> float:
-    """The time [s] up to which a step is shown: some times that after which its error stays within 2 %."""
+    """End time [s] of a step plot: a multiple of the 2 % settling time."""
     index = [channel.name for channel in test.coordinates].index(name)
     outside = np.flatnonzero(np.abs(test.true_error[:, index]) > _BAND * float(np.max(np.abs(test.reference[:, index]))))
     return min(_SHOWN * float(test.times[outside[-1]]), float(test.times[-1])) if len(outside) else float(test.times[-1])
 
 
 def error_figure(test: Simulated) -> Any:
-    """The true error over time, lengths above angles.
+    """Plot the true error over time, lengths above angles.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -101,7 +101,7 @@ def error_figure(test: Simulated) -> Any:
 
 
 def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: str, floor: Array | None = None) -> Any:
-    """Errors (n, f) in the band by pass or period, lengths above angles; dotted: what does not repeat (f,), where it is known.
+    """Plot errors (n, f) in the band by pass or period, lengths above angles; dotted: the non-repeating part (f,), if known.
 
     >>> len(lesson_figure(np.array([[1e-6], [1e-7]]), ["x"], ["m"], "pass").axes)
     1
@@ -126,7 +126,7 @@ def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: 
 
 
 def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
-    """The path in plan: commanded, and followed with its error magnified so that it can be seen; the factor stands in the title.
+    """Plot the path in plan: the command, and the motion with magnified error; the title contains the factor.
 
     >>> from flexstage.show.figures.style import canvas
     """
@@ -138,7 +138,7 @@ def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
     forms = [display_unit_of(test.coordinates[place].unit, size) for place in places]
     factors = np.array([form.factor for form in forms])
     followed = asked - factor * error
-    label = "followed" if factor == 1.0 else f"followed, its error {factor:g} times"
+    label = "followed" if factor == 1.0 else f"motion, error {factor:g} times"
     with style_context():
         figure = canvas(FULL * 0.62, _height(followed))
         plan = panels(figure, 1, 1, Margins(left=0.6, top=0.32))[0, 0]
@@ -152,13 +152,13 @@ def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
 
 
 def _height(path: Array) -> float:
-    """Of a figure that shows a path to scale."""
+    """Height of a figure with a path to scale."""
     across, up = np.ptp(path, axis=0)
     return float(np.clip(0.85 + (0.62 * FULL - 0.7) * up / max(across, 1e-12), 2.0, 5.2))
 
 
 def magnification(size: float, error: Array) -> float:
-    """The factor, 1, 2 or 5 times a power of ten and no less than 1, that makes the largest error some twentieth of a size.
+    """Magnification factor, 1, 2 or 5 times a power of ten and at least 1, that makes the largest error about a twentieth of a size.
 
     >>> magnification(1.0, np.array([[0.001, 0.0]]))
     50.0

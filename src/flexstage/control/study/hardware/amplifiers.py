@@ -1,4 +1,4 @@
-"""Voltage and charge amplifiers as a set-up file states them."""
+"""Voltage and charge amplifiers of a set-up file."""
 
 from __future__ import annotations
 
@@ -26,29 +26,29 @@ _COUPLED, _LEFT = Bound(low=0.0, high=1.0, open_high=True), Bound(low=0.0, high=
 
 
 class AmplifierForm(CheckedFields):
-    """What every `kind` of amplifier has, a frozen dataclass whose fields are the keys of its table; `amplifier_kinds` lists them."""
+    """Common interface of amplifier kinds, frozen dataclasses with the keys of their table as fields; see `amplifier_kinds`."""
 
     kind: ClassVar[str]
 
     @property
     def settings(self) -> AmplifierSettings:
-        """What it is to the loop: bandwidth, limits, noise, converter."""
+        """Amplifier settings of the loop: bandwidth, limits, noise, converter."""
         raise NotImplementedError
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """What is wrong with it by itself, each with its key."""
+        """Findings for the table on its own, each with its key."""
         yield from ()
 
 
 @dataclass(frozen=True)
 class AmplifierSetup(AmplifierForm):
-    """Amplifiers and their converter: first order on the stack's capacitance; absent all of this they are ideal.
+    """Amplifiers and their converter: first-order lag with the stack's capacitance; ideal by default.
 
-    `bandwidth` as stated, or that of the output `resistance`, 1/(2 pi R C). `current` is the largest they give and `slew` their fastest
-    change of voltage: they limit the rate of strokes. `noise` is white at their output, `bits` those of the converter over the full
-    voltage. Voltages are turned into free strokes by each stack's range. Those of voice coils drive the current: `bandwidth`, `current`,
-    `current_noise` and `bits` count.
+    `bandwidth` as specified, or by the output `resistance`, 1/(2 pi R C). `current` is the maximum output current and `slew` the maximum
+    voltage rate; both limit the stroke rate. `noise` is white at the output, `bits` are the converter's over the full voltage range. Each
+    stack's range converts voltage to free stroke. Voice coil amplifiers control the current: `bandwidth`, `current`, `current_noise` and
+    `bits` apply.
     """
 
     kind: ClassVar[str] = "voltage"
@@ -62,25 +62,25 @@ class AmplifierSetup(AmplifierForm):
 
     @property
     def settings(self) -> AmplifierSettings:
-        """As stated."""
+        """Convert to amplifier settings."""
         named = {name: getattr(self, name) for name in ("bandwidth", "resistance", "current", "slew", "bits", "current_noise")}
         return AmplifierSettings(noise_density=self.noise, **named)
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """A bandwidth and a resistance are two ways to say the same; converters have bits."""
+        """Findings for both a bandwidth and a resistance, and for invalid bits."""
         if self.bandwidth is not None and self.resistance is not None:
-            yield Finding("amplifier", "both its bandwidth and its resistance are given", "Give one of them: the other follows")
+            yield Finding("amplifier", "both its bandwidth and its resistance are given", "Specify one of them: the other follows")
 
 
 @dataclass(frozen=True)
 class ChargeSetup(AmplifierSetup):
-    """Amplifiers that hold the charge of stacks: what voltage amplifiers have, counted in the volts that a stack free of load would have.
+    """Charge amplifiers for stacks: the data of voltage amplifiers, in the voltage of an unloaded stack.
 
-    `coupling` is k of the stack (k33 of its ceramic at most, 0.7 of soft PZT): at constant charge it is stiffer by 1/(1 - k^2). Below the
-    `corner`, stated or that of the `leakage` resistance beside the stack, 1/(2 pi R C), the drive is one of volts. `residual_hysteresis` is
-    the share of hysteresis and creep that the stroke keeps above it: one fifth (Ge & Jouaneh, IEEE Trans. Control Syst. Technol. 4 (1996)
-    209, by Fleming & Leang, Design, Modeling and Control of Nanopositioning Systems, 2014, ch. 12).
+    `coupling` is k of the stack (at most k33 of its ceramic, 0.7 of soft PZT): the stiffness increases by 1/(1 - k^2) at constant charge.
+    Below the `corner`, specified or by the `leakage` resistance parallel to the stack, 1/(2 pi R C), it acts as a voltage drive.
+    `residual_hysteresis` is the remaining share of hysteresis and creep above it. Default: one fifth (Ge & Jouaneh, IEEE Trans. Control
+    Syst. Technol. 4 (1996) 209, by Fleming & Leang, Design, Modeling and Control of Nanopositioning Systems, 2014, ch. 12).
     """
 
     kind: ClassVar[str] = "charge"
@@ -91,18 +91,18 @@ class ChargeSetup(AmplifierSetup):
 
     @property
     def settings(self) -> AmplifierSettings:
-        """As stated, charge held."""
+        """Convert to amplifier settings, with charge drive."""
         held = ChargeHold(self.coupling or 0.0, self.residual_hysteresis, self.corner, self.leakage)
         return replace(super().settings, charge=held)
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """No coupling, no corner, or two of them, besides what voltage amplifiers may have wrong."""
+        """Findings for a missing coupling, a missing or double corner, and the data of voltage amplifiers."""
         yield from super().faults
         if self.coupling is None:
-            advice = "Write for example coupling = 0.7: by strokes and capacitances of data sheets, d^2 k / C, it comes out too high"
-            yield Finding("amplifier.coupling", "charge is held, and how far the stack couples it to its length is not stated", advice)
+            advice = "Use e.g. coupling = 0.7: data-sheet strokes and capacitances, d^2 k / C, overestimate it"
+            yield Finding("amplifier.coupling", "charge drive needs the electromechanical coupling of the stack", advice)
         if (self.corner is None) == (self.leakage is None):
             given = "are both given" if self.corner is not None else "are both missing"
-            advice = 'Give one of them: no drive holds charge for ever. Write for example corner = "0.1 Hz"'
+            advice = 'Specify one of them: every charge drive has leakage. Use e.g. corner = "0.1 Hz"'
             yield Finding("amplifier", f"its corner and its leakage {given}", advice)

@@ -1,4 +1,4 @@
-"""Vibration of the floor: generic criteria by name and stated densities, as spectra."""
+"""Floor vibration spectra: generic criteria by name, and specified densities."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ _LOWEST, _CORNER, _HIGHEST = 4.0, 8.0, 80.0
 
 
 def criterion_spectrum(criterion: Criterion) -> Spectrum:
-    """The spectrum of a floor that just meets a generic vibration criterion in every third-octave band.
+    """Compute the spectrum of a floor that just meets a generic vibration criterion in every third-octave band.
 
-    The criteria state the rms velocity v in bands of a third of an octave: constant from 8 to 80 Hz, and below, down to 4 Hz, rising as 1/f
-    (constant acceleration); from VC-C on constant from 1 to 80 Hz (Gordon 1999; Amick et al. 2005, Table 1). A density
-    v^2/(f ln(2)/3) has exactly v in each band. Outside these frequencies the criteria say nothing, and the spectrum is zero.
+    The criteria limit the rms velocity v in third-octave bands: constant from 8 to 80 Hz, and below, down to 4 Hz, rising as 1/f (constant
+    acceleration). From VC-C the limit is constant from 1 to 80 Hz (Gordon 1999; Amick et al. 2005, Table 1). A density v^2/(f ln(2)/3) has
+    exactly v in each band. Outside these frequencies the criteria do not apply, and the spectrum is zero.
 
     >>> spectrum = criterion_spectrum(Criterion.VC_D)
     >>> band = np.geomspace(10.0 * 2.0 ** (-1.0 / 6.0), 10.0 * 2.0 ** (1.0 / 6.0), 2001)
@@ -53,7 +53,7 @@ def criterion_spectrum(criterion: Criterion) -> Spectrum:
 
 
 def floor_spectra(floor: Floor) -> dict[str, Spectrum]:
-    """Spectra by input (`ground.x`, ...) of a set-up's floor.
+    """Compute the spectra by input (`ground.x`, ...) of a set-up's floor.
 
     >>> sorted(floor_spectra(Floor(z=VibrationSetup(criterion=Criterion.VC_C))))
     ['ground.z']

@@ -1,7 +1,7 @@
-"""The layout of a CSV file: how columns are divided, what the header says, where numbers begin.
+"""Layout of a CSV file: column separator, header, and start of the numbers.
 
 A header is `time [s], u1 [V], S1 [um]`, with brackets or parentheses, or names on one line and units on the next; it may be a comment.
-Columns are divided by semicolons, tabs, commas or blanks; decimal commas are understood where columns are divided otherwise.
+Columns are separated by semicolons, tabs, commas or blanks; decimal commas are supported with other separators.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ _HEAD = 1 << 18
 _QUOTED = 60
 _LOOKED_AT = 6
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][-+]?\d+)?", re.ASCII)
-"""A number as files print it."""
+"""Number formats in files."""
 MISSING = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "inf", "-inf", "+inf"})
-"""Fields that stand for a number that is missing, in small letters."""
+"""Fields for a missing number, in lower case."""
 _COMMENT = re.compile(r"^\s*(#|%|//|\*)+\s?")
 _LETTER = re.compile(r"[^\W\d_]")
 _WITH_UNIT = re.compile(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]]*)[\])]")
@@ -35,9 +35,9 @@ _NAMES = ("time [s]", "u1 [V]", "S1 [um]")
 
 @dataclass(frozen=True)
 class Layout:
-    """Names and units of the columns, how they are divided (None: by blanks), the decimal sign, where numbers begin (byte and line).
+    """Layout of a CSV file: names and units of the columns, separator (None: blanks), decimal sign, start of the numbers (byte and line).
 
-    `comments` are the lines before them, without their signs.
+    `comments` are the lines before them, without comment signs.
     """
 
     names: tuple[str, ...]
@@ -50,7 +50,7 @@ class Layout:
     comments: tuple[str, ...]
 
     def fields(self, line: str) -> list[str]:
-        """The fields of a line, blanks around them left out.
+        """Fields of a line, without surrounding blanks.
 
         >>> Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", ()).fields("1.0, 2.0")
         ['1.0', '2.0']
@@ -58,7 +58,7 @@ class Layout:
         return _fields(line, self.delimiter)
 
     def fits(self, line: str) -> bool:
-        """Whether a line has as many fields as there are columns; it may end with what divides them.
+        """Whether a line has as many fields as columns; a trailing separator is allowed.
 
         >>> two = Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", ())
         >>> two.fits("1,2"), two.fits("1,2,"), two.fits("1,2,3"), two.fits("1")
@@ -73,7 +73,7 @@ class Layout:
 
 
 def read_layout(path: Path) -> Layout:
-    r"""The layout of a CSV file; raises `DesignError` where it is no text, has no numbers or no header.
+    r"""rDetermine the layout of a CSV file; raises `DesignError` if it is not text, or has no numbers or no header.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -100,7 +100,7 @@ def read_layout(path: Path) -> Layout:
 
 
 def _broken_row(path: Path, above: list[str], form: tuple[str | None, str, int]) -> Iterator[Finding]:
-    """The line that parts rows of numbers above from those below: it would make a header of them all."""
+    """Line that separates rows of numbers above from those below, which would make all of them a header."""
     rows = [number for number, line in enumerate(above) if _is_row(line)]
     if rows:
         columns = form[2]
@@ -109,11 +109,11 @@ def _broken_row(path: Path, above: list[str], form: tuple[str | None, str, int])
         line, count = above[at].strip()[:60], len(_fields(above[at], form[0]))
         wrong = "it holds what is no number here" if count == columns else f"it has {count} fields where {columns} are expected"
         what = f'{wrong}, numbers before and after it: "{line}"'
-        yield Finding(f"{path}: line {at + 1}", what, f'Mend it; if line {rows[0] + 1} is no row of numbers, begin that with "#"')
+        yield Finding(f"{path}:{at + 1}", what, f'Correct it; if line {rows[0] + 1} is not a row of numbers, start that line with "#"')
 
 
 def _is_row(line: str) -> bool:
-    """Whether a line is two numbers or more and nothing else, however divided."""
+    """Whether a line contains only two or more numbers, with any separator."""
     if not _may_be_numbers(line):
         return False
     divided = (_fields(line, delimiter) for delimiter in (";", "\t", ",", None))
@@ -121,7 +121,7 @@ def _is_row(line: str) -> bool:
 
 
 def _lines(raw: bytes, path: Path) -> tuple[list[str], str]:
-    """The first lines with their ends, and the encoding; a last line that is cut is left out if there are others."""
+    """First lines with their ends, and the encoding; a truncated last line is omitted if others exist."""
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise refuse(str(path), "it is UTF-16 text", "Save it as UTF-8")
     if b"\x00" in raw:
@@ -142,7 +142,7 @@ def _may_be_numbers(line: str) -> bool:
 
 
 def _form(lines: list[str]) -> tuple[str | None, str, int] | None:
-    """Delimiter, decimal sign and number of columns of lines of numbers; None if they are none. The last line may be cut."""
+    """Delimiter, decimal sign and number of columns of number lines; None for other lines. The last line may be truncated."""
     sure = [line for line in lines[: max(1, len(lines) - 1)] if line.strip()]
     for delimiter in (";", "\t", ",", None):
         if delimiter is not None and delimiter not in lines[0]:
@@ -163,12 +163,12 @@ def _fields(line: str, delimiter: str | None) -> list[str]:
         return line.split()
     try:
         return [field.strip() for field in next(csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True), [])]
-    except csv.Error:  # carriage returns within the line, fields beyond measure
+    except csv.Error:  # carriage returns within the line, too many fields
         return [line]
 
 
 def _header(head: list[str], delimiter: str | None, columns: int, path: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names and units from the line next above the numbers; a line of units alone belongs to the one above. No preamble counts."""
+    """Names and units from the line above the numbers; a line of units belongs to the one above it. Preambles are ignored."""
     found = list(_candidates(head, delimiter, columns))
     if not found:
         last = next((line.strip() for line in reversed(head) if line.strip()), "")
@@ -182,7 +182,7 @@ def _header(head: list[str], delimiter: str | None, columns: int, path: Path) ->
 
 
 def _candidates(head: list[str], delimiter: str | None, columns: int) -> Iterator[list[str]]:
-    """Fields of the lines next above the numbers, upwards, as long as they name all columns; lines without letters are passed over."""
+    """Fields of the lines above the numbers, upwards, if they name all columns; lines without letters are skipped."""
     signs: list[str | None] = [delimiter, ",", ";", "\t", *([None] if delimiter in (None, "\t") else [])]
     for line in reversed([each for each in head if _LETTER.search(each)]):
         divided = ([found[0] for found in _WORD.finditer(line)] if each is None else _fields(line, each) for each in dict.fromkeys(signs))
@@ -197,7 +197,7 @@ def _without_last_empty(fields: list[str], columns: int) -> list[str]:
 
 
 def _are_names(fields: list[str], columns: int) -> bool:
-    """Whether fields may name so many columns: words, no numbers, and no keys that end in a colon."""
+    """Whether fields can name as many columns: words, not numbers, and not keys with a colon."""
     no_name = (NUMBER.fullmatch(field) or field.endswith(":") for field in fields)
     return len(fields) == columns and not any(no_name) and any(_LETTER.search(field) for field in fields)
 

@@ -1,4 +1,4 @@
-"""CSV files read: as a record left in the file, or as responses over frequency."""
+"""Reading of CSV files: as a record that stays in the file, or as responses over frequency."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ from flexstage.experiment.records.record import Record, Responses
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 
 OWN = "flexstage "
-"""First words of the comment in files written here; a JSON object of the attributes follows."""
+"""First words of the comment in files written here, followed by a JSON object of the attributes."""
 _PART = re.compile(r"(?:(?P<name>.+?)[ _])?(?P<part>re|im|coherence|mag|magnitude|amplitude|gain|phase)", re.IGNORECASE)
 _MAGNITUDES = ("mag", "amplitude", "gain")
 _RECTANGULAR, _POLAR = ("re", "im"), ("magnitude", "phase")
 
 
 def is_text(_start: bytes, _suffix: str) -> bool:
-    """What no other form claims is tried as a table."""
+    """Accept every file not claimed by another format."""
     return True
 
 
 def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    r"""What a CSV file holds: responses where a column is called `frequency` (or as the user says), else a record.
+    r"""rRead a CSV file: responses if a column is named `frequency` (or by the user), else a record.
 
-    Its times stand in the column `time`, or the one that is named. Raises `DesignError` where there is none and no rate is stated, for gaps
-    between times (passed over where `FaultTolerance.GAPS`), for a last line cut short (left out where `FaultTolerance.TRUNCATED`).
+    Times are in the column `time`, or the named one. Raises `DesignError` without times and rate, for gaps between times (ignored with
+    `FaultTolerance.GAPS`), and for a truncated last line (omitted with `FaultTolerance.TRUNCATED`).
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -62,13 +62,13 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     if lines is not None and own.text("format") != RECORD_FORM and (is_stated or time is None):
         return read_arrays(_responses(path, layout, samples, options, lines), replace(options, kind=Kind.RESPONSES, arrays=Arrays()))
     if time is None and not options.rate and "rate" not in said:
-        what = f"none of its columns is called time: {', '.join(layout.names[:12])}"
-        raise refuse(str(path), what, 'Say which has the times (array "time=..."), or state the rate (rate)')
+        what = f"no time column in: {', '.join(layout.names[:12])}"
+        raise refuse(str(path), what, 'Assign the times (array "time=..."), or specify the rate (rate)')
     return read_record(samples, said, options, time)
 
 
 def read_record(samples: TableSamples, said: Mapping[str, Attribute], options: Options, time: int | None) -> tuple[Record | Responses, ...]:
-    """The record in all columns of a table but that of the times."""
+    """Build the record from all columns of a table except the times."""
     layout = samples.layout
     columns = tuple(number for number in range(len(layout.names)) if number != time)
     texts: dict[str, Attribute] = {kind: tuple(getattr(layout, kind)[number] for number in columns) for kind in ("names", "units")}
@@ -87,7 +87,7 @@ def _columns(name: str, samples: TableSamples, columns: tuple[int, ...], attribu
 
 
 def _said(layout: Layout) -> dict[str, Attribute]:
-    """What the comment of a file written here says; only what is of a kind that it may be, since files are changed by hand."""
+    """Attributes in the comment of a file written here; unexpected types are ignored, since files are edited by hand."""
     try:
         found = json.loads(next((line.removeprefix(OWN) for line in layout.comments if line.startswith(OWN)), "{}"))
     except ValueError:
@@ -105,27 +105,29 @@ def _is_attribute(value: Any) -> TypeGuard[Attribute]:
 def _unknown_names(path: Path, layout: Layout, arrays: Arrays) -> Iterator[Finding]:
     for meaning, name in arrays.stated():
         if meaning not in ("time", "frequencies"):
-            yield Finding(f"{path}: {meaning}={name}", "of a table only time and frequencies are named", "Name channels otherwise (only)")
+            yield Finding(
+                f"{path}: {meaning}={name}", "only time and frequencies of a table can be assigned", "Select channels otherwise (only)"
+            )
         elif not any(matches(each, [name]) for each in layout.names):
-            yield Finding(f"{path}: {meaning}={name}", "no column is called so", suggest_nearest(name, layout.names))
+            yield Finding(f"{path}: {meaning}={name}", "unknown column", suggest_nearest(name, layout.names))
 
 
 def _column(layout: Layout, names: tuple[str, ...]) -> int | None:
-    """The first column that has one of these names, else the first that has one but for upper and lower case."""
+    """First column with one of these names, else the first that differs only in case."""
     spelt = (*enumerate(layout.names), *enumerate(map(str.lower, layout.names)))
     return next((number for number, name in spelt if matches(name, names)), None)
 
 
 def complete_rows(path: Path, layout: Layout, options: Options, announced: int | None, *, closed: bool) -> TableSamples:
-    """All columns of as many lines as are announced; of a file that breaks off, its lines but the last where the user accepts that.
+    """Read all columns of as many lines as announced; a truncated file without its last line, if accepted.
 
-    `closed`: the last line ends with a line feed where lines are announced, so that a number cut short is seen.
+    `closed`: the last line ends with a line feed in files with an announced length, to detect a truncated number.
     """
     whole = index_table(path, layout)
     ends = _ends_with_newline(path)
     if announced is not None and whole.length > announced:
         what = f"it has {whole.length} lines of numbers, its header says {announced}"
-        raise refuse(f"{path}: line {layout.line + announced}", what, "Save one record a file")
+        raise refuse(f"{path}:{layout.line + announced}", what, "Save one record a file")
     cut = _cut_short(path, layout, whole.end)
     if cut is None and (announced is None or (whole.length == announced and (ends or not closed))):
         return whole
@@ -133,12 +135,12 @@ def complete_rows(path: Path, layout: Layout, options: Options, announced: int |
     if FaultTolerance.TRUNCATED in options.accept_faults and unsure > 0:
         return replace(whole, length=unsure)
     what = f"it breaks off: {cut}" if cut is not None else f"it breaks off: it has {whole.length} of {announced} samples"
-    advice = f'Export it anew, or accept "truncated" to use the {max(0, unsure)} samples before'
-    raise refuse(f"{path}: line {layout.line + whole.length - 1}", what, advice)
+    advice = f'Export it again, or accept "truncated" to use the {max(0, unsure)} samples before'
+    raise refuse(f"{path}:{layout.line + whole.length - 1}", what, advice)
 
 
 def _cut_short(path: Path, layout: Layout, end: int) -> str | None:
-    """What is wrong with the last line."""
+    """Fault of the last line."""
     with path.open("rb") as stream:
         stream.seek(max(layout.start, end - 100_000))
         last = stream.read(end - stream.tell()).decode(layout.encoding, "replace").splitlines()
@@ -154,28 +156,28 @@ def _ends_with_newline(path: Path) -> bool:
 
 
 def _own_responses(own: Contents, layout: Layout, samples: TableSamples) -> Contents:
-    """The responses of a file written here: its frequencies, then the parts of each output's response to each input."""
+    """Responses of a file written here: its frequencies, then the parts of each output's response to each input."""
     values = samples.read(0, samples.length)
     outputs, inputs = (len(own.texts(f"{side}_names")) for side in ("output", "input"))
     parts = (len(layout.names) - 1) // max(1, outputs * inputs)
     if parts not in (2, 3) or parts * outputs * inputs != len(layout.names) - 1:
-        what = f"{len(layout.names) - 1} columns do not hold the responses of {outputs} outputs to {inputs} inputs"
-        raise refuse(own.where, what, "Write the file anew")
+        what = f"wrong number of response columns (got {len(layout.names) - 1} for {outputs} outputs and {inputs} inputs)"
+        raise refuse(own.where, what, "Export the file again")
     return _contents(own.where, values[:, 0], values[:, 1:].reshape(-1, outputs, inputs, parts), own.said)
 
 
 def _contents(where: str, frequencies: Array, parts: Array, said: Mapping[str, Attribute]) -> Contents:
-    """The arrays of responses from their parts (f, outputs, inputs, 2 or 3): real, imaginary, and coherence or not."""
+    """Response arrays from their parts (f, outputs, inputs, 2 or 3): real, imaginary, optional coherence."""
     arrays = {"frequencies": frequencies, "responses": complex_of(parts[..., 0], parts[..., 1])}
     arrays |= {"coherence": parts[..., 2]} if parts.shape[-1] == 3 else {}
     return Contents(where, tuple(held_array(name, values) for name, values in arrays.items()), said)
 
 
 def _responses(path: Path, layout: Layout, samples: TableSamples, options: Options, lines: int) -> Contents:
-    """The responses among the columns, by their names; the one input is not named. A magnitude in dB is a number."""
+    """Responses in the columns, by name, with one unnamed input. A magnitude in dB is dimensionless."""
     unit = layout.units[lines]
     if unit not in ("", "Hz", "kHz"):
-        raise refuse(f"{path}: {layout.names[lines]}", f'its unit is "{unit}", where a frequency is expected', "Write Hz or kHz")
+        raise refuse(f"{path}: {layout.names[lines]}", f'wrong unit (got "{unit}", expected a frequency)', "Use Hz or kHz")
     values = samples.read(0, samples.length)
     chosen = [number for number in range(len(layout.names)) if number != lines and _is_chosen(layout.names[number], options)]
     order, outputs = _parts(path, layout, chosen)
@@ -186,13 +188,13 @@ def _responses(path: Path, layout: Layout, samples: TableSamples, options: Optio
 
 
 def _is_chosen(name: str, options: Options) -> bool:
-    """Whether a column, or the response that it is a part of, is among the channels that count."""
+    """Whether a column, or the response of that part, is selected."""
     part = _PART.fullmatch(name)
     return not options.only or matches(name, options.only) or (part is not None and matches(part["name"] or "", options.only))
 
 
 def _parts(path: Path, layout: Layout, chosen: list[int]) -> tuple[tuple[str, ...], list[str]]:
-    """The parts that each response has in its columns, and the names of responses; raises `DesignError` for other columns."""
+    """Parts of each response by column, and the names of responses; raises `DesignError` for other columns."""
     names = [layout.names[number] for number in chosen]
     found = [_PART.fullmatch(name) for name in names]
     words = tuple(each["part"].lower() if each else "" for each in found)
@@ -207,18 +209,18 @@ def _parts(path: Path, layout: Layout, chosen: list[int]) -> tuple[tuple[str, ..
         'Give real and imaginary part of each, "frequency [Hz], S1 re [um/V], S1 im [um/V]", with or without "S1 coherence", or magnitude '
         'and phase, "frequency [Hz], S1 magnitude [um/V], S1 phase [deg]"'
     )
-    named = f"; or use only those that are whole (only): {', '.join(whole[:12])}" if all(whole) and whole else ""
-    raise refuse(str(path), f"it has frequencies, and beside them {', '.join(names[:12])}", advice + named)
+    named = f"; or use only the complete ones (only): {', '.join(whole[:12])}" if all(whole) and whole else ""
+    raise refuse(str(path), f"frequencies together with {', '.join(names[:12])}", advice + named)
 
 
 def _rectangular(path: Path, layout: Layout, chosen: list[int], found: Array, order: tuple[str, ...]) -> Array:
-    """The columns of responses, magnitudes and phases turned into real and imaginary parts."""
+    """Response columns, magnitudes and phases converted to real and imaginary parts."""
     if order[:2] != _POLAR:
         return found
     for first in range(0, len(chosen), len(order)):
         unit, where = layout.units[chosen[first + 1]], f"{path}: {layout.names[chosen[first + 1]]}"
         if unit_problem(unit) is not None or not same_dimension(unit, "rad"):
-            raise refuse(where, f'its unit is "{unit}", where an angle is expected', 'Write deg or rad, such as "phase [deg]"')
+            raise refuse(where, f'wrong unit (got "{unit}", expected an angle)', 'Use deg or rad, e.g. "phase [deg]"')
         size = 10.0 ** (found[:, first] / 20.0) if layout.units[chosen[first]].lower() == "db" else found[:, first]
         turn = np.exp(1j * found[:, first + 1] * float(dimension_of(unit).size))
         found[:, first], found[:, first + 1] = size * np.real(turn), size * np.imag(turn)

@@ -1,4 +1,4 @@
-"""Numbers of a CSV file, read in any range: an index of lines says where to begin."""
+"""Numbers of a CSV file, read in any range by an index of lines."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LISTED = 60
 
 
 def index_table(path: Path, layout: Layout) -> TableSamples:
-    r"""All columns of a table, its lines counted; blank ones at its end do not count.
+    r"""rRead all columns of a table and count its lines, without trailing blank ones.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -41,7 +41,7 @@ def index_table(path: Path, layout: Layout) -> TableSamples:
 
 
 def _end(path: Path, start: int) -> int:
-    """Where the last line that is not blank ends."""
+    """End of the last line that is not blank."""
     with path.open("rb") as stream:
         end = stream.seek(0, 2)
         while end > start:
@@ -56,9 +56,9 @@ def _end(path: Path, start: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class TableSamples:
-    """Columns of a CSV file as samples (n, columns); a missing field is not a number.
+    """Columns of a CSV file as samples (n, columns); a missing field is NaN.
 
-    `offsets` are those of every `STRIDE`th line in the file, the lines end at `end`.
+    `offsets` are the byte offsets of every `STRIDE`th line, the lines end at `end`.
     """
 
     path: Path
@@ -95,14 +95,14 @@ class TableSamples:
         return np.array([self._line(text, start + number) for number, text in enumerate(texts)]).reshape(-1, len(self.columns))
 
     def _line(self, text: str, number: int) -> list[float]:
-        """One line, field by field; raises `DesignError` that names it where it cannot be read."""
+        """One line, field by field; raises `DesignError` with its number if invalid."""
         fields, expected = self.layout.fields(text), len(self.layout.names)
-        where = f"{self.path}: line {self.layout.line + number}"
+        where = f"{self.path}:{self.layout.line + number}"
         fields = fields[:-1] if len(fields) == expected + 1 and not fields[-1] else fields
         if len(fields) != expected:
             what = f'it has {len(fields)} of {expected} fields: "{text.strip()[:_LISTED]}"'
-            raise refuse(where, what, "Mend the line, or take it away")
-        return [self._field(fields[column], f"{where}, {self.layout.names[column]}") for column in self.columns]
+            raise refuse(where, what, "Correct the line, or remove it")
+        return [self._field(fields[column], f"{where}: {self.layout.names[column]}") for column in self.columns]
 
     def _field(self, text: str, where: str) -> float:
         plain = text.replace(",", ".") if self.layout.decimal == "," else text
@@ -110,4 +110,4 @@ class TableSamples:
             return float(plain.lower().replace("d", "e"))
         if plain.lower() in MISSING:
             return float("nan")
-        raise refuse(where, f'"{text[:_LISTED]}" is not a number', 'Write "nan" where a sample is missing')
+        raise refuse(where, f'"{text[:_LISTED]}" is not a number', 'Use "nan" for a missing sample')

@@ -1,4 +1,4 @@
-"""CSV files written: a record with its times, or responses as real and imaginary parts."""
+"""Writing of CSV files: a record with its times, or responses as real and imaginary parts."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ BLOCK = 16_384
 
 
 def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
-    """Write a CSV file: a header that names channels and units, under comments that say rate, roles and name.
+    """Write a CSV file: a header with channel names and units, below comments with rate, roles and name.
 
-    Numbers are written with as many digits as bring them back to the bit. Raises `DesignError` for names that are no single line, mean
-    time or are formulas, and where the file cannot be written.
+    Numbers have as many digits as needed for an exact round trip. Raises `DesignError` for names with line breaks, names of time columns or
+    formulas, and if the file cannot be written.
 
     >>> import tempfile
     >>> from pathlib import Path
@@ -48,10 +48,10 @@ def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
 
 def _name_findings(where: str, channels: Iterable[Channel]) -> Iterable[Finding]:
     for channel in channels:
-        is_formula = channel.name.startswith(("=", "+", "-", "@"))  # spreadsheets would run it
+        is_formula = channel.name.startswith(("=", "+", "-", "@"))  # spreadsheets would execute it
         is_line = channel.name.isprintable() and channel.name == channel.name.strip()
         if is_formula or not is_line or matches(channel.name, Arrays().time):
-            yield Finding(f"{where}: {channel.name}", "its name cannot head a column of a CSV file", "Rename the channel")
+            yield Finding(f"{where}: {channel.name}", "its name is not allowed as a CSV column name", "Rename the channel")
 
 
 def _write_record(stream: IO[str], record: Record) -> None:

@@ -1,7 +1,7 @@
-"""The head of a function at nodal degrees of freedom: data set 58 of universal files, records 1 to 11.
+"""Header of a function at nodal degrees of freedom: data set 58 of universal files, records 1 to 11.
 
-The format is that of the Structural Dynamics Research Laboratory, University of Cincinnati, "Universal File Formats", data set number 58.
-Fields stand in fixed columns; programs that pad differently are read as far as their fields can be told apart.
+Reference: Structural Dynamics Research Laboratory, University of Cincinnati, "Universal File Formats", data set number 58. Fields have
+fixed columns; other paddings are read if their fields are distinguishable.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ HEAD_LINES = 11
 
 @dataclass(frozen=True)
 class Axis:
-    """What an axis measures: the number of its specific data type, its label and its unit."""
+    """Quantity of an axis: the number of its specific data type, its label and its unit."""
 
     kind: int
     label: str
@@ -50,7 +50,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Function:
-    """The head of one function: five lines of text, its type, where it was measured, the form of its data, its axes."""
+    """Header of one function: five lines of text, its type, measurement points, data form, and axes."""
 
     texts: tuple[str, ...]
     kind: int
@@ -78,39 +78,39 @@ class Function:
 
     @property
     def is_time(self) -> bool:
-        """Whether it is a time history: of that type, or of none and over time."""
+        """Whether it is a time history: of that type, or of type 0 over time."""
         return not self.is_complex and (self.kind == TIME or (self.kind == 0 and self.abscissa.kind == _TIME_AXIS))
 
     @property
     def is_response(self) -> bool:
-        """Whether it is a frequency response: of that type, or of none, complex and over frequency."""
+        """Whether it is a frequency response: of that type, or of type 0, complex and over frequency."""
         return self.kind in (RESPONSE, TRANSMISSIBILITY) or (self.kind == 0 and self.is_complex and self.abscissa.kind == _FREQUENCY_AXIS)
 
     @property
     def rate(self) -> float:
-        """The rate its printed step means, in Hz; of an even time history."""
+        """Rate in Hz for the printed step; for a time history with even spacing."""
         return round_nominal(1.0 / self.step, 1.01 * self.step_uncertainty + 1e-15)
 
     @property
     def role(self) -> Role:
-        """What the type of its ordinate says it was in a test: forces excite, motions respond."""
+        """Role in a test from the type of its ordinate: forces excite, motions respond."""
         return _ROLES.get(self.ordinate.kind, Role.UNKNOWN)
 
     @property
     def output_name(self) -> str:
-        """Name of what responds: the entity, node and direction, else the label, else the first line of text."""
+        """Response name: entity, node and direction, else the label, else the first line of text."""
         name = place_name(self.response)
         label = re.sub(r"\s*[\[(][^\])]*[\])]\s*$", "", self.ordinate.label)
         return name or label or self.texts[0].split(" : ")[0].strip() or "output"
 
     @property
     def input_name(self) -> str:
-        """Name of what excites: the entity, node and direction."""
+        """Excitation name: entity, node and direction."""
         return place_name(self.reference) or "input"
 
 
 def parse_head(lines: list[str]) -> Function:
-    """The head of a function from its eleven lines; raises `ValueError` that says which record cannot be read.
+    """Parse the header of a function from its eleven lines; raises `ValueError` with the number of an unreadable record.
 
     >>> lines = ["NONE"] * 5 + ["    1         0    0         0       NONE         3   1       NONE         0   0"]
     >>> lines += ["         4       100         1  0.00000e+00  4.88281e-04  0.00000e+00"]
@@ -170,7 +170,7 @@ def _text(text: str) -> str:
 
 
 def place_name(place: tuple[str, int, int]) -> str:
-    """Name of a place: its entity, node and direction as far as they are given.
+    """Format the name of a measurement point: its entity, node and direction, as available.
 
     >>> place_name(("S1", 0, 0)), place_name(("", 4, -3)), place_name(("plate", 2, 1)), place_name(("", 0, 0))
     ('S1', '4-Z', 'plate 2+X', '')
@@ -181,7 +181,7 @@ def place_name(place: tuple[str, int, int]) -> str:
 
 
 def head(function: Function, size: int) -> bytes:
-    """The bytes of a binary data set up to its values, which are `size` bytes.
+    """Format the bytes of a binary data set up to its values of `size` bytes.
 
     >>> axes = Axis(17, "time", "s"), Axis(8, "", "um"), Axis(0, "", "")
     >>> plain = Function(("S1", "", "", "", ""), 1, ("S1", 1, 0), ("", 0, 0), 4, 2, True, 0.0, 0.5, 0.0, *axes)
@@ -205,7 +205,7 @@ def head(function: Function, size: int) -> bytes:
 
 
 def count_function(text: str, number: int, count: int) -> str:
-    """A line of text with which function of how many this is: the format counts none.
+    """Format a line of text with the number and count of functions, which the format lacks.
 
     >>> count_function("hann", 3, 12)
     'hann; function 3 of 12'

@@ -1,4 +1,4 @@
-"""Universal files read: time histories as one record, frequency response functions as responses."""
+"""Reading of universal files: time histories as one record, frequency response functions as responses."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from flexstage.experiment.records.record import Channel, Record, Responses, Role
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 OWN = re.compile(rf"flexstage (?P<role>input|output|unknown); rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s")
-"""The fifth line of text of functions written here: what the head's few digits cannot hold; it counts if it rounds to those."""
+"""Fifth text line of functions written here: full precision of header fields; used if it rounds to them."""
 OWN_RESPONSE = re.compile(rf"flexstage response; first (?P<first>{_FLOAT}) Hz; step (?P<step>{_FLOAT}) Hz; averages (?P<averages>\d+)")
 COUNTED = re.compile(r"(?P<text>.*?)(?:; )?function (?P<number>\d+) of (?P<count>\d+)")
-"""The fourth line of text of functions written here: how many there are, which the format does not say."""
+"""Fourth text line of functions written here: their number, which the format lacks."""
 
 
 def is_uff(start: bytes, _suffix: str) -> bool:
-    r"""Whether a file begins as universal files do.
+    r"""rRecognise the start of universal files.
 
     >>> is_uff(b"    -1\n    58\n", ".uff"), is_uff(b"time,u1\n", ".uff")
     (True, False)
@@ -41,13 +41,13 @@ def is_uff(start: bytes, _suffix: str) -> bool:
 
 
 def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    """What a universal file holds: its time histories, its frequency responses, or both, as far as `options.kind` asks for them.
+    """Read a universal file: its time histories, its frequency responses, or both, according to `options.kind`.
 
-    Raises `DesignError` with all that keeps it from being read: functions that break off (used as far as they go
-    where `FaultTolerance.TRUNCATED`), of different lengths or rates, of other kinds.
+    Raises `DesignError` with all faults: truncated functions (used partially with `FaultTolerance.TRUNCATED`), different lengths or rates,
+    other kinds.
     """
     stated = options.arrays.stated()
-    require(Finding(f"{path}: {meaning}={name}", "universal files have no named arrays", "Leave it out") for meaning, name in stated)
+    require(Finding(f"{path}: {meaning}={name}", "universal files have no named arrays", "Omit it") for meaning, name in stated)
     found, findings = scan(path)
     truncated = [Finding(_where(path, each), each.problem, _ADVICE) for each in found if each.problem is not None]
     require([*findings, *([*truncated, *_missing_functions(path, found)] if FaultTolerance.TRUNCATED not in options.accept_faults else ())])
@@ -60,11 +60,11 @@ def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     return (*record, *(_responses(path, responses, coherences, options) if responses and options.kind is not Kind.RECORD else ()))
 
 
-_ADVICE = 'Export the file anew, or accept "truncated" to use what there is'
+_ADVICE = 'Export the file again, or accept "truncated" to use the available part'
 
 
 def _missing_functions(path: Path, found: list[DataSet]) -> Iterable[Finding]:
-    """What files written here say of how many functions there were: one cut between two functions is like a whole one otherwise."""
+    """Findings for missing functions of files written here, truncated between two functions."""
     told = [COUNTED.fullmatch(each.function.texts[3]) for each in found if each.function.texts[4].startswith("flexstage ")]
     stated = max((int(each["count"]) for each in told if each), default=0)
     if len(found) < stated:
@@ -72,7 +72,7 @@ def _missing_functions(path: Path, found: list[DataSet]) -> Iterable[Finding]:
 
 
 def _where(path: Path, found: DataSet) -> str:
-    return f"{path}: {_name(found)} (line {found.line})"
+    return f"{path}:{found.line}: {_name(found)}"
 
 
 def _nothing(path: Path, found: list[DataSet]) -> Finding:
@@ -80,7 +80,7 @@ def _nothing(path: Path, found: list[DataSet]) -> Finding:
         return Finding(str(path), "it has no function at nodal degrees of freedom (data set 58)", "Export time histories or responses")
     counts = Counter(KINDS.get(each.function.kind, f"function of type {each.function.kind}") for each in found)
     listed = ", ".join(f"{count} x {kind}" for kind, count in counts.items())
-    what = f"it holds neither time histories nor frequency response functions but {listed}"
+    what = f"only {listed}, no time histories or frequency response functions"
     return Finding(str(path), what, "Modes need the phase between channels: export the time histories, or frequency response functions")
 
 
@@ -101,7 +101,7 @@ def _record(path: Path, histories: list[DataSet], options: Options) -> Record:
 
 
 def _history_names(histories: list[DataSet]) -> tuple[str, ...]:
-    """Names of the entities where those tell channels apart, else with nodes and directions."""
+    """Names of the entities if unique, else with nodes and directions."""
     entities = [each.function.response[0] for each in histories]
     if all(entities) and len(set(entities)) == len(entities) and not any(OWN.match(each.function.texts[4]) for each in histories):
         return tuple(entities)
@@ -119,7 +119,7 @@ def _role(found: DataSet) -> Role:
 
 
 def _common_clock(path: Path, chosen: list[tuple[str, DataSet]], options: Options) -> Clock:
-    """The clock all channels share. Raises `DesignError` where lengths, rates or starts differ."""
+    """Common sampling of all channels. Raises `DesignError` for different lengths, rates or starts."""
     require(_lengths(path, chosen) if FaultTolerance.TRUNCATED not in options.accept_faults else ())
     clocks = {name: _clock(path, name, each, options) for name, each in (chosen if not options.rate else chosen[:1])}
     first = next(iter(clocks.values()))
@@ -130,7 +130,7 @@ def _common_clock(path: Path, chosen: list[tuple[str, DataSet]], options: Option
 def _lengths(path: Path, chosen: list[tuple[str, DataSet]]) -> Iterable[Finding]:
     lengths = Counter(each.values.length for _, each in chosen)
     usual = max(lengths, key=lambda length: (lengths[length], length))
-    advice = "Export all channels over the same time, or name those that are meant (only)"
+    advice = "Export all channels over the same time, or select matching ones (only)"
     for name, each in chosen:
         if each.values.length != usual:
             yield Finding(f"{path}: {name}", f"it has {each.values.length} samples, others have {usual}", advice)
@@ -141,7 +141,7 @@ def _clock_findings(path: Path, clocks: dict[str, Clock]) -> Iterable[Finding]:
     for name, clock in clocks.items():
         if abs(clock.rate / first.rate - 1.0) > 1e-6 or abs(clock.start - first.start) * first.rate > 0.01:
             what = f"it has {clock.rate:g} Hz from {clock.start:g} s, {known} {first.rate:g} Hz from {first.start:g} s"
-            yield Finding(f"{path}: {name}", what, "Name channels of one sampling (only)")
+            yield Finding(f"{path}: {name}", what, "Select channels of one sampling (only)")
 
 
 def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
@@ -158,7 +158,7 @@ def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
 
 
 def refines(text: str, field: float, *, inverse: bool = False) -> bool:
-    """Whether a number in a text, or its inverse, is the one that a field of six digits was printed from.
+    """Whether a full-precision number, or its inverse, rounds to a printed field of six digits.
 
     >>> refines("2048.0", 4.88281e-04, inverse=True), refines("100.0", 0.02, inverse=True), refines("0", 0.02, inverse=True)
     (True, False, False)
@@ -170,7 +170,7 @@ def refines(text: str, field: float, *, inverse: bool = False) -> bool:
 
 
 def _responses(path: Path, found: list[DataSet], coherences: list[DataSet], options: Options) -> tuple[Record | Responses, ...]:
-    """The responses as arrays of the documented form. Where only the ratio has a unit, it stays with the output; the input has none."""
+    """Responses as arrays of the documented form. A unit of the ratio only is assigned to the output; the input has none."""
     table = _table(path, found, options)
     outputs, inputs = _complete(path, table, options)
     rows = [[table[output, input_] for input_ in inputs] for output in outputs]
@@ -200,17 +200,17 @@ def _matrix(rows: list[list[DataSet]]) -> Array:
 
 
 def _text(line: str) -> str:
-    """A line of text without the count of functions."""
+    """Line of text without the count of functions."""
     told = COUNTED.fullmatch(line)
     return told["text"] if told else line
 
 
 def _complete(path: Path, table: dict[tuple[str, str], DataSet], options: Options) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names of outputs and inputs between which every response is there."""
+    """Names of outputs and inputs with a complete set of responses."""
     outputs, inputs = (tuple(dict.fromkeys(pair[side] for pair in table)) for side in (0, 1))
     missing = {output: [input_ for input_ in inputs if (output, input_) not in table] for output in outputs}
     if FaultTolerance.INCOMPLETE not in options.accept_faults:
-        advice = 'Measure them, name channels that are complete (inputs, outputs), or accept "incomplete" to leave this output out'
+        advice = 'Measure them, select complete channels (inputs, outputs), or accept "incomplete" to omit this output'
         require(
             Finding(f"{path}: {output}", f"its responses to {', '.join(lack)} are missing", advice)
             for output, lack in missing.items()
@@ -218,7 +218,7 @@ def _complete(path: Path, table: dict[tuple[str, str], DataSet], options: Option
         )
     complete = tuple(output for output, lack in missing.items() if not lack)
     if not complete:
-        raise DesignError([Finding(str(path), "no output has responses to all inputs", "Name the inputs that are meant (inputs)")])
+        raise DesignError([Finding(str(path), "no output has responses to all inputs", "Select the inputs (inputs)")])
     return complete, inputs
 
 
@@ -230,7 +230,7 @@ def _pair(found: DataSet) -> tuple[str, str]:
 
 
 def _table(path: Path, found: list[DataSet], options: Options) -> dict[tuple[str, str], DataSet]:
-    """Responses by names of output and input; those that the user names. Raises `DesignError` where two have the same names."""
+    """Responses by names of output and input, as selected. Raises `DesignError` for duplicates."""
     table: dict[tuple[str, str], DataSet] = {}
     findings: list[Finding] = []
     for each in found:
@@ -238,12 +238,12 @@ def _table(path: Path, found: list[DataSet], options: Options) -> dict[tuple[str
         if (options.outputs and not matches(output, options.outputs)) or (options.inputs and not matches(input_, options.inputs)):
             continue
         if pair in table:
-            what = f"the response of {output} to {input_} stands there already (line {table[pair].line})"
-            findings.append(Finding(f"{path}: line {each.line}", what, "Export each response once, with nodes and directions"))
+            what = f"duplicate response of {output} to {input_} (first in line {table[pair].line})"
+            findings.append(Finding(f"{path}:{each.line}", what, "Export each response once, with nodes and directions"))
         table[pair] = each
     if not table:
         names = ", ".join(f"{output} to {input_}" for output, input_ in dict.fromkeys(map(_pair, found)))
-        findings.append(Finding(str(path), f"no response is between the channels asked for; there are those of {names}", "Check the names"))
+        findings.append(Finding(str(path), f"no response between the requested channels; available: {names}", "Check the names"))
     require(findings)
     return table
 
@@ -254,14 +254,14 @@ def _complex(found: DataSet) -> Array:
 
 
 def _frequencies(path: Path, found: list[DataSet]) -> Array:
-    """The frequencies all responses share."""
+    """Common frequencies of all responses."""
     axes = [_axis(each) for each in found]
     differ = [
         each
         for each, axis in zip(found, axes, strict=True)
         if len(axis) != len(axes[0]) or not np.allclose(axis, axes[0], rtol=1e-6, atol=0.0)
     ]
-    advice = "Export all responses over the same frequencies, or name those that are meant (inputs, outputs)"
+    advice = "Export all responses over the same frequencies, or select matching ones (inputs, outputs)"
     require(Finding(_where(path, each), f"its frequencies differ from those of {_name(found[0])}", advice) for each in differ)
     return axes[0]
 
@@ -279,10 +279,10 @@ def _axis(found: DataSet) -> Array:
 def _coherence(
     path: Path, found: list[DataSet], table: dict[tuple[str, str], DataSet], rows: list[list[DataSet]], options: Options
 ) -> list[list[DataSet]] | None:
-    """The coherence of every response; `None` where not all have theirs. Raises `DesignError` where only the last lacks it."""
+    """Coherence of every response; `None` if several are missing. Raises `DesignError` if only the last is missing."""
     stored = {_pair(each): each for each in found if each.values.length == rows[0][0].values.length}
     lack = [_pair(each) for each in itertools.chain(*rows) if _pair(each) not in stored]
     if lack and lack == list(table)[-1:] and len(table) > 1 and FaultTolerance.INCOMPLETE not in options.accept_faults:
         what = f"all responses have their coherence but the last, of {lack[0][0]} to {lack[0][1]}: the file may break off there"
-        raise DesignError([Finding(str(path), what, 'Export the file anew, or accept "incomplete" to do without coherence')])
+        raise DesignError([Finding(str(path), what, 'Export the file again, or accept "incomplete" to omit coherence')])
     return None if lack else [[stored[_pair(each)] for each in row] for row in rows]

@@ -1,4 +1,4 @@
-"""The functions of a universal file and where their values lie, found without reading the values."""
+"""Functions of a universal file and the positions of their values, without reading the values."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SLACK = 96
 
 @dataclass(frozen=True, eq=False)
 class DataSet:
-    """One function of a file: its head, its values as samples of one to three columns, the number of its line, what of it is missing."""
+    """Function of a file: its header, its values as samples of one to three columns, its line number, its missing part."""
 
     function: Function
     values: Samples
@@ -32,10 +32,10 @@ class DataSet:
 
 
 def scan(path: Path) -> tuple[list[DataSet], list[Finding]]:
-    r"""The functions of a file in order, and findings about those that cannot be read; other data sets are passed over.
+    r"""rScan the functions of a file in order, with findings for unreadable ones; other data sets are skipped.
 
-    Values of fixed columns are left in the file; others are read at once. A function that breaks off keeps what there is of it, and says
-    how much is missing.
+    Values in fixed columns stay in the file; others are read at once. A truncated function has its available values, and the size of the
+    missing part.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -51,14 +51,14 @@ def scan(path: Path) -> tuple[list[DataSet], list[Finding]]:
             try:
                 found.append(_read(path, stream, line, start))
             except ValueError as error:
-                where = f"{path}: function {len(found) + len(findings) + 1} (line {line})"
-                findings.append(Finding(where, str(error), "Export the file anew"))
+                where = f"{path}:{line}: function {len(found) + len(findings) + 1}"
+                findings.append(Finding(where, str(error), "Export the file again"))
                 _skip(stream)
     return found, findings
 
 
 def decode(raw: bytes) -> str:
-    r"""Text of a head: UTF-8, else Latin-1, which instruments write.
+    r"""rDecode header text: UTF-8, else Latin-1, common on instruments.
 
     >>> decode("m/s²".encode()), decode(b"m/s\xb2")
     ('m/s²', 'm/s²')
@@ -70,7 +70,7 @@ def decode(raw: bytes) -> str:
 
 
 def _starts(stream: BinaryIO) -> Iterator[tuple[int, bytes]]:
-    """Number of the line of every function's first record and the line that opens it; the stream stands behind it."""
+    """Line number of every function's first record and its opening line, with the stream behind it."""
     line = 0
     while raw := stream.readline():
         line += 1
@@ -128,7 +128,7 @@ def _read_binary(path: Path, stream: BinaryIO, line: int, head: tuple[Function, 
 
 
 def _closes(stream: BinaryIO, position: int) -> bool:
-    """Whether the mark that ends a data set stands there, or the file ends exactly there."""
+    """Whether the end mark of a data set, or the end of the file, is at this position."""
     stream.seek(0, 2)
     if position > stream.tell():
         return False
@@ -138,13 +138,13 @@ def _closes(stream: BinaryIO, position: int) -> bool:
 
 
 def _read_part(path: Path, stream: BinaryIO, line: int, function: Function, data: tuple[int, Layout, bool]) -> DataSet:
-    """A function whose end is not where its head says: what there is of it."""
+    """Available part of a function without its announced end."""
     start, layout, big = data
     end = _next_mark(stream, start)
     count = max(0, min(function.count, (end - start) // layout.size))
     stream.seek(end)
     needed = f"{function.count * layout.size} bytes for {function.count} values"
-    problem = f"{end - start} bytes of values where its head announces {needed}"
+    problem = f"{end - start} bytes of values (expected {needed} by its header)"
     if count == function.count:
         raise ValueError(f"it has {problem}; the file was changed as text")
     _skip(stream)
@@ -152,7 +152,7 @@ def _read_part(path: Path, stream: BinaryIO, line: int, function: Function, data
 
 
 def _next_mark(stream: BinaryIO, start: int) -> int:
-    """Where the next mark stands behind a position; the file's end if there is none."""
+    """Position of the next mark; the file's end without one."""
     stream.seek(start)
     position, tail = start, b""
     while block := stream.read(1 << 20):
@@ -170,25 +170,25 @@ def _read_printed(stream: BinaryIO, line: int, function: Function) -> DataSet:
 
 
 def _words(stream: BinaryIO, layout: Layout, function: Function) -> tuple[Array, str | None]:
-    """Values of any spacing, up to the mark; the last incomplete ones are left out."""
+    """Values of any spacing, up to the mark, without an incomplete last value."""
     chunks: list[Array] = []
     while (raw := stream.readline()) and raw.strip() != b"-1":
         chunks.append(_numbers(raw if raw.endswith(b"\n") else _without_last(raw), layout))
     numbers = np.concatenate(chunks) if chunks else np.zeros(0)
     count = min(function.count, len(numbers) // layout.columns)
     if np.any(numbers[function.count * layout.columns :]):  # zeros may fill the last line
-        raise ValueError(f"it has {len(numbers) // layout.columns} values where its head announces {function.count}")
+        raise ValueError(f"it has {len(numbers) // layout.columns} values (expected {function.count} by its header)")
     problem = f"it breaks off: it has {count} values where its head announces {function.count}" if count < function.count else None
     return numbers[: count * layout.columns].reshape(count, layout.columns), problem
 
 
 def _without_last(raw: bytes) -> bytes:
-    """A line without its last word: the file breaks off there, perhaps within a number."""
+    """Line without its last word, which may be truncated."""
     return re.sub(rb"\S+\s*$", b"", raw)
 
 
 def _numbers(raw: bytes, layout: Layout) -> Array:
-    """The numbers of a line: its words, or its columns where words touch."""
+    """Numbers of a line: its words, or its columns without separators."""
     text = raw.decode("latin-1").rstrip()
     words = text.split()
     if any(re.search(r"\d[-+]\d", word) for word in words):

@@ -1,4 +1,4 @@
-"""Values of a function in a universal file, read in any range from where they lie."""
+"""Values of a function in a universal file, read in any range."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flexstage.experiment.records.record import ComputedSamples, Samples
 
 @dataclass(frozen=True)
 class Layout:
-    """How the numbers of a function follow one another: columns a value (abscissa, real, imaginary), bytes and printed widths of each."""
+    """Layout of a function's numbers: columns per value (abscissa, real, imaginary), bytes and printed width of each."""
 
     columns: int
     bytes: tuple[int, ...]
@@ -28,7 +28,7 @@ class Layout:
 
     @staticmethod
     def of(function: Function, *, short_axis: bool = False) -> Layout:
-        """The layout a head asks for; with `short_axis` the abscissa of double values is of single precision.
+        """Return the layout for a header; with `short_axis` the abscissa of double values has single precision.
 
         >>> Layout(1, (8,), (20,) * 4).size
         8
@@ -45,7 +45,7 @@ class Layout:
 
 
 def binary_values(path: Path, start: int, length: int, layout: Layout, *, big: bool) -> Samples:
-    """Values (n, columns) of a binary function, read from where they are in the file."""
+    """Read values (n, columns) of a binary function from their position in the file."""
     kind = np.dtype([(str(number), f"{'>' if big else '<'}f{size}") for number, size in enumerate(layout.bytes)])
 
     def read(first: int, stop: int) -> Array:
@@ -54,8 +54,8 @@ def binary_values(path: Path, start: int, length: int, layout: Layout, *, big: b
             stream.seek(start + first * kind.itemsize)
             raw = stream.read(needed)
         if len(raw) < needed:
-            what = f"it became shorter while it was read: {len(raw)} of {needed} bytes"
-            raise refuse(str(path), what, "Read it when it is written to its end")
+            what = f"the file shrank during reading: {len(raw)} of {needed} bytes"
+            raise refuse(str(path), what, "Read it after writing is complete")
         found = np.frombuffer(raw, kind)
         return np.stack([found[name].astype(float) for name in found.dtype.names or ()], axis=-1)
 

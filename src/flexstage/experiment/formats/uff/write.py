@@ -1,4 +1,4 @@
-"""Universal files written: a record as time histories, responses as frequency response functions, in binary."""
+"""Writing of universal files: records as time histories, responses as frequency response functions, in binary."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ _EMPTY = Axis(0, "", "")
 
 
 def write_uff(path: str | os.PathLike[str], what: Record | Responses) -> None:
-    """Write a universal file, one function a channel or pair of channels: numbers of double precision.
+    """Write a universal file, one function per channel or pair of channels, in double precision.
 
-    They come back to the bit. What the head has no room for (rate to all digits, roles) stands in its lines of text. Raises `DesignError`
-    for names that do not fit and where the file cannot be written.
+    Numbers are exact to the bit. Data beyond the header's fields (full-precision rate, roles) are in its lines of text. Raises
+    `DesignError` for names that do not fit and if the file cannot be written.
 
     >>> import tempfile
     >>> from pathlib import Path
@@ -58,15 +58,13 @@ def write_uff(path: str | os.PathLike[str], what: Record | Responses) -> None:
 
 def _name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
     long = [channel.name for channel in channels if not _fits(channel.name)]
-    advice = (
-        f"Universal files hold names of one line and at most {_LONGEST} bytes that do not begin or end with a blank: rename the channel"
-    )
+    advice = f"Rename the channel: universal files need single-line names of at most {_LONGEST} bytes without outer blanks"
     wide = [channel for channel in channels if len(channel.unit) > 20]
     return [Finding(f"{where}: {name}", "its name does not fit into a universal file", advice) for name in long] + [
         Finding(
             f"{where}: {channel.name}",
-            f'its unit "{channel.unit}" has {len(channel.unit)} characters, room is for 20',
-            "Write the unit shorter",
+            f'its unit "{channel.unit}" is too long (got {len(channel.unit)} characters, expected at most 20)',
+            "Shorten the unit",
         )
         for channel in wide
     ]
@@ -77,7 +75,7 @@ def _fits(name: str) -> bool:
 
 
 def _write_record(stream: BinaryIO, record: Record) -> None:
-    """All channels side by side: each block of samples goes to every channel's place, so that the record is read once."""
+    """Write all channels together: each block of samples goes to every channel's position, so that the record is read once."""
     kinds = {Role.INPUT: 13, Role.OUTPUT: 8, Role.UNKNOWN: 0}
     form = (REAL_DOUBLE, record.length, True, record.start, 1.0 / record.rate, 0.0)
     starts: list[int] = []
@@ -97,7 +95,7 @@ def _write_record(stream: BinaryIO, record: Record) -> None:
 
 
 def _response_functions(responses: Responses) -> Iterator[bytes]:
-    """Each response, followed by its coherence if there is one."""
+    """Each response, followed by its coherence, if any."""
     first, step = _even(responses.frequencies)
     own = f"flexstage response; first {first!r} Hz; step {step!r} Hz; averages {responses.averages or 0}"
     number, kinds = 0, 1 if responses.coherence is None else 2
@@ -118,7 +116,7 @@ def _response_functions(responses: Responses) -> Iterator[bytes]:
 
 
 def _even(frequencies: Array) -> tuple[float, float]:
-    """First frequency and step where they give the others to the bit; else a step of zero."""
+    """First frequency and step if they reproduce the others exactly; else a step of zero."""
     if len(frequencies) < 2:
         return float(frequencies[0]) if len(frequencies) else 0.0, 0.0
     first = float(frequencies[0])

@@ -1,4 +1,4 @@
-"""Whether the evidence suffices: its lines beside the width of resonances, what was searched beside what was asked."""
+"""Adequacy of a record: line spacing relative to resonance widths, searched band relative to the requested one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FEWEST = 8
 
 @dataclass(frozen=True)
 class Reach:
-    """What was searched for modes, from `low` to `high` in Hz (nought where nothing could be), and what the user `asked` for."""
+    """Band searched for modes, from `low` to `high` in Hz (zero if none), and the requested band, `asked`."""
 
     low: float
     high: float
@@ -33,7 +33,7 @@ def width(pole: complex) -> float:
 
 
 def line_distance(known: Evidence) -> float:
-    """Distance in Hz of the lines that candidates are taken from.
+    """Spacing in Hz of the lines for candidates.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
@@ -44,25 +44,24 @@ def line_distance(known: Evidence) -> float:
 
 
 def few_lines(known: Evidence, band: tuple[float, float], count: int) -> list[Finding]:
-    """A finding where a band has fewer than eight lines: no polynomial of order 2 can be fitted to them, not even with one input.
+    """Check a band for fewer than eight lines: too few for a polynomial of order 2, even with one input.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
     >>> print(few_lines(evidence(one_mode_record(), None), (10.0, 10.5), 1)[0])
-    record: from 10 to 10.5 Hz there is 1 of the lines 0.374 Hz apart; it takes 8. Ask for a wider band, or record longer.
+    record: too few lines from 10 to 10.5 Hz, 0.374 Hz apart (got 1, expected 8). Request a wider band, or record longer.
     """
     if count >= _FEWEST:
         return []
-    are = "is 1" if count == 1 else f"are {count}"
-    what = f"from {band[0]:.4g} to {band[1]:.4g} Hz there {are} of the lines {line_distance(known):.3g} Hz apart; it takes {_FEWEST}"
-    return [Finding(known.where, what, "Ask for a wider band, or record longer")]
+    what = f"too few lines from {band[0]:.4g} to {band[1]:.4g} Hz, {line_distance(known):.3g} Hz apart (got {count}, expected {_FEWEST})"
+    return [Finding(known.where, what, "Request a wider band, or record longer")]
 
 
 def coarse_lines(known: Evidence, poles: Array) -> str | None:
-    """A warning where lines lie further apart than the narrowest of the modes found, at `poles` in Hz, is wide.
+    """Warn of a line spacing beyond the width of the narrowest mode, at `poles` in Hz.
 
-    Candidates are poles of responses at those lines: what lies within one line of another mode may pass for it. With lines as close as the
-    half-power bandwidth B = 2 zeta f a record of n averages lasts about n / B.
+    Candidates are poles of responses at those lines: a mode within one line of another may be missed. With a line spacing of the half-power
+    bandwidth B = 2 zeta f a record of n averages lasts about n / B.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
@@ -85,7 +84,7 @@ def coarse_lines(known: Evidence, poles: Array) -> str | None:
 
 
 def unsearched_band(known: Evidence, reach: Reach) -> str | None:
-    """A warning where a part of the band that the user asked for could not be searched.
+    """Warn of an unsearched part of the requested band.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
@@ -101,7 +100,7 @@ def unsearched_band(known: Evidence, reach: Reach) -> str | None:
 
 
 def no_mode_warning(known: Evidence, reach: Reach) -> str:
-    """What it means that no mode was found: noise alone, no resonance, or too short a record to tell.
+    """Explain a result without modes: noise only, no resonance, or too short a record.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
@@ -128,7 +127,7 @@ def no_mode_warning(known: Evidence, reach: Reach) -> str:
 
 
 def _advise_length(known: Evidence, wanted: float | None) -> str:
-    """Advice: how long a record of the same averages gives lines `wanted` Hz apart."""
+    """Advice: record length for a line spacing of `wanted` Hz with the same averages."""
     if known.coherence is None:
         return "Measure with finer lines." if wanted is None else f"Measure with lines {wanted:.2g} Hz apart."
     lasts = 1.0 / known.resolution
@@ -138,6 +137,6 @@ def _advise_length(known: Evidence, wanted: float | None) -> str:
 
 
 def _round_up(value: float) -> float:
-    """Rounded up to two digits."""
+    """Round up to two digits."""
     unit = 10.0 ** (np.floor(np.log10(value)) - 1.0)
     return float(np.ceil(value / unit) * unit)

@@ -1,4 +1,4 @@
-"""What the evidence cannot tell of modes, in words."""
+"""Warnings on the limits of the data for identified modes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MOTIONS = ("m/s", "m/s^2", "rad/s", "rad/s^2")
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Modes found: `poles` (k,) in Hz, which lie `close` together, their share (k,) of motion from `elsewhere`, `widening` of intervals."""
+    """Identified modes: `poles` (k,) in Hz, the `close` ones, their share (k,) of motion from `elsewhere`, `widening` of intervals."""
 
     poles: Array
     close: tuple[tuple[int, ...], ...]
@@ -27,12 +27,12 @@ class Modes:
 
 
 def _is_motion(channel: Channel) -> bool:
-    """Whether a channel measures a velocity or an acceleration: a stroke drives, those do not."""
+    """Whether a channel measures a velocity or an acceleration, the response to an unknown force."""
     return bool(channel.unit) and unit_problem(channel.unit) is None and any(same_dimension(channel.unit, unit) for unit in _MOTIONS)
 
 
 def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
-    """Warnings about modes found: few or coarse lines, none found, repeated ones that few channels cannot show, forces from elsewhere.
+    """Collect warnings on identified modes: few or coarse lines, none identified, hidden repeated modes, unrecorded forces.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import POLE, one_mode_record
@@ -68,8 +68,8 @@ def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...
     if moved:
         listed = ", ".join(f"{channel.name} ({channel.unit})" for channel in moved)
         found.append(
-            f"taken as input, and a motion: {listed}. What follows a motion shows the modes of a stage held there, not its own: "
-            "right only where the ground was shaken. Record forces, or strokes."
+            f"taken as input, and a motion: {listed}. With an imposed motion the modes are those of a stage fixed there, not its own: "
+            "correct only for ground excitation. Record forces, or strokes."
         )
     shaken = np.flatnonzero(modes.elsewhere > _MOST_ELSEWHERE)
     if len(shaken):

@@ -1,4 +1,4 @@
-"""Whether recorded inputs drive a mode: its motion, line by line, against the inputs, with the noise found beside it."""
+"""Test of excitation by recorded inputs: a mode's motion, line by line, against inputs and noise."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _HALVINGS = 40
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """Whether the recorded inputs drive the modes (k,) of a band.
+    """Excitation of the modes (k,) of a band by the recorded inputs.
 
-    `chance` is how likely a mode's motion would look driven as it does if they did not drive it, `elsewhere` the share of its motion in its
-    half-power band that they do not explain.
+    `chance` is the probability of the observed correlation without excitation. `elsewhere` is the unexplained share of the motion in the
+    half-power band.
     """
 
     chance: Array
@@ -31,14 +31,14 @@ class Drive:
 
 
 def measure_drives(bands: Sequence[tuple[Band, Modal]], lines: Iterable[Lines]) -> list[Drive]:
-    """Whether the recorded inputs drive each mode, band by band.
+    """Test whether the recorded inputs excite each mode, band by band.
 
-    Its motion q is what the outputs hold beside all else that was fitted, weighted by shape and noise: q (j f - p) is the force on the
-    mode, flat in frequency, beside noise of the outputs. Regressed on inputs and transients over the lines within four half-widths, three
-    times as many as there are regressors at least, the share that the inputs explain is F-distributed where they do not drive it, whatever
-    else does: a force that is not recorded, or a tone. The variance is a + b |j f - p|^2: b is the outputs' noise, and a, that of the force
-    that is not recorded, follows from what the regression leaves; the nearest lines, as many as there are regressors, weigh alike.
-    The transients count as driven where the inputs are the same to a tenth of their power: a blow at a record's begin.
+    The modal motion q is the output after subtraction of all other fitted parts, weighted by shape and noise. q (j f - p) is the modal
+    force, flat in frequency, plus output noise. It is regressed on inputs and transients over the lines within four half-widths, at least
+    three times as many as regressors. Without excitation by the inputs the explained share is F-distributed, regardless of unrecorded
+    forces or tones. The variance is a + b |j f - p|^2: b is the outputs' noise, and a, of the unrecorded force, follows from the residual;
+    the nearest lines, as many as regressors, have equal weights. Transients count as excited if the inputs equal them to a tenth of their
+    power: an impact at the start of a record.
 
     >>> from flexstage.experiment.example import one_mode_band, one_mode_record
     >>> from flexstage.experiment.identification.likelihood import fit
@@ -57,7 +57,7 @@ def measure_drives(bands: Sequence[tuple[Band, Modal]], lines: Iterable[Lines]) 
 
 @dataclass(frozen=True, eq=False)
 class _Near:
-    """Lines near a mode: their drive (n, m+b), the mode's motion (n,), and how far (n,) they are from its pole in Hz, complex."""
+    """Lines near a mode: their drive (n, m+b), the mode's motion (n,), and their complex distances (n,) from its pole in Hz."""
 
     drive: Array
     motion: Array
@@ -66,7 +66,7 @@ class _Near:
 
 @dataclass(frozen=True, eq=False)
 class _Local:
-    """A band with what was fitted in it, and the lines near each of its modes."""
+    """Band with its fit, and the lines near each of its modes."""
 
     band: Band
     modal: Modal
@@ -112,7 +112,7 @@ class _Local:
 
 
 def _drive_chance(near: _Near, inputs: int, sensed: float) -> tuple[float, float]:
-    """The F-test's tail, of complex numbers: twice the degrees of freedom; and the share of motion that inputs do not explain."""
+    """Tail probability of the F-test for complex numbers, with twice the degrees of freedom; and the unexplained share of motion."""
     values, force, distance = near.drive, near.motion * near.away, np.abs(near.away) ** 2
     count, total = values.shape
     if count <= total:
@@ -132,7 +132,7 @@ def _drive_chance(near: _Near, inputs: int, sensed: float) -> tuple[float, float
 
 
 def _unexplained_share(near: _Near, rest: Array) -> float:
-    """Share of the motion, where it is largest, that the regression leaves of the force."""
+    """Share of the force residual in the motion, at its maximum."""
     count, total = near.drive.shape
     distance = np.abs(near.away) ** 2
     close = distance <= max(2.0 * float(np.min(np.real(near.away) ** 2)), float(np.sort(distance)[total]))
@@ -141,7 +141,7 @@ def _unexplained_share(near: _Near, rest: Array) -> float:
 
 
 def _other_variance(values: Array, force: Array, sensed: Array) -> float:
-    """The least variance beside the `sensed` with which the regression leaves no more than it should."""
+    """Smallest variance in addition to the `sensed` one for a consistent regression residual."""
     free = len(force) - values.shape[1]
     if np.sum(np.abs(_weighted_residual(values, force, 1.0 / sensed)) ** 2) <= free:
         return 0.0
@@ -154,7 +154,7 @@ def _other_variance(values: Array, force: Array, sensed: Array) -> float:
 
 
 def _weighted_residual(values: Array, force: Array, weights: Array) -> Array:
-    """What the regression leaves, times the roots of the weights."""
+    """Regression residual times the roots of the weights."""
     root = np.sqrt(weights)
     rows, right = values * root[:, None], (force.T * root).T
     return right - rows @ np.linalg.lstsq(rows, right, rcond=1e-10)[0]

@@ -1,4 +1,4 @@
-"""The CAD of a component: its pieces as one conforming solid (or several, one a medium), with the faces it is joined and held by."""
+"""The CAD of a component: its pieces as one conforming solid (or several, one for each medium), with named interface faces."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ _TOLERANCE = 1e-3
 _AREA = 1e-4
 """... and within this share of their area."""
 _WITHIN, _ALONG = 1e-9, 1.0 - 1e-9
-"""How far from a plane [m] what lies on it may be, and the least cosine between directions that are one."""
+"""Distance from a plane up to which a point is in it [m], and the smallest cosine between equal directions."""
 
 _PLATE = 0.22
-"""Cylinders thinner than this share of their diameter are plates: elements as usual are smaller than their curvature asks for."""
+"""Cylinders thinner than this share of their diameter are plates: usual elements are smaller than their curvature requires."""
 
 
 @dataclass(frozen=True)
 class Cad:
-    """A component drawn: the shape [mm] whose faces carry the names of `faces`, its solids the names `medium 0`, ... of `media`.
+    """A drawn component: the shape [mm] with the names `faces` on its faces, and the names `medium 0`, ... of `media` on its solids.
 
-    Of what is cut at `mirrors` it is the positive side.
+    If cut at `mirrors`, the shape is the positive side.
     """
 
     shape: occ.TopoDS_Shape
@@ -46,7 +46,7 @@ class Cad:
 def cad(component: Component) -> Cad:
     """Draw a component: pieces of one medium are fused, those of different media glued over their common faces.
 
-    Faces are named after joints: interfaces and those held by the ground. Raises `DesignError` for joints without a matching flat face and
+    Faces are named after joints: interfaces and grounded ones. Raises `DesignError` for joints without a matching flat face and
     for pieces that do not form one solid.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
@@ -67,7 +67,7 @@ def cad(component: Component) -> Cad:
 
 
 def cut_component(component: Component, drawing: Cad) -> Cad:
-    """The positive side of a drawing of a component, across the planes that it is symmetric about.
+    """The positive side of a component's drawing, cut at its symmetry planes.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> round(cut_component(bar(), cad(bar())).shape.mass, 6)  # mm^3
@@ -79,12 +79,11 @@ def cut_component(component: Component, drawing: Cad) -> Cad:
 
 @SESSION.keep(1)
 def mirrors_of(component: Component) -> Mirrors:
-    """The planes of its axes, across y and z, that a component of one medium is symmetric about and can be cut at.
+    """The planes across y and z about which a component of one medium is symmetric and can be cut.
 
-    Every joint, link and body must lie on the plane and be its own mirror image. Leaves are not cut: their elements, flat already, would be
-    flatter, or fewer across them, and the errors told larger. Stacks, rods, cylinders, spheres and round holes stay whole, but for plates:
-    their roundness alone sets the size of elements around them, and the mesher divides arcs less finely than circles; they would weigh too
-    little.
+    Every joint, link and body must be its own mirror image. Leaves are not cut: their flat elements would become flatter, or fewer across
+    the leaf, with larger error estimates. Stacks, rods, cylinders, spheres and round holes are not cut either, except plates. Their
+    curvature sets the size of elements, and the mesher divides arcs less finely than circles, which would reduce their mass.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> mirrors_of(bar())
@@ -110,7 +109,7 @@ def _is_mirrored(component: Component, axis: int) -> bool:
 
 
 def _is_round(form: Form) -> bool:
-    """Whether it is round, and not so thin that this does not matter to the size of its elements."""
+    """Whether it is round, and thick enough to affect the size of its elements."""
     if isinstance(form, Pierced):
         return any(map(_is_round, (form.solid, *form.holes)))
     if isinstance(form, Cylinder):
@@ -119,7 +118,7 @@ def _is_round(form: Form) -> bool:
 
 
 def _solids(component: Component) -> Iterator[list[occ.TopoDS_Shape]]:
-    """The solids of each link, of each body, and those that print each foreign joint."""
+    """The solids of each link, of each body, and those that imprint each foreign joint."""
     for members in groups(component).values():
         yield [move_solid(draw_form(piece.form), piece.frame) for piece in (component.pieces[number] for number in members)]
     for item in component.interfaces:
@@ -135,7 +134,7 @@ def _fuse(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
 
 
 def _pieces_of(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Finding]:
-    """Solids that share faces, glued media included, hang together; anything else that falls apart has a gap."""
+    """Check that all solids are connected by faces, including glued media; separate groups have a gap."""
     if len(shape.solids) == 1:
         return
     groups: list[set[tuple[float, ...]]] = []
@@ -145,11 +144,11 @@ def _pieces_of(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Findin
         groups = [group for group in groups if not group & faces] + [set.union(faces, *touching)]
     if len(groups) > 1:
         names = ", ".join(piece.name for piece in component.pieces)
-        yield Finding(component.name, f"its pieces ({names}) fall into {len(groups)} separate solids", "Let their outlines touch")
+        yield Finding(component.name, f"its pieces ({names}) fall into {len(groups)} separate solids", "Make their outlines touch")
 
 
 def _name_solids(shape: occ.TopoDS_Shape, interfaces: Sequence[Interface]) -> occ.TopoDS_Shape:
-    """The shape with the end faces of foreign links printed on it."""
+    """The shape with the end faces of foreign links imprinted on it."""
     stamps = [
         move_solid(draw_form(item.footprint), item.stamp) for item in interfaces if item.footprint is not None and item.stamp is not None
     ]
@@ -165,7 +164,7 @@ def _name_solids(shape: occ.TopoDS_Shape, interfaces: Sequence[Interface]) -> oc
 def _name_face(shape: occ.TopoDS_Shape, joint: Joint) -> Finding | None:
     origin, normal = joint.frame.position * MILLIMETRES, joint.frame.rotation[:, 0]
     flat = [face for face in shape.faces if _is_flat(face, origin, normal)]
-    # A face around the joint (an annulus) has the same centre: the area tells them apart.
+    # A face around the joint (an annulus) has the same centre but another area.
     area = joint.area * MILLIMETRES**2
     nearest = min(flat, key=lambda face: abs(face.mass - area) / area + _distance(face, origin) / np.sqrt(area), default=None)
     if nearest is None or _distance(nearest, origin) > _TOLERANCE or abs(nearest.mass - area) > _AREA * area:
@@ -191,7 +190,7 @@ def _is_flat(face: occ.Face, origin: Array, normal: Array) -> bool:
 
 
 def region(piece: Piece, points: Array) -> Array:
-    """Distance-like measure (n,) of points (n, 3) [m] from a piece: how far outside its bounding box they are, 0 inside [m].
+    """Distance-like measure (n,) of points (n, 3) [m] from a piece: their distance from its bounding box, 0 inside [m].
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> region(bar().pieces[0], np.array([[0.05, 0.0, 0.0], [0.05, 0.0, 0.007]])).round(9).tolist()
@@ -203,7 +202,7 @@ def region(piece: Piece, points: Array) -> Array:
 
 @SESSION.keep(KEPT)
 def half_extents(piece: Piece) -> Array:
-    """Half sizes (3,) of a piece's bounding box in its own frame [m], drawn once.
+    """Half sizes (3,) of a piece's bounding box in its own frame [m], from one drawing.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> half_extents(bar().pieces[0]).round(9).tolist()

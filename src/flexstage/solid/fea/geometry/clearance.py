@@ -1,4 +1,4 @@
-"""Clearance: outlines that no joint connects keep apart."""
+"""Clearance between outlines without a joint."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from flexstage.solid.fea.geometry.piece import MILLIMETRES, Piece, coordinates, 
 from flexstage.solid.fea.geometry.stage_pieces import Stage
 
 TOUCHING = 1e-6
-"""Outlines nearer than this touch [m]."""
+"""Distance up to which outlines touch [m]."""
 _NO_VOLUME = 1e-6
 """Common volumes below this are rounding [mm^3]."""
 
 
 def clearance_questions(stage: Stage, clearance: float) -> Iterator[Question]:
-    """A question for every near pair of outlines of different bodies or links, but links and the bodies they join.
+    """A question for every near pair of outlines of different bodies or links, except links and the bodies they join.
 
-    `clearance` is the least distance wanted [m]; copies ask the same.
+    `clearance` is the required distance [m]; instances share the question.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.solid.fea.geometry.stage_pieces import stage_pieces
@@ -50,7 +50,7 @@ def _belong_together(stage: Stage, first: Piece, second: Piece) -> bool:
 
 def _answers(first: Piece, second: Piece, clearance: float) -> Iterator[Answer]:
     here, there = draw_form(first.form), move_solid(draw_form(second.form), relative_frame(second.frame, first.frame))
-    away, common = float(here.Distance(there)), here * there  # a solid within another one is at a distance from its faces
+    away, common = float(here.Distance(there)), here * there  # a solid inside another one has a distance to its faces
     if common.mass > _NO_VOLUME:
         at = first.frame.point(coordinates(common.center) / MILLIMETRES) * MILLIMETRES
         place = ", ".join(f"{round(float(value), 3) + 0.0:g}" for value in at)
@@ -67,4 +67,4 @@ def _answers(first: Piece, second: Piece, clearance: float) -> Iterator[Answer]:
 def _advice(first: Piece, second: Piece) -> str:
     if GROUND in {first.body, second.body}:
         return "Trim one of the two outlines"
-    return "Trim one of the two outlines, or move one where that moves no axis"
+    return "Trim one of the two outlines, or move one without moving an axis"

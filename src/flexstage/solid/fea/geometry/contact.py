@@ -1,6 +1,6 @@
-"""Contact: do the outlines of a stage meet where its links join, form one solid a body, and keep clear everywhere else?
+"""Contact: whether links meet their bodies, bodies form one solid each, and all other outlines have clearance.
 
-Found before meshing and all together; lengths within this file are in mm, as CAD has them.
+Checked together before meshing; lengths within this file are in mm, as in CAD.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from flexstage.solid.fea.solver.component import components
 from flexstage.spatial.frame import Frame, identity
 
 _DEPTH = 0.01
-"""How far an end face is extruded to see what it lies on."""
+"""Depth of an extruded end face for the contact test."""
 _GAP = 1e-5
 _SHARE = 1e-3
 _NEAR = 2e-3
-"""Pieces of a body that its link may meet are this near [m]."""
+"""Largest distance between a link and a piece of its body for a contact test [m]."""
 
 
 def contact_findings(mechanism: Mechanism, clearance: float = 0.0) -> tuple[Finding, ...]:
-    """What keeps the outlines of a stage from forming the solids its description means; nothing if they do.
+    """Errors that prevent the outlines of a stage from forming the described solids; empty for a sound stage.
 
-    Of every link with a shape: each end face lies wholly on the outline of its body (a body without outline is not looked at, the ground
-    where it is drawn in the link's unit). Outlines of one body form one piece, joined over faces. Any other two keep apart by more than
-    `clearance` [m] (touching, within 1 um, is an error). No step, gap, edge or face is much smaller than what is drawn there.
+    For links with a shape, each end face must be entirely on the outline of its body. A body without outline is not checked, the ground
+    only if it is drawn in the link's unit. Outlines of one body must form one solid, joined over faces. All others must have a distance
+    above `clearance` [m] (contact, within 1 um, is an error). No step, gap, edge or face may be much smaller than the local geometry.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> contact_findings(parallelogram())
@@ -79,7 +79,7 @@ class _End:
 
 @dataclass(frozen=True)
 class _Meeting:
-    """How an end face meets an outline: the gap between them, the share of it that lies on it, how deep the link runs into it."""
+    """Contact of an end face with an outline: the gap, the share of the face in contact, the depth of penetration."""
 
     gap: float
     share: float
@@ -112,7 +112,7 @@ def _link_answers(piece: Piece, first: _End, second: _End) -> Iterator[Answer]:
     if bad and all(_meeting(shape, half, -end.side, solids[end.side]).sound for end in drawn_ends):
         yield (
             f"it is drawn from {second.body} to {first.body}, but joins {first.body} to {second.body}",
-            "Turn `along` round, or name the two bodies the other way round",
+            "Reverse `along`, or exchange the two bodies",
         )
         return
     for end in drawn_ends:
@@ -126,7 +126,7 @@ def _meeting(shape: occ.TopoDS_Shape, half: float, side: float, solid: occ.TopoD
     area = sum(face.mass for face in faces)
     gap = min(float(face.Distance(solid)) for face in faces)
     outward, inward = (sum((face.Extrude(occ.Vec(sign * side * _DEPTH, 0, 0)) * solid).mass for face in faces) for sign in (1.0, -1.0))
-    if gap > _GAP and inward <= _SHARE * area * _DEPTH:  # a face within the solid is at a distance from its faces
+    if gap > _GAP and inward <= _SHARE * area * _DEPTH:  # a face inside the solid has a distance to its faces
         return _Meeting(gap, 0.0, 0.0)
     gap = min(gap, _GAP)
     depth = 0.0
@@ -153,17 +153,17 @@ def _end_answers(end: _End, meeting: _Meeting) -> Iterator[Answer]:
         )
     if meeting.share < 1.0 - _SHARE:
         yield (
-            f"only {100.0 * meeting.share:.3g} % of its end face lies on {end.body}",
-            f"Widen the outline of {end.body} there, or move it: the whole end face must lie on it",
+            f"only {100.0 * meeting.share:.3g} % of its end face is on {end.body}",
+            f"Widen the outline of {end.body} there, or move it: the whole end face must be on it",
         )
 
 
 def _side_answers(shape: occ.TopoDS_Shape, half: float, end: _End, solid: occ.TopoDS_Shape) -> Iterator[Answer]:
-    """A link meets its body at the end face and nowhere else."""
+    """Check that a link meets its body only at the end face."""
     margin, far = min(0.05, 0.05 * half), 1e3 * half
     inner = shape * occ.Box(occ.Pnt(-half + margin, -far, -far), occ.Pnt(half - margin, far, far))
     if inner.Distance(solid) < 0.5 * margin:
-        yield f"it meets {end.body} beside its end face too", f"Trim the outline of {end.body} beside the link"
+        yield f"it also meets {end.body} outside its end face", f"Trim the outline of {end.body} next to the link"
 
 
 def _body_questions(stage: Stage) -> Iterator[Question]:
@@ -196,17 +196,17 @@ def _slot_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape], n
 
 
 def _gap_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape]) -> Iterator[Answer]:
-    """Groups of outlines that no face joins to the rest."""
+    """Groups of outlines without a common face with the others."""
     groups = _connected_groups(shapes)
     for group in groups[1:]:
         rest = [number for number in range(len(shapes)) if number not in group]
         away, one, other = min((float(shapes[i].Distance(shapes[j])), i, j) for i in group for j in rest)
         names = ", ".join(pieces[number].name for number in group)
         if away > _GAP:
-            yield f"{names} is {distance_text(away)} away from {pieces[other].name}", "Let the outlines of one body touch over a face"
+            yield f"{names} is {distance_text(away)} away from {pieces[other].name}", "Make the outlines of one body touch over a face"
         else:
             what = f"{names} meets {pieces[other].name} along an edge or at a point only ({pieces[one].name})"
-            yield what, "Let them touch over a face, or overlap"
+            yield what, "Make them touch over a face, or overlap"
 
 
 def _connected_groups(shapes: Sequence[occ.TopoDS_Shape]) -> list[list[int]]:

@@ -1,4 +1,4 @@
-"""The edge of a hinge whose profile is known by its height: as CAD curves, in millimetres."""
+"""The edge of a hinge from its height profile, as CAD curves in millimetres."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from flexstage.solid.fea.geometry.piece import MILLIMETRES
 
 _STATIONS = 65
 _SAME = 1e-9
-"""Distance [mm] by which a curve may miss the contour and still count as it."""
+"""Largest distance [mm] between a curve and the contour it replaces."""
 
 
 def contour_edges(contour: Contour, rise: float, sign: float) -> list[occ.TopoDS_Shape]:
-    """The edge y = sign (rise + w(x)) [mm] from -x to +x; two curves meet in the middle, where the mesh is to be fine.
+    """The edge y = sign (rise + w(x)) [mm] from -x to +x; two curves meet in the middle, where the mesh must be fine.
 
-    What is straight or a cubic between two knots is drawn exactly, all else as a spline through 65 points: 2e-5 of its size off at most.
+    Straight and cubic intervals are drawn exactly, others as a spline through 65 points: an error of at most 2e-5 of its size.
 
     >>> from flexstage.parts.profile import Vee
     >>> [round(edge.mass, 6) for edge in contour_edges(Vee(2e-3, 1e-4, np.pi / 2.0), 0.5, 1.0)[::3]]  # two flanks at 45 degrees
@@ -58,6 +58,6 @@ def _points(start: float, end: float, share: Array, heights: Array) -> list[occ.
 
 
 def segments(points: Sequence[tuple[float, float]]) -> list[occ.TopoDS_Shape]:
-    """Segments between points of the xy plane [mm], none where two points are one."""
+    """Segments between points of the xy plane [mm], none between equal points."""
     pairs = pairwise(points)
     return [occ.Segment(occ.Pnt(*a, 0), occ.Pnt(*b, 0)) for a, b in pairs if np.hypot(b[0] - a[0], b[1] - a[1]) > _SAME]

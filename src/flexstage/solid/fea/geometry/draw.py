@@ -1,7 +1,7 @@
-"""Drawing: forms as CAD solids, in millimetres (the CAD kernel's tolerances are absolute and made for them).
+"""Drawing: forms as CAD solids, in millimetres (required by the CAD kernel's absolute tolerances).
 
-Every hinge is drawn at the origin and then moved: cuts made far from the origin fail to mesh. Arcs that would end square on an end face are
-stopped short by 3 % of their radius: a face tangent to another leaves a wedge of no angle that no mesh can fill.
+Every hinge is drawn at the origin and then moved: cuts far from the origin fail to mesh. Arcs perpendicular to an end face are
+shortened by 3 % of their radius: a face tangent to another leaves a wedge without an angle, which cannot be meshed.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from flexstage.spatial.frame import Frame
 from flexstage.spatial.rotation import rotation_vector
 
 SHORTENED = 0.03
-"""By how much of their radius arcs stop short of an end face they would touch without an angle."""
+"""Shortening of arcs at an end face to which they would be tangent, relative to their radius."""
 _STATIONS = 33
 
 Curve = list[occ.TopoDS_Shape]
@@ -54,9 +54,9 @@ def draw_form(form: Form) -> occ.Solid:
 
 
 def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
-    """Draw a hinge with stubs of given lengths [m] at its first and second end; elements at the neck are `size` times its thickness.
+    """Draw a hinge with stubs of these lengths [m] at its first and second end; elements at the neck are `size` times its thickness.
 
-    It is thin along y and wide along z. Raises `DesignError` for a kind whose shape nobody offers.
+    It is thin along y and wide along z. Raises `DesignError` for a kind without a shape.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> bar = specimen(Leaf("steel", 1e-3, 1e-3, 2e-3), (0.0, 0.0), 1.0)
@@ -70,13 +70,13 @@ def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
 def _shape(part: Shaped) -> Shape:
     found = SHAPES.get(part.kind)
     if found is None:
-        what = "its shape as a solid is not known: nobody offers one for this kind"
-        raise refuse(f"the {part.kind}", what, f"Install the package that does ({SHAPES.group})")
+        what = "no installed package has a solid shape for this kind"
+        raise refuse(f"the {part.kind}", what, f"Install a package with this shape ({SHAPES.group})")
     return found
 
 
 def move_solid(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:
-    """A solid drawn at the origin, moved into a frame given in metres.
+    """A solid drawn at the origin, moved into a frame in metres.
 
     >>> from flexstage.parts.body import Block
     >>> there = move_solid(draw_form(Block("steel", (0.01, 0.01, 0.01))), Frame(np.eye(3), np.array([0.1, 0.0, 0.0])))
@@ -157,7 +157,7 @@ def _neck(form: Neck) -> occ.Solid:
 
 
 def _extrude(thickness: object, profile: Profile, width: object) -> occ.Solid:
-    """The profile on both sides of the xz plane, drawn through the width."""
+    """The profile on both sides of the xz plane, extruded over the width."""
     half, rise = 0.5 * millimetres(length(profile)), 0.5 * millimetres(thickness)
     upper, lower = _upper(rise, profile), _upper(rise, profile, side=-1.0)
     start, end = _ends(rise, profile)
@@ -187,7 +187,7 @@ def _upper(rise: float, profile: Profile, side: float = 1.0) -> Curve:
 
 
 def _cut(rise: float, profile: Profile, side: float) -> tuple[Curve, float, float]:
-    """The curved part, shortened: its edges, how far it reaches along x and its height there [mm]."""
+    """The curved part, shortened: its edges, its extent along x and its height there [mm]."""
     if isinstance(profile, Filleted):
         return _fillet(rise, profile, side)
     half, height = 0.5 * millimetres(length(profile)), millimetres(cut_height(profile))
@@ -225,17 +225,17 @@ def _spline(at: Callable[[float], tuple[float, float]], largest: float) -> occ.T
 
 
 def prism(form: Shaped) -> occ.Solid:
-    """A part of one section, drawn by the corners of its outline [mm]."""
+    """A part of one section, drawn from the corners of its outline [mm]."""
     half = 0.5 * millimetres(form.span)
     return _prism([occ.Pnt(-half, millimetres(y), millimetres(z)) for y, z in form.throat.outline(np.zeros(0))], occ.Vec(2.0 * half, 0, 0))
 
 
 @dataclass(frozen=True)
 class Shape:
-    """A kind of part as a CAD solid in millimetres: what draws it at the origin, and what draws it as a specimen, with stubs at its ends.
+    """A kind of part as a CAD solid in millimetres: functions that draw it at the origin, and as a specimen with stubs at its ends.
 
-    Without the latter, a specimen is the part as it is drawn, with blocks at its ends. Parts with a profile of cuts want `specimen.cut`:
-    arcs that are drawn a little short meet rigid faces at angles that no mesh can fill.
+    By default, a specimen is the drawn part with blocks at its ends. Parts with a profile of cuts require `specimen.cut`:
+    shortened arcs meet rigid faces at angles that cannot be meshed.
     """
 
     draw: Callable[[Any], occ.Solid]

@@ -1,4 +1,4 @@
-"""Imported solids: STEP files that stand for outlines, read and held to what the description states of them."""
+"""Imported solids: outlines from STEP files, compared with the values of the description."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from flexstage.solid.fea.geometry.piece import MILLIMETRES, coordinates
 _DIGITS = 6
 """Digits of a box [mm]: the kernel widens it by 1e-7."""
 TOLERANCE = 1e-3
-"""What is stated agrees with the file within this share: of mass and inertia, and for places of the longest side."""
+"""Largest relative difference between specified values and the file: of mass and inertia, and of positions over the longest side."""
 
 
 @dataclass(frozen=True, eq=False)
 class ImportedProperties:
-    """What a file's solid is, in its own axes: `sha256` of the file, sides and middle of its box [m], volume [m^3], centre [m].
+    """Properties of a file's solid, in its own axes: `sha256` of the file, sides and middle of its box [m], volume [m^3], centre [m].
 
     `inertia` (3, 3) is that of unit density about the centre [m^5].
     """
@@ -43,7 +43,7 @@ class ImportedProperties:
 def imported_shape(form: Imported) -> occ.TopoDS_Shape:
     """The file's solid [mm], the middle of its box at the origin.
 
-    Raises `DesignError` where the file is not there, is no STEP file or not the one that is meant, or does not hold exactly one solid.
+    Raises `DesignError` for a missing file, a file other than STEP or with another digest, or without exactly one solid.
     """
     path = Path(form.file)
     require(_version_findings(path, form.sha256))
@@ -53,17 +53,17 @@ def imported_shape(form: Imported) -> occ.TopoDS_Shape:
 
 
 _ACROSS = occ.Axes(occ.Pnt(0, 0, 0), n=occ.Y, h=occ.X)
-"""The x-z plane, that of mirror images."""
+"""The x-z plane, for mirror images."""
 
 
 def measure(path: Path, name: str | None = None) -> ImportedProperties:
-    """Measure the solid in a STEP file, of several the one of that name or place (`#2`).
+    """Measure the solid in a STEP file; if there are several, that of this name or number (`#2`).
 
-    Raises `DesignError` where there is no such file or it does not hold exactly one such solid.
+    Raises `DesignError` for a missing file, or one without exactly one such solid.
 
     >>> measure(Path("nowhere.step"))
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: nowhere.step: there is no such file. Check the path.
+    flexstage.base.finding.DesignError: nowhere.step: file not found. Check the path.
     """
     digest = _sha256(path)
     solid = _solid(path, name)
@@ -80,7 +80,7 @@ def _inertia(solid: occ.TopoDS_Shape) -> Array:
 
 
 def with_properties(found: ImportedProperties, file: str, material: str, density: float, solid: str | None = None) -> Imported:
-    """The description of a measured solid of a `density` [kg/m^3], called `solid` where its file holds several.
+    """The description of a measured solid of a `density` [kg/m^3], with the name `solid` if its file contains several.
 
     >>> cube = ImportedProperties("", np.ones(3), np.zeros(3), 1.0, np.zeros(3), np.eye(3) / 6.0)
     >>> round(with_properties(cube, "cube.step", "steel", 6.0).inertia.zz, 12)
@@ -107,7 +107,7 @@ def _triple(values: Array) -> tuple[float, float, float]:
 
 
 def import_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Where imported solids are not what the description states of them; nothing without any.
+    """Differences between imported solids and their description; empty without any.
 
     >>> import_findings(Mechanism("nothing"))
     ()
@@ -148,8 +148,8 @@ def _findings(mechanism: Mechanism, where: str, solid: Imported) -> Iterator[Fin
     for name, said, true, scale, unit in pairs:
         off = float(np.max(np.abs(np.real(said) - true)))
         if off > TOLERANCE * scale:
-            what = f"it is off by {off:.4g} {unit} from the file's: stated {_text(said)}, found {_text(true)} {unit}"
-            yield Finding(f"{where}.{name}", what, 'State what the file holds (see "flexstage import")')
+            what = f"differs from the file by {off:.4g} {unit} (got {_text(said)}, expected {_text(true)} {unit})"
+            yield Finding(f"{where}.{name}", what, 'Use the value of the file (see "flexstage import")')
 
 
 def _text(values: Array) -> str:
@@ -161,7 +161,7 @@ def _version_findings(path: Path, sha256: str) -> Iterator[Finding]:
     found = _sha256(path)
     if found != sha256:
         what = f"the file {path} has another content than stated (sha256 {found[:12]}..., stated {sha256[:12]}...)"
-        yield Finding(str(path), what, 'Give the file that was meant, or state the new one (see "flexstage import")')
+        yield Finding(str(path), what, 'Restore the file, or describe the new one (see "flexstage import")')
 
 
 def _sha256(path: Path) -> str:
@@ -170,7 +170,7 @@ def _sha256(path: Path) -> str:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except (OSError, ValueError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise refuse(str(path), f"it cannot be read: {reason}", "Give the path of a STEP file, from the design file or whole") from None
+        raise refuse(str(path), f"it cannot be read: {reason}", "Give an absolute path, or a path relative to the design file") from None
 
 
 def _solid(path: Path, name: str | None) -> occ.TopoDS_Shape:
@@ -183,11 +183,11 @@ def _solid(path: Path, name: str | None) -> occ.TopoDS_Shape:
     try:
         solids = list(occ.OCCGeometry(str(path)).shape.solids)
     except Exception as error:  # noqa: BLE001 (the CAD kernel raises what it likes)
-        raise refuse(str(path), f"the CAD kernel cannot read it ({error})", "Export the solid as STEP (AP214) anew") from None
+        raise refuse(str(path), f"the CAD kernel cannot read it ({error})", "Export the solid as STEP (AP214) again") from None
     names = _names(path, solids)
     if name is None and len(solids) != 1:
-        what = f"it holds {len(solids)} solids: {', '.join(names)}"
-        raise refuse(str(path), what, f'Say which: solid = "{next(iter(names), "")}"; a body may have several')
+        what = f"it contains {len(solids)} solids: {', '.join(names)}"
+        raise refuse(str(path), what, f'Select one: solid = "{next(iter(names), "")}"; a body may have several')
     place = int(name[1:]) if name is not None and re.fullmatch(r"#[0-9]{1,9}", name) else 0
     if name is not None and names.count(name) != 1 and not 0 < place <= len(names):
         what = f'{names.count(name) or "none"} of its solids is called "{name}": they are {", ".join(names)}'
@@ -200,7 +200,7 @@ _SHELL = re.compile(rb"(#\d+)\s*=\s*CLOSED_SHELL\s*\(\s*'(?:[^']|'')*'\s*,\s*\((
 
 
 def _names(path: Path, solids: Sequence[occ.TopoDS_Shape]) -> list[str]:
-    """What a file calls its solids, or their places: the kernel drops names, which count where the file's order is its own."""
+    """Names of the solids in a file, or their numbers: the kernel drops names, so the file's own order is used."""
     text = path.read_bytes()
     faces = {shell: members.count(b"#") for shell, members in _SHELL.findall(text)}
     found = [(name.decode("utf-8", "replace").replace("''", "'"), faces.get(shell)) for name, shell in _BREP.findall(text)]

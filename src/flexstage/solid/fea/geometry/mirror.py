@@ -1,6 +1,6 @@
-"""Planes of symmetry: the positive side of what is symmetric across some, and motions that are even or odd about each.
+"""Planes of symmetry: the positive side of symmetric components, and motions that are even or odd about each plane.
 
-What is symmetric moves, under loads that are even or odd about a plane, evenly or oddly: a side does, held accordingly.
+A symmetric component responds evenly to even loads and oddly to odd ones, so one side with matching constraints suffices.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ MIRRORS = {1: "across y", 2: "across z"}
 """Names of the faces in the planes y = 0 and z = 0 that a drawing is cut at, by the axis across them."""
 
 _NEAR = 1e-6
-"""Relative to the drawing's size: what counts as lying in a plane."""
+"""Relative to the drawing's size: tolerance for points in a plane."""
 _FAR = 4.0
-"""How far the half space reaches that a drawing is cut by, over its furthest corner."""
+"""Size of the half space that cuts a drawing, over its furthest corner."""
 
 
 @dataclass(frozen=True)
 class Mirrors:
-    """Planes through the origin, by the axes across them (1: y, 2: z), of which a drawing is the positive side; of what is whole none.
+    """Planes through the origin, by the axes across them (1: y, 2: z), with a drawing on the positive side; empty without symmetry.
 
-    Motions are of a kind, a number: its bits tell across which of the axes, in order, they are odd.
+    Motions have a kind, a number: its bits identify the axes, in order, across which they are odd.
 
     >>> both = Mirrors((1, 2))
     >>> both.copies, both.twist_kinds(np.eye(3)).tolist()  # x, y, z, rx, ry, rz
@@ -37,17 +37,17 @@ class Mirrors:
 
     @property
     def copies(self) -> int:
-        """How many of it the whole consists of; as many kinds of motion there are."""
+        """Number of mirror images in the whole, and of kinds of motion."""
         return 2 ** len(self.axes)
 
     @property
     def images(self) -> Array:
-        """Signs (copies - 1, 3) that mirror a point of it: across the first axis, the second, both."""
+        """Signs (copies - 1, 3) that mirror a point: across the first axis, the second, both."""
         odd = np.arange(1, self.copies)
         return np.stack([np.where(self.is_odd(odd, axis), -1.0, 1.0) if axis in self.axes else odd**0.0 for axis in range(3)], axis=1)
 
     def is_odd(self, kinds: Array, axis: int) -> Array:
-        """Which of some kinds are odd across one of the axes."""
+        """The kinds that are odd across one of the axes."""
         return (kinds >> self.axes.index(axis)) % 2 == 1
 
     def twist_kinds(self, rotation: Array) -> Array:
@@ -56,20 +56,20 @@ class Mirrors:
         return np.concatenate([translations, translations ^ (self.copies - 1)])
 
     def kinds(self, odd: Array) -> Array:
-        """The kinds (k,) of what is `odd` or not, axis by axis (m, k)."""
+        """The kinds (k,) of motions that are `odd` or not, axis by axis (m, k)."""
         return np.sum(odd.astype(np.int64) << np.arange(len(self.axes))[:, None], axis=0)
 
     def whole(self, side: Array, rows: Array, columns: Array) -> Array:
-        """Products (n, k) of motions over the whole, from those over a `side`: none of motions of different kinds (n,) and (k,)."""
+        """Products (n, k) of motions over the whole, from those over a `side`; zero for motions of different kinds (n,) and (k,)."""
         return np.where(rows[:, None] == columns, self.copies * side, 0.0)
 
     def within(self, points: Array) -> Array:
-        """Those of the points (n, 3) that are on the positive side."""
+        """The points (n, 3) on the positive side."""
         return points[np.all(points[:, list(self.axes)] >= 0.0, axis=1)]
 
 
 def cut_at_mirrors(solid: occ.TopoDS_Shape, mirrors: Mirrors) -> occ.TopoDS_Shape:
-    """The positive side of a drawing of `medium 0`, the faces it is cut at named.
+    """The positive side of a drawing of `medium 0`, with named cut faces.
 
     >>> quarter = cut_at_mirrors(occ.Box(occ.Pnt(0, -1, -1), occ.Pnt(1, 1, 1)), Mirrors((1, 2)))
     >>> round(quarter.mass, 9), sorted(face.name for face in quarter.faces if face.name)
@@ -85,7 +85,7 @@ def cut_at_mirrors(solid: occ.TopoDS_Shape, mirrors: Mirrors) -> occ.TopoDS_Shap
 
 
 def is_symmetric(solids: Iterable[occ.TopoDS_Shape], axis: int) -> bool:
-    """Whether for every face of some solids there is one of the same area with its centre on the other side of the plane across an axis.
+    """Whether every face of some solids has a mirror image: equal area, and its centre mirrored in the plane across an axis.
 
     >>> is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 1), is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 2)
     (True, False)

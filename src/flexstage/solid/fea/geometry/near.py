@@ -1,4 +1,4 @@
-"""Questions to CAD about outlines that come near one another, asked once for all copies."""
+"""Questions to CAD about outlines close to one another, evaluated once for all instances."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from flexstage.base.finding import Finding
 from flexstage.spatial.frame import Frame
 
 Answer = tuple[str, str]
-"""What is wrong, and what to do."""
+"""Problem and advice."""
 
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """Something to `ask` CAD about `where`; questions of one `key` have one answer and are asked once."""
+    """A geometric test, `ask`, about `where`; questions with one `key` have one answer and are evaluated once."""
 
     key: str
     where: str
@@ -24,23 +24,23 @@ class Question:
 
 
 def findings_of(questions: Iterable[Question]) -> Iterator[Finding]:
-    """Ask each distinct question and tell its findings at the first place, naming the places alike.
+    """Evaluate each distinct question and report its errors at the first location, with the names of the others.
 
     >>> asked = [Question("a", name, lambda: [("it is loose", "Hold it")]) for name in ("B1/front", "B2/front")]
     >>> [str(finding) for finding in findings_of(asked)]
-    ['B1/front: it is loose (alike: B2/front). Hold it.']
+    ['B1/front: it is loose (also B2/front). Hold it.']
     """
     same: dict[str, list[Question]] = {}
     for question in questions:
         same.setdefault(question.key, []).append(question)
     for first, *others in same.values():
-        alike = f" (alike: {', '.join(other.where for other in others)})" if others else ""
+        alike = f" (also {', '.join(other.where for other in others)})" if others else ""
         for what, advice in first.ask():
             yield Finding(first.where, f"{what}{alike}", advice)
 
 
 def relative_frame(frame: Frame, base: Frame) -> Frame:
-    """A frame in the axes of another one, without the last bits of rounding, so that copies come out equal.
+    """A frame in the axes of another one, rounded, so that instances are equal.
 
     >>> relative_frame(Frame(np.eye(3), np.ones(3)), Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))).position.tolist()
     [0.0, 1.0, 1.0]
@@ -51,7 +51,7 @@ def relative_frame(frame: Frame, base: Frame) -> Frame:
 
 
 def frame_key(frame: Frame) -> str:
-    """A frame as text, equal for copies that differ by rounding.
+    """A frame as text, equal for instances that differ by rounding.
 
     >>> frame_key(Frame(np.eye(3), np.zeros(3))) == frame_key(Frame(np.eye(3), np.full(3, 1e-13)))
     True
@@ -61,7 +61,7 @@ def frame_key(frame: Frame) -> str:
 
 
 def distance_text(millimetres: float) -> str:
-    """A length as a reader wants it: in um below a millimetre.
+    """A length as text: in um below a millimetre.
 
     >>> distance_text(0.012), distance_text(2.5)
     ('12 um', '2.5 mm')

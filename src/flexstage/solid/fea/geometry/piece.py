@@ -1,4 +1,4 @@
-"""Pieces: the parts and bodies of a stage as single solids, each with its medium, before anything is drawn."""
+"""Pieces: the parts and bodies of a stage as single solids, each with its medium, before drawing."""
 
 from __future__ import annotations
 
@@ -21,27 +21,28 @@ from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import Frame
 
 _DIGITS = 10
-"""Of the tensor of a crystal, relative to its largest entry: copies of a unit must come out equal."""
+"""Digits of a crystal's tensor, relative to its largest entry: instances of a unit must be equal."""
 
 _CROSSED = 1e-9
-"""What couples stretching with shear, over the largest entry, where there is nothing but rounding."""
+"""Coupling of normal and shear strains by rounding alone, over the largest entry."""
 
 MILLIMETRES = 1e3
 """CAD units per metre."""
 
 OFFERED_SHAPES: Register[object] = Register("flexstage.shapes", {})
-"""Shapes that other packages offer, without those of `draw`: the kernel that draws is not needed to ask for versions."""
+"""Shapes from other packages, without those of `draw`: their versions are available without the CAD kernel."""
 
 Form: TypeAlias = Shaped | Solid
-"""What can be drawn: compliance matrices and ideal joints have no shape."""
+"""Forms with a shape: compliance matrices and ideal joints have none."""
 
 
 @dataclass(frozen=True)
 class Medium:
     """An elastic medium: Young's modulus [Pa], Poisson's ratio, density [kg/m^3].
 
-    Of a crystal `tensor` are the rows of its stiffness [Pa] in the axes of the drawing (xx, yy, zz, yz, xz, xy, engineering shear strains);
-    its modulus is then that along x, its ratio makes the shear modulus a mean of the planes xy and xz: both serve stubs of hinges alone.
+    For a crystal, `tensor` contains the rows of its stiffness [Pa] in the axes of the drawing (xx, yy, zz, yz, xz, xy, engineering
+    shear strains). Its modulus is then that along x, and its ratio makes the shear modulus a mean of the planes xy and xz; only hinge stubs
+    use both.
     """
 
     young: float
@@ -72,7 +73,7 @@ class Medium:
 class Piece:
     """One solid to draw: its address (`B1/front`, `platform.plate`), form, medium and frame.
 
-    A link's form is drawn at its frame's origin, x along it; a body's solid at its centre. `body` names the body it belongs to (absent for
+    A link's form is drawn at its frame's origin, x along it; a body's solid at its centre. `body` names its body (absent for
     links).
     """
 
@@ -89,9 +90,9 @@ class Piece:
 
 
 def medium(material: Material, rotation: Array | None = None) -> Medium:
-    """The medium of a material; of a crystal in a drawing whose axes are the columns of `rotation` (3, 3) in the stage.
+    """The medium of a material; for a crystal, in a drawing whose axes are the columns of `rotation` (3, 3) in the stage.
 
-    Without these the drawing has the axes of the part that the crystal is seen from, or else the stage's.
+    Without `rotation`, the axes are those of the part that defines the crystal, or else the stage's.
 
     >>> medium(Material(young=200e9, poisson=0.3, density=7750.0)).density
     7750.0
@@ -112,7 +113,7 @@ def medium(material: Material, rotation: Array | None = None) -> Medium:
 
 
 def is_mirrored(own: Medium, axis: int) -> bool:
-    """Whether a medium is its own mirror image across an axis (0, 1, 2) of its drawing, as all are but crystals.
+    """Whether a medium is its own mirror image across an axis (0, 1, 2) of its drawing; always for isotropic media.
 
     >>> is_mirrored(Medium(1.0, 0.3, 1.0), 0)
     True
@@ -140,7 +141,7 @@ def stack_medium(stack: Piezo) -> Medium:
 
 
 def form_of(link: PlacedLink) -> Form | Finding | None:
-    """The form of a link's part, or why it has none; `None` of a part without a shape that states what it does.
+    """The form of a link's part, or the reason for its absence; `None` for a part without a shape that specifies its behaviour.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -150,18 +151,18 @@ def form_of(link: PlacedLink) -> Form | Finding | None:
     part: Part = link.part
     if isinstance(part, Restricted):
         return Finding(
-            link.name, "some of its freedoms are locked or freed by a restriction", "A solid has all of them: read the unrestricted stage"
+            link.name, "some of its DOFs are locked or freed by a restriction", "Use the unrestricted stage: a solid has all DOFs"
         )
     if isinstance(part, Shaped):
         return part
     if not isinstance(part, Joint) and part.stated(link.material) is not None:
         return None
-    what = f"a part of kind {part.kind} has no shape, and states no stiffness"
-    return Finding(link.name, what, 'Give it a form that can be drawn, or its 6x6 (kind = "compliance_matrix")')
+    what = f"a part of kind {part.kind} has no shape, and specifies no stiffness"
+    return Finding(link.name, what, 'Use a part with a shape, or its 6x6 (kind = "compliance_matrix")')
 
 
 def form_digest(form: Form) -> str:
-    """Digest of what is drawn; where another package offers its shape, that package's name and version count.
+    """Digest of a form; for a shape of another package, including that package's name and version.
 
     >>> from flexstage.parts.body import Block
     >>> form_digest(Block("steel", (1.0, 1.0, 1.0))) == form_digest(Block("steel", (1.0, 1.0, 2.0)))
@@ -197,7 +198,7 @@ def end_area(form: Form) -> float:
 
 
 def thinnest(form: Form) -> float:
-    """Smallest dimension of a form [m]: it sets the mesh there.
+    """Smallest dimension of a form [m]: it sets the local mesh size.
 
     >>> from flexstage.parts.body import Block
     >>> thinnest(Block("steel", (0.1, 0.02, 0.03)))

@@ -1,6 +1,6 @@
-"""Slivers: steps, gaps, edges and faces of a component much smaller than what is drawn there; a mesh would follow them or fail.
+"""Slivers: steps, gaps, edges and faces of a component much smaller than the local geometry; they break or refine meshes.
 
-Lengths within this file are in mm, as CAD has them.
+Lengths within this file are in mm, as in CAD.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from flexstage.solid.fea.jobs.content import content
 from flexstage.solid.fea.solver.component import Component
 
 SLIVER = 0.05
-"""Slivers are smaller than this times the thinnest piece there."""
+"""Largest size of slivers over the thinnest piece there."""
 _OWN = 0.5
-"""... and than this times the smallest edge or width that a piece drawn alone has."""
+"""Largest size of slivers over the smallest edge or width of an isolated piece."""
 _NOTHING = 1e-7
 _TOUCHING = 1e-6
-"""A sliver is on a piece when its middle is this near its box [m], or as near as it is large."""
+"""Largest distance between a sliver's middle and the box of its piece [m], unless the sliver is larger."""
 
 
 @dataclass(frozen=True)
 class _Sliver:
-    """An edge or face: what it is, its size, and the pieces (index) it lies on."""
+    """An edge or face: its kind, its size, and its pieces (index)."""
 
     kind: str
     size: float
@@ -39,7 +39,7 @@ class _Sliver:
 
 
 def sliver_findings(parts: Sequence[Component], *, coarse: bool = False) -> Iterator[Finding]:
-    """Slivers of every distinct component drawn as one; what keeps one from being drawn is told too, unless found before (`coarse`).
+    """Slivers of every distinct component drawn as one; also errors of drawing, unless found before (`coarse`).
 
     >>> list(sliver_findings([]))
     []

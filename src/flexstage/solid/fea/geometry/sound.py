@@ -1,4 +1,4 @@
-"""Sound stages: outlines are checked against each other before anything is meshed, once for what is known to be sound already."""
+"""Sound stages: outlines are checked before meshing, once for each stage."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from flexstage.solid.fea.solver.component import Component, Cut, components
 
 
 def sound_components(mechanism: Mechanism, cache: Cache | None, cut: Cut = Cut.UNITS, pool: Pool | None = None) -> tuple[Component, ...]:
-    """Cut a stage into components, its outlines checked against each other.
+    """Cut a stage into components, after a check of its outlines.
 
-    Raises `DesignError` naming every link that has no shape, and every gap, overlap and sliver with its size (`contact_findings`).
+    Raises `DesignError` with the names of links without a shape, and with the sizes of gaps, overlaps and slivers (`contact_findings`).
 
     >>> sound_components(Mechanism("nothing"), None)
     ()
@@ -30,9 +30,9 @@ def sound_components(mechanism: Mechanism, cache: Cache | None, cut: Cut = Cut.U
 
 
 def stage_findings(mechanism: Mechanism, cache: Cache | None, pool: Pool | None = None) -> tuple[Finding, ...]:
-    """What keeps a stage's outlines from forming solids. Sound stages are remembered in the cache by their content.
+    """Errors that prevent a stage's outlines from forming solids. The cache stores sound stages by their content.
 
-    Those with imported solids are not: their files may change.
+    Stages with imported solids are always checked, because their files may change.
     """
     known = cache is not None and _is_known(mechanism, cache)
     (found,) = ((),) if known else contacts_apart([mechanism], pool=pool)
@@ -42,7 +42,7 @@ def stage_findings(mechanism: Mechanism, cache: Cache | None, pool: Pool | None 
 
 
 def check_together(mechanisms: Sequence[Mechanism], cache: Cache | None, pool: Pool | None = None) -> None:
-    """Check stages side by side and remember those that are sound; what is wrong with the others is told when they are asked for.
+    """Check stages in parallel and store the sound ones; errors of the others are reported at their use.
 
     >>> check_together((), None)
     """
@@ -67,6 +67,6 @@ def _key(mechanism: Mechanism) -> str:
 
 
 def has_imports(mechanism: Mechanism) -> bool:
-    """Whether some of a stage's solids stand in files of their own."""
+    """Whether some of a stage's solids are in separate files."""
     bodies = [*mechanism.bodies.values(), *(body for unit in mechanism.units.values() for body in unit.bodies.values())]
     return any(isinstance(solid, Imported) for body in bodies for solid in body.solids.values())

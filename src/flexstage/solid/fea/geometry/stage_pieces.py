@@ -1,4 +1,4 @@
-"""All pieces of a stage where they stand, before it is cut into components."""
+"""All pieces of a stage in its frame, before it is cut into components."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.solid.fea.solver.component import Joint, link_joints
 class Stage:
     """The pieces of a stage in its own axes by address, those of the ground with `body` "ground".
 
-    `boxes` are their outlines, `joints` the two ends of every link, `materials` names each piece's material (of a stack its part).
+    `boxes` are their outlines, `joints` the two ends of every link, `materials` names each piece's material (for a stack its part).
     """
 
     assembly: Assembly
@@ -37,9 +37,9 @@ class Stage:
 
 
 def stage_pieces(mechanism: Mechanism) -> Stage:
-    """The pieces of a stage; parts that state their stiffness and have no shape are none.
+    """The pieces of a stage, without parts that specify their stiffness and have no shape.
 
-    Raises `DesignError` naming every link that has neither.
+    Raises `DesignError` with the names of links that have neither.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = stage_pieces(double_triangle())
@@ -69,11 +69,11 @@ def stage_pieces(mechanism: Mechanism) -> Stage:
 
 
 def require_shapes(mechanism: Mechanism, stage: Stage) -> None:
-    """Raise a `DesignError` where nothing of a stage has a shape.
+    """Raise a `DesignError` for a stage without any shape.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> require_shapes(parallelogram(), stage_pieces(parallelogram()))
     """
     if not stage.pieces:
-        advice = "Give bodies solids, or links parts that can be drawn"
+        advice = "Give bodies solids, or links parts with a shape"
         raise refuse(mechanism.name or "stage", "no body has outlines and no link a shape", advice)

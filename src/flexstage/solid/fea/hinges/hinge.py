@@ -1,8 +1,8 @@
 """A hinge by three-dimensional elasticity: its 6x6 between the ends of its arcs, with an estimate of its error.
 
-The hinge stands between rigid outer faces, with a stub of the block on each side that it grows on; the stubs are then taken off as beams,
-so that what its roots yield remains with the hinge. An end without a root is held rigid itself, where its arcs end. What is symmetric
-about its planes is cut there: the six motions are even or odd about each, so a quarter does, held accordingly.
+The hinge is between rigid outer faces, with a stub of the block on each side with a root. The stubs are then subtracted as beams,
+so that the compliance of the roots remains with the hinge. An end without a root is rigid at the end of its arcs. A symmetric hinge is
+cut at its planes: the six motions are even or odd about each, so a quarter with matching constraints suffices.
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ from flexstage.spatial.frame import identity, transport
 
 _SYMMETRY = 1e-8
 _LATTICE, _INSIDE = 6, 0.015
-"""Steps of the lattice in an element, and how far inside its faces it ends: as far as the points of the rules that integrate there."""
+"""Steps of the lattice in an element, and its distance from the faces, equal to that of the integration points."""
 _BLUNT = 5e-4
-"""What the blunted wedges of arcs at rigid faces change of the compliance at the hinge's end, relatively: twice what was found."""
+"""Relative change of the compliance at the hinge's end by blunted wedges of arcs at rigid faces: twice the largest observed."""
 _NECK = Fineness().neck
-"""Elements within round necks are as they are in a stage."""
+"""Elements within round necks are as in a stage."""
 _TELLING = 3
-"""The order whose change from the one before may tell an error small enough."""
+"""Lowest order whose change from the previous one is a sufficient error estimate."""
 _COARSER = 1.3
-"""By how much larger elements are where the usual ones are too many."""
+"""Factor on the element size if the usual elements are too many."""
 _ATTEMPTS = (
     (1.0, 0.5, 1.2),
     (1.0, 0.5, 1.6),
@@ -60,7 +60,7 @@ _ATTEMPTS = (
     (0.6, 0.3, 4.0),
     (0.4, 0.3, 3.0),
 )
-"""Factors on sizes, grading and segments per radius of curvature, tried one after the other."""
+"""Factors on sizes, grading and segments per radius of curvature, tried in this order."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ class _Solve:
 
 @dataclass(frozen=True, eq=False)
 class _Subject:
-    """A hinge of a `medium` with stubs of so many metres at its first and second end, nought where the end is held rigid."""
+    """A hinge of a `medium` with stubs of these lengths [m] at its first and second end, zero for a rigid end."""
 
     part: Shaped
     medium: Medium
@@ -82,13 +82,13 @@ class _Subject:
 
     @staticmethod
     def of(part: Shaped, own: Medium, stub: float | None, roots: Roots) -> _Subject:
-        """With stubs of the length told, or their own, at the ends with roots."""
+        """Make a hinge with stubs of the specified length, or their own, at the ends with roots."""
         length = own_stub(part)[1] if stub is None else stub
         return _Subject(part, own, length if roots.first else 0.0, length if roots.second else 0.0)
 
     @property
     def blunting_error(self) -> float:
-        """What is not known because arcs that end on a rigid face are blunted there."""
+        """Error from blunted arcs at a rigid face."""
         is_blunt = isinstance(self.part, Profiled) and not isinstance(self.part.profile, Contour) and rises(self.part)
         return _BLUNT if is_blunt and min(self.first, self.second) == 0.0 else 0.0
 
@@ -102,14 +102,14 @@ class _Subject:
         return total
 
     def draw(self, size: float) -> Specimen:
-        """As a specimen, cut where hinge and medium are symmetric; not through the thickness of leaves: their elements are flat."""
+        """The specimen, cut if hinge and medium are symmetric; not through the thickness of leaves: their elements are flat."""
         across = [axis for axis in MIRRORS if is_mirrored(self.medium, axis) and not (axis == 1 and self.part.slender)]
         return specimen(self.part, (self.first, self.second), size).cut(across)
 
 
 @dataclass(frozen=True, eq=False)
 class _Mesh:
-    """A mesh [mm], and the planes of which it is one side."""
+    """A mesh [mm], and its symmetry planes."""
 
     mesh: ngsolve.Mesh
     mirrors: Mirrors
@@ -128,16 +128,17 @@ def hinge_compliance(
     *,
     roots: Roots | None = None,
 ) -> HingeSolid:
-    """The 6x6 of a hinge by finite elements, to the accuracy asked for (1 % unless told).
+    """The 6x6 of a hinge by finite elements, to the required accuracy (default 1 %).
 
-    Energies: with one outer face held and the other moved rigidly by e_i about the centre, K_ij = u_i . K u_j; C = K^-1 - sum over stubs of
-    X C_stub X^T. The order is raised, then the mesh refined, until the error estimated from the last changes (`estimate.remaining`) is
-    within `accuracy.error`. `roots` say which ends grow on blocks (unless told: both of a profile that rises, none of any other hinge),
-    `stub` [m] how long a stub is: the hinge's full height, or five times its `grain` where it ends on a block wider than itself.
+    Energies: with one outer face fixed and the other moved rigidly by e_i about the centre, K_ij = u_i . K u_j; C = K^-1 - sum over
+    stubs of X C_stub X^T. The order is raised, then the mesh refined, until the error estimated from the last changes
+    (`estimate.remaining`) is within `accuracy.error`. `roots` selects the ends that grow on blocks (default: both for a profile that rises,
+    none for other hinges). `stub` [m] is the length of a stub: by default the hinge's full height, or five times its `grain` at a block
+    wider than itself.
 
-    Linear elasticity; the stubs' outer faces stay plane. How much of the blocks counts as root is a convention: C_x depends on the stub's
+    Linear elasticity; the stubs' outer faces remain plane. The depth of the root is a convention. C_x depends on the stub's
     length by 1-3 %, C_y by some 10 %, and C_rx of a hinge several times wider than high by a factor. Raises `DesignError` for a part
-    without a shape, for a batch, and where no mesh can be made. `told` hears of every mesh and solve.
+    without a shape, for a batch, and if no mesh can be made. `told` is called for every mesh and solve.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight
@@ -159,8 +160,8 @@ def hinge_compliance(
         if blunt + _error(part, found) <= asked.error:
             break
     if last is None:
-        what = f"its coarsest mesh has more than the {asked.freedoms} freedoms allowed"
-        raise refuse(_label(part), what, "Ask for --order 3, which begins with order two, or in Python allow more freedoms by its Accuracy")
+        what = f"its coarsest mesh has more than the {asked.freedoms} DOFs allowed"
+        raise refuse(_label(part), what, "Use --order 3, which begins with order two, or in Python increase freedoms of its Accuracy")
     alone, error = found[-1], blunt + _error(part, found)
     return HingeSolid(
         compliance=alone,
@@ -179,22 +180,22 @@ def hinge_compliance(
 def _refusals(part: Shaped) -> Iterator[Finding]:
     """Parts without a shape, batches, fillets longer than the hinge."""
     if not isinstance(part, Shaped) or is_actuator(part):
-        yield Finding(_label(part), "has no shape, or is no hinge", "Give a hinge of a kind that can be drawn: a notch, neck, leaf, rod")
+        yield Finding(_label(part), "has no shape, or is not a hinge", "Use a hinge with a shape: a notch, neck, leaf, rod")
         return
     profile = part.profile if isinstance(part, Profiled) else None
     for owner in (part, profile):
         for name, value in vars(owner).items() if owner is not None else ():
             sizes = [np.size(each) for each in (value if isinstance(value, tuple) else (value,)) if np.ndim(each) > 0]
             if sizes:
-                yield Finding(f"{_label(part)}'s {name}", f"is a batch of {max(sizes)}", "A solid is one design: read them one by one")
+                yield Finding(f"{_label(part)}'s {name}", f"is a batch of {max(sizes)}", "Compute them separately: a solid is one design")
     if isinstance(profile, Filleted) and np.ndim(profile.length) == np.ndim(profile.radius) == 0:
         total, radius = float(np.real(profile.length)), float(np.real(profile.radius))
         if 2.0 * radius > total:
-            yield Finding(_label(part), f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m", "Need 2 r <= l")
+            yield Finding(_label(part), f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m", "Use 2 r <= l")
 
 
 def _error(part: Shaped, found: Sequence[Array]) -> float:
-    """Estimated error of the last of the compliances found, all taken at the hinge's end."""
+    """Estimated error of the last compliance, all taken at the hinge's end."""
     arm = transport(np.array([0.5 * span(part), 0.0, 0.0]))
     ends = [arm @ compliance @ arm.T for compliance in found]
     return remaining([change(first, second) for first, second in pairwise(ends)])
@@ -205,10 +206,10 @@ def _label(part: Shaped) -> str:
 
 
 def _solves(subject: _Subject, asked: Accuracy, told: Call) -> Iterator[_Solve]:
-    """Solves of rising order on one mesh, then of the highest on finer ones, until the next would have too many freedoms.
+    """Solves of rising order on one mesh, then of the highest on finer ones, up to the limit of DOFs.
 
-    Where the lowest order has too many on the usual mesh, as wide notches do, a coarser mesh is taken, beginning with order two. Freedoms
-    and elements are counted for all of the hinge.
+    If the lowest order has too many on the usual mesh, as for wide notches, a coarser mesh is used from order two on. DOFs and elements
+    are counted for the whole hinge.
     """
     lowest, highest = asked.orders
     for refinement in range(asked.meshes):
@@ -234,12 +235,12 @@ def _space(subject: _Subject, cut: _Mesh, order: int) -> Field:
 
 
 def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
-    """Stiffness (6, 6) of the whole specimen: energies of the motions that move one outer face and hold the other.
+    """Stiffness (6, 6) of the whole specimen: energies of the motions with one outer face moved and the other fixed.
 
-    Motions that are not alike about a plane of symmetry have no energy in common.
+    Motions of different kinds about a plane of symmetry have no common energy.
     """
     form, motion, law = stiffness(space), rigid(space, identity(), faces=END), np.zeros((6, 6))
-    strained, forces = stiffness(space, assemble=False), times([form], motion)  # by strains: the rounding of K u drowns a thin leaf
+    strained, forces = stiffness(space, assemble=False), times([form], motion)  # by strains: K u of a thin leaf is rounding
     kinds = cut.mirrors.twist_kinds(np.eye(3))
     for kind in range(cut.mirrors.copies):
         alike = np.flatnonzero(kinds == kind)
@@ -250,11 +251,11 @@ def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
 
 
 def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
-    """A mesh [mm] of a hinge with its stubs, faces `start` and `end` named; no element is turned inside out at any order up to `order`.
+    """A mesh [mm] of a hinge with its stubs, faces `start` and `end` named; no element is inverted at any order up to `order`.
 
-    It is what of a hinge of an isotropic material is computed: the quarter on the positive sides of y and z, the half of a leaf. Elements
-    are `factor` times as large as usual. Where the mesher fails or an element folds, other sizes are tried, a few times. Raises
-    `DesignError` when none of that helps.
+    For an isotropic material only the computed part is meshed: the quarter on the positive sides of y and z, the half of a leaf. Elements
+    are `factor` times the usual size. If the mesher fails or an element is inverted, other sizes are tried, a few times. Raises
+    `DesignError` if all fail.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight
@@ -265,7 +266,7 @@ def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, ord
 
 
 def _mesh(subject: _Subject, factor: float, order: int) -> _Mesh:
-    reason = "the mesher was not asked"
+    reason = "the mesher did not run"
     for shrink, grading, curvature in _ATTEMPTS:
         drawn = subject.draw(factor * shrink)
         sizes = {
@@ -279,7 +280,7 @@ def _mesh(subject: _Subject, factor: float, order: int) -> _Mesh:
         if isinstance(outcome, ngsolve.Mesh):
             return _Mesh(outcome, drawn.mirrors)
         reason = outcome
-    raise refuse(_label(subject.part), f"no mesh could be made: {reason}", "Look for proportions far from a hinge's")
+    raise refuse(_label(subject.part), f"no mesh could be made: {reason}", "Check its proportions")
 
 
 def _attempt(drawn: Specimen, sizes: Mapping[str, Any], order: int) -> ngsolve.Mesh | str:
@@ -295,9 +296,9 @@ def _attempt(drawn: Specimen, sizes: Mapping[str, Any], order: int) -> ngsolve.M
 
 
 def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
-    """The lowest Jacobian determinant [mm^3] at a lattice of points in every element, close to its corners and edges: they fold first.
+    """The lowest Jacobian determinant [mm^3] at a lattice of points in every element, close to its corners and edges, which fold first.
 
-    Not at the edges: where two faces of an element lie on one smooth surface the determinant is nought on their edge, harmlessly.
+    Edges are excluded: if two faces of an element are on one smooth surface, the determinant is zero at their edge without harm.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> lowest_jacobian(hinge_mesh(Leaf("steel", 1e-3, 1e-3, 1e-3))) > 0.0
@@ -311,7 +312,7 @@ def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
 
 
 def _about_centre(compliance: Array, away: float) -> Array:
-    """A compliance about a point `away` [m] along x, about the centre."""
+    """Transform a compliance about a point `away` [m] along x to the centre."""
     shift = transport(np.array([-away, 0.0, 0.0]))
     return shift @ compliance @ shift.T
 
@@ -335,6 +336,6 @@ def _not_reached(part: Shaped, error: float, asked: Accuracy) -> Finding:
         return Finding(_label(part), f"the error of its 6x6 is not known: {NO_ESTIMATE}", LEAVE)
     return Finding(
         _label(part),
-        f"its 6x6 is known to {100.0 * error:.2g} %, {100.0 * asked.error:.2g} % was asked, within {asked.freedoms} freedoms",
-        "Allow more freedoms, or ask for less",
+        f"the error of its 6x6 is {100.0 * error:.2g} %, {100.0 * asked.error:.2g} % required, within {asked.freedoms} DOFs",
+        "Allow more DOFs, or less accuracy",
     )

@@ -1,4 +1,4 @@
-"""What a hinge is computed from, and what is found: its 6x6. Light: whoever shows it needs no solver."""
+"""Input and result of a hinge computation: its 6x6. Does not import the solver."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from flexstage.parts.material import Material
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.hinges.roots import Roots
 
-NO_ESTIMATE = "an error is estimated from two solves, and the second would have more unknowns than are allowed"
-LEAVE = "Compare it with beam theory (flexstage verify), or in Python allow hinge_compliance more freedoms by its Accuracy"
+NO_ESTIMATE = "an estimate needs two solves, and the second would exceed the allowed number of unknowns"
+LEAVE = "Compare it with beam theory (flexstage verify), or in Python increase freedoms of the Accuracy of hinge_compliance"
 
 
 class HingeForm(NamedTuple):
-    """What a hinge is computed from: its shape, its material, and which of its ends grow on blocks."""
+    """Input of a hinge computation: its shape, its material, and its ends that grow on blocks."""
 
     part: Shaped
     material: Material
@@ -28,10 +28,10 @@ class HingeSolid:
     """The 6x6 of a hinge by three-dimensional elasticity, about its centre in the link frame, between the ends of its arcs [SI].
 
     `compliance` and `stiffness` (6, 6): twist of the second side against the first, (x, y, z, rx, ry, rz). `error` estimates the largest
-    relative error of the compliance *at the hinge's end*, where it acts, each entry ij against sqrt(C_ii C_jj) there; `changes` (6,) are
-    the last relative changes of the diagonal about the centre: those of y and z are larger, being small differences of lever arms.
+    relative error of the compliance *at the hinge's end*, each entry ij against sqrt(C_ii C_jj) there. `changes` (6,) are the last
+    relative changes of the diagonal about the centre: those of y and z are larger, as small differences of lever arms.
     `whole` (6, 6) is the compliance with the stubs of length `stub` [m]. `freedoms`, `elements` and `order` are those of the last solve;
-    `finding` says what was not reached, if anything.
+    `finding` reports a missed accuracy.
     """
 
     compliance: Array

@@ -1,4 +1,4 @@
-"""Roots: where a hinge grows out of an elastic block, which yields there, and where it ends on something rigid."""
+"""Roots: ends of a hinge on an elastic block, which deforms there, in contrast to ends on rigid bodies."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Roots:
-    """Whether a hinge's `first` end (towards -x of its frame) and its `second` grow on an elastic block; else an end is held rigid."""
+    """Whether a hinge's `first` end (towards -x of its frame) and its `second` grow on an elastic block; else the end is rigid."""
 
     first: bool
     second: bool
 
     @property
     def mirrored(self) -> Roots:
-        """The roots of the hinge turned end for end.
+        """The roots of the hinge with exchanged ends.
 
         >>> Roots(True, False).mirrored
         Roots(first=False, second=True)
@@ -29,7 +29,7 @@ class Roots:
 
 
 def own_roots(part: Shaped) -> Roots:
-    """The roots of a hinge by itself: profiles that rise grow on the blocks they rise to, all others stand between rigid faces.
+    """The roots of an isolated hinge: profiles that rise grow on blocks of their height, all others are between rigid faces.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> own_roots(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))
@@ -39,7 +39,7 @@ def own_roots(part: Shaped) -> Roots:
 
 
 def rises(part: Shaped) -> bool:
-    """Whether a profile of cuts rises to the full height of the blocks that a hinge grows on.
+    """Whether a profile of cuts rises to the full height of the blocks at its ends.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> rises(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))
@@ -50,7 +50,7 @@ def rises(part: Shaped) -> bool:
 
 
 def roots_of(assembly: Assembly, link: PlacedLink) -> Roots:
-    """The roots a link has where it is: on bodies with outlines; the ground and bodies without outlines are rigid.
+    """The roots of a link in the stage: on bodies with outlines; the ground and bodies without outlines are rigid.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

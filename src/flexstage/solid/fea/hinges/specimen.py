@@ -1,9 +1,9 @@
-"""A hinge as a specimen: drawn at the origin, with a stub of the block it grows on at each end that is not held rigid.
+"""A hinge as a specimen: drawn at the origin, with a stub of its block at each elastic end.
 
-Where a profile rises to a block, the stub has the hinge's full height, and hinge and stub are one outline: half-circle arcs are drawn
-whole, so that they end square on the stub's flank, not on a face they touch. A rigid face, which an arc would touch without an angle,
-stands at the arc's true end, and the wedge between them is blunted: it carries next to nothing, and no mesh could fill it. All other
-hinges end on a stub wider than themselves all round.
+If a profile rises to a block, the stub has the hinge's full height, and hinge and stub are one outline. Half-circle arcs are drawn
+completely: they end perpendicular to the stub's flank, without tangent faces. At a rigid face, to which an arc would be tangent, the
+arc ends at its true end with a blunted wedge. It carries almost no load, and could not be meshed. All other
+hinges end on a stub wider than themselves on all sides.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ START, END = "start", "end"
 """Names of the specimen's two outer faces, towards -x and +x."""
 
 BLUNTED = 0.06
-"""How thick the wedge between an arc and a rigid face is where it ends, over the arc's lesser axis."""
+"""Thickness of the wedge between an arc and a rigid face at its end, over the arc's smaller axis."""
 
 _NEAR = 1e-6
-"""Relative to the hinge's length: what counts as lying in a plane."""
+"""Relative to the hinge's length: tolerance for points in a plane."""
 _LONG = 1.5
 """Elements of a rod over its diameter."""
 _FLAT, _FLAT_STRAIGHT = 1.0 / 12.0, 1.0 / 3.0
-"""Least element over the smaller of width and length of a wide hinge: with arcs, and a leaf."""
+"""Smallest element over the smaller of width and length of a wide hinge: with arcs, and a leaf."""
 _SEAT = 5.0
-"""How far a block reaches beyond a hinge that does not rise to it, sideways and in depth, over the hinge's `grain`."""
+"""Size of a block beyond a hinge that does not rise to it, sideways and in depth, over the hinge's `grain`."""
 _SEAT_SIZE = 2.0
 """Largest element of such a block over the hinge's `grain`."""
 
@@ -52,7 +52,7 @@ class Specimen:
     mirrors: Mirrors = Mirrors()
 
     def cut(self, across: Iterable[int]) -> Specimen:
-        """Its positive side across those of some axes (1: y, 2: z) that it is symmetric across."""
+        """Its positive side across those of some axes (1: y, 2: z) with symmetry."""
         mirrors = Mirrors(tuple(axis for axis in across if is_symmetric([self.solid], axis)))
         return replace(self, solid=cut_at_mirrors(self.solid, mirrors), mirrors=mirrors)
 
@@ -75,13 +75,13 @@ class _Side:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Where the specimen starts and ends along x."""
+        """Start and end of the specimen along x."""
         first, last = self.stubs
         return -self.half - first, self.half + last
 
     @property
     def angles(self) -> tuple[float, float]:
-        """Where the arcs start and end: on a stub's flank they are whole, at a rigid face the wedge they end in is blunted."""
+        """Start and end of the arcs: complete on a stub's flank; blunted wedges at a rigid face."""
         rise = self.height - self.rise
         along = rise if isinstance(self.profile, Filleted) else self.half
         blunt = float(np.arcsin(1.0 - BLUNTED * min(1.0, rise / along))) if rise > 0.0 else 0.5 * np.pi
@@ -98,7 +98,7 @@ class _Side:
 
 
 def grain(part: Shaped) -> float:
-    """The size that the yielding of a hinge's root scales with [m]: the thickness at its ends, geometric mean where it bends both ways.
+    """Length scale of the root's compliance [m]: the thickness at the hinge's ends, geometric mean for bending in both directions.
 
     >>> from flexstage.parts.neck import Neck
     >>> grain(Neck("steel", 1e-3, Straight(0.01), width=4e-3))
@@ -109,7 +109,7 @@ def grain(part: Shaped) -> float:
 
 
 def own_stub(part: Shaped) -> tuple[Section, float]:
-    """Section and length [m] of the stub of a block that a hinge ends on: as high as a profile that rises; else wider all round.
+    """Section and length [m] of the stub at a hinge's end: as high as a profile that rises; else wider on all sides.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> section, depth = own_stub(Leaf("steel", 0.01, 1e-3, 5e-3))
@@ -125,7 +125,7 @@ def own_stub(part: Shaped) -> tuple[Section, float]:
 
 
 def cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
-    """A hinge with a profile and stubs of given lengths [mm], its arcs whole where there is a stub; one of a straight profile as a `bar`.
+    """A hinge with a profile and stubs of these lengths [mm], its arcs complete at a stub; one of a straight profile as a `bar`.
 
     A notch is thin along y and wide along z; a round neck is revolved about x.
     """
@@ -148,7 +148,7 @@ def _draw_cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specim
 
 
 def bar(part: Shaped, stubs: tuple[float, float], size: float, drawn: occ.TopoDS_Shape | None = None) -> Specimen:
-    """A part as it is `drawn` [mm] (absent: of one section), and the blocks that it ends on, of given lengths [mm]."""
+    """A part as `drawn` [mm] (absent: of one section), with its end blocks of these lengths [mm]."""
     side = _Side(0.5 * millimetres(part.end.height), Straight(part.span), stubs)
     solid = _prism(part) if drawn is None else drawn
     thin = _thinness(part)
@@ -167,7 +167,7 @@ def _prism(part: Shaped) -> occ.TopoDS_Shape:
 
 
 def _thinness(part: Shaped) -> float:
-    """Largest element [mm] where it is thinnest: those of leaves may be flat."""
+    """Largest element [mm] at the thinnest section: those of leaves may be flat."""
     thin = millimetres(part.throat.thinnest)
     if part.bends_both_ways:
         return _LONG * thin if part.slender else thin
@@ -212,7 +212,7 @@ def _edge(side: _Side, sign: float) -> _Curve:
 
 
 def _cut(side: _Side, sign: float) -> tuple[_Curve, tuple[float, float], tuple[float, float]]:
-    """Two arcs, what is straight between them, and where it starts and ends: they meet at the neck, where the mesh is to be fine."""
+    """Two arcs with straight parts between them, and their start and end: they meet at the neck, where the mesh must be fine."""
     height = side.height - side.rise
     along = height if isinstance(side.profile, Filleted) else side.half
     flat = side.half - along
@@ -235,7 +235,7 @@ def _arc(at: Callable[[float], tuple[float, float]], first: float, last: float) 
 
 
 def _ellipse(side: _Side, sign: float) -> _Curve:
-    """The two quarters of a half ellipse that meet at the neck; angles count from the longer axis, as the kernel's do."""
+    """The two quarters of a half ellipse that meet at the neck; angles are from the longer axis, as in the kernel."""
     along, across = side.half, side.height - side.rise
     flat = along >= across
     axes = occ.gp_Ax2d(occ.gp_Pnt2d(0.0, sign * side.height), occ.gp_Dir2d(1.0, 0.0) if flat else occ.gp_Dir2d(0.0, 1.0))
@@ -248,12 +248,12 @@ def _ellipse(side: _Side, sign: float) -> _Curve:
 
 
 def _wide(side: _Side, width: float, size: float) -> Specimen:
-    """Elements of a wide thin hinge may be flat: those of high order do not mind, and cubes would be too many."""
+    """Elements of a wide thin hinge may be flat: sufficient at high order, and cubes would be too many."""
     return _name_faces(_extrude(side, width), side, max(2.0 * side.rise, _FLAT * min(width, 2.0 * side.half)), size)
 
 
 def _name_faces(solid: occ.TopoDS_Shape, side: _Side, thin: float, size: float) -> Specimen:
-    """Name the outer faces, and ask for fine elements where the section is thinnest."""
+    """Name the outer faces, and request fine elements at the thinnest section."""
     solid.mat("medium 0")
     near = _NEAR * side.half
     start, end = side.ends
@@ -274,7 +274,7 @@ def _is_thin(point: occ.gp_Pnt, side: _Side, between: tuple[float, float]) -> bo
 
 
 def _thin_places(side: _Side) -> list[tuple[float, float]]:
-    """Between which distances from the middle the section is thinnest: all along a prism that ends on wider blocks."""
+    """Distances from the middle between which the section is thinnest: the whole length of a prism on wider blocks."""
     if isinstance(side.profile, Contour):
         knots = np.array(side.profile.knots)
         return [(place, place) for place in MILLIMETRES * knots[side.profile.height(knots) == 0.0]]

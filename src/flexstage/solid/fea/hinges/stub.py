@@ -1,7 +1,7 @@
-"""The stubs of a specimen by themselves: prismatic beams, taken off the specimen's compliance again.
+"""The stubs of a specimen: prismatic beams, subtracted from the specimen's compliance.
 
-Written apart from beam theory of hinges (`flexstage.beams`), which the solid model is compared with and never uses: it shares the
-description's sections. Their shear factor does not depend on Poisson's ratio (one that does, Cowper 1966, would move a hinge's shear
+Independent of the beam theory of hinges (`flexstage.beams`), which is compared with the solid model: both share only the
+description's sections. The shear factor does not depend on Poisson's ratio (one that does, Cowper 1966, would change a hinge's shear
 compliance by 1 %: it is part of the convention).
 """
 
@@ -19,11 +19,11 @@ _POINTS = 40
 
 
 def beam(section: Section, length: float, medium: Medium) -> Array:
-    """Compliance (6, 6) of a prismatic Timoshenko beam about its centre, axis along x, one end held plane and the other free to warp.
+    """Compliance (6, 6) of a prismatic Timoshenko beam about its centre, axis along x, one end fixed plane and the other free to warp.
 
     C = diag(L/EA, L^3/12EI_z + k L/GA, L^3/12EI_y + k L/GA, C_rx, L/EI_y, L/EI_z): bending and shear about the centre do not couple.
-    Torsion by Vlasov: C_rx = L/GJ (1 - tanh(m)/m), m^2 = G J L^2/(E C_w): Saint-Venant's alone would take more off a wide hinge than
-    there is.
+    Torsion by Vlasov: C_rx = L/GJ (1 - tanh(m)/m), m^2 = G J L^2/(E C_w): Saint-Venant's torsion alone would subtract more than the
+    total for a wide hinge.
 
     >>> from flexstage.parts.section import circle
     >>> beam(circle(2.0), np.pi, Medium(1.0, 0.0, 1.0)).diagonal()[[0, 3, 4, 5]].round(9).tolist()
@@ -44,11 +44,11 @@ def beam(section: Section, length: float, medium: Medium) -> Array:
 
 
 def _free_twist(section: Section, length: float, medium: Medium) -> float:
-    """Twist with one end held plane over that of Saint-Venant."""
+    """Twist with one end fixed plane over that of Saint-Venant."""
     warping = section.warping
     if warping is None:
         return 1.0
-    if isinstance(section, Rectangle):  # that of its section is for thin ones
+    if isinstance(section, Rectangle):  # the constant of its section is for thin ones
         warping = _warping(*sorted((single(section.height), single(section.width))))
     reach = single(np.sqrt(medium.shear * section.torsion / (medium.young * warping))) * length
     return 1.0 - float(np.tanh(reach)) / reach

@@ -1,4 +1,4 @@
-"""Checking and drawing whole stages in processes of their own: the CAD kernel may crash or hang, and takes nothing with it there."""
+"""Checking and drawing whole stages in separate processes: a crash of the CAD kernel ends only its process."""
 
 from __future__ import annotations
 
@@ -52,15 +52,15 @@ class _Checking(_Drawing):
 def contacts_apart(
     mechanisms: Sequence[Mechanism], clearance: float = 0.0, limits: Limits = _LIMITS, pool: Pool | None = None
 ) -> list[tuple[Finding, ...]]:
-    """What `contact_findings` finds of stages, side by side in processes of their own, or those of a `pool`.
+    """Results of `contact_findings` for stages, in parallel in separate processes, or those of a `pool`.
 
-    Raises `DesignError` where that crashes or takes too long.
+    Raises `DesignError` after a crash or a timeout.
     """
     return _results_of([_Checking(mechanism, clearance) for mechanism in mechanisms], limits, pool)
 
 
 def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
-    """What `step` writes, in a process of its own. Raises `DesignError` where that crashes or takes too long."""
+    """The result of `step`, computed in a separate process. Raises `DesignError` after a crash or a timeout."""
     return _results_of([_Drawing(mechanism)], limits)[0]
 
 

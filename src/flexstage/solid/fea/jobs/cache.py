@@ -1,6 +1,6 @@
-"""The cache of superelements and hinges: files by content, so that each is computed once on a machine and a stopped run resumes.
+"""The cache of superelements and hinges: files by content; each is computed once on a machine, and a stopped run resumes.
 
-What cannot be read or kept is told, never fatal: it is then computed, or not kept.
+Unreadable or unwritable files are reported and not fatal: the result is computed again, or not stored.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from flexstage.solid.fea.solver.component import Component
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of files in the cache: how their names end, and what is in them."""
+    """A kind of files in the cache: the ending of their names, and their content."""
 
     suffix: str
     noun: str
@@ -39,9 +39,9 @@ SUPERELEMENTS, HINGES, SOUND = Kind(".superelement", "superelement"), Kind(".hin
 
 @dataclass(frozen=True)
 class Cache(CheckedFields):
-    """Where superelements are kept, and how many bytes of them: the least recently used go first.
+    """Folder of superelements, and its size limit in bytes: the least recently used are removed first.
 
-    Without a `folder`: that named by the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.
+    Without a `folder`: that of the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.
     """
 
     folder: Path | None = None
@@ -49,7 +49,7 @@ class Cache(CheckedFields):
 
 
 Notice: TypeAlias = Callable[[Finding], None]
-"""Is called with what stops nothing: a file of the cache is damaged, or could not be kept."""
+"""Called with warnings: a file of the cache is damaged, or could not be written."""
 
 
 def warn(finding: Finding) -> None:
@@ -58,7 +58,7 @@ def warn(finding: Finding) -> None:
 
 
 def folder_of(cache: Cache) -> Path:
-    """The folder a cache is in; it need not be there yet.
+    """The folder of a cache; it need not exist.
 
     >>> folder_of(Cache(Path("/tmp/superelements"))).name
     'superelements'
@@ -67,7 +67,7 @@ def folder_of(cache: Cache) -> Path:
 
 
 def key_of(component: Component, reduction: Reduction, springs: Array | None = None) -> str:
-    """Digest of what a superelement depends on, versions apart: the component's content and how it is reduced.
+    """Digest of a superelement's inputs, without versions: the component's content and the options of its reduction.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.solid.fea.solver.component import components
@@ -82,7 +82,7 @@ def key_of(component: Component, reduction: Reduction, springs: Array | None = N
 
 
 def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> Any:
-    """Return the superelement or the 6x6 of a key, `None` where there is none. `where` names it in the notice of a damaged file.
+    """Return the superelement or the 6x6 of a key, `None` if it is absent. `where` names it in the notice of a damaged file.
 
     >>> find(Cache(Path("/nowhere")), "key", "lever") is None
     True
@@ -103,7 +103,7 @@ def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, noti
 
 
 def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
-    """Whether there is a file for a key; whether it is sound shows when it is read.
+    """Whether a file exists for a key; its validity is checked at reading.
 
     >>> holds(Cache(Path("/nowhere")), "key")
     False
@@ -112,7 +112,7 @@ def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
 
 
 def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> None:
-    """Keep a superelement, a 6x6 or a mark in a file, whole or not at all.
+    """Store a superelement, a 6x6 or a mark in a file, completely or not at all.
 
     >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", None, notice=lambda finding: print(finding.where))
     lever
@@ -125,12 +125,12 @@ def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELE
     except (OSError, DesignError) as error:
         why = error.strerror if isinstance(error, OSError) else error.findings[0].what
         what = f"its {kind.noun} of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({why})"
-        advice = f"The result is complete but will be computed again; free space there, or name another folder in {FOLDER_VARIABLE}"
+        advice = f"The result is complete, but not cached: free space there, or set {FOLDER_VARIABLE} to another folder"
         notice(Finding(where, what, advice))
 
 
 def _remove_old(cache: Cache, folder: Path, coming: int, kind: Kind) -> None:
-    """Remove what was not used for longest, until there is room."""
+    """Remove the least recently used files, until there is enough space."""
     total = float(coming)
     for _, size, path in sorted(_files(folder, kind.suffix), reverse=True):
         total += size

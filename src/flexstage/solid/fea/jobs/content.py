@@ -1,4 +1,4 @@
-"""Content: what a component's reduction depends on, names left out, so that copies and renamed designs are recognised."""
+"""Content: the inputs of a component's reduction without names, so that instances and renamed designs are recognised."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from flexstage.solid.fea.solver.component import Component
 from flexstage.spatial.frame import Frame
 
 KEPT = 512
-"""Components whose content is kept at hand."""
+"""Components whose content is cached in memory."""
 
 
 @SESSION.keep(KEPT)
 def content(component: Component) -> str:
-    """Digest of a component's geometry, media and joints, in its own axes; equal for all copies of a unit.
+    """Digest of a component's geometry, media and joints, in its own axes; equal for all instances of a unit.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.solid.fea.solver.component import components

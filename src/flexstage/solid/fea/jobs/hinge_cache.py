@@ -21,7 +21,7 @@ _USUAL_SECONDS = 1.0
 
 @dataclass(frozen=True, eq=False)
 class HingeJob(StoredJob):
-    """A hinge to compute in a process of its own, under the name it has for the user."""
+    """A hinge to compute in a separate process, under its name for the user."""
 
     called: str
     form: HingeForm
@@ -36,23 +36,23 @@ class HingeJob(StoredJob):
 
     @property
     def order(self) -> int:
-        """The lowest order that an error can be estimated at."""
+        """The lowest order with an error estimate."""
         return min(self.asked.orders[0] + 1, self.asked.orders[1])
 
     def seconds(self, _counts: Counts | None = None) -> float:
-        """What hinges usually take [s]: several solves, the more the higher the order may rise."""
+        """Usual duration for a hinge [s]: several solves, more for a higher final order."""
         return _USUAL_SECONDS * max(1, self.asked.orders[1] - 2)
 
     def needed(self, counts: Counts) -> float:
-        """Memory of the first solves [bytes]; at higher orders as much is taken as there is."""
+        """Memory of the first solves [bytes]; higher orders use the available memory."""
         return needed(counts, self.order, 6)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Why its coarsest mesh does not fit."""
+        """Reason why its coarsest mesh does not fit."""
         if self.needed(counts) <= limit:
             return None
-        what = f"its coarsest mesh needs about {self.needed(counts) / 1e9:.3g} GB at order {self.order}, and {limit / 1e9:.3g} GB are there"
-        return Finding(self.name, what, "Free memory, or let it have more")
+        what = f"its coarsest mesh needs about {self.needed(counts) / 1e9:.3g} GB at order {self.order}, {limit / 1e9:.3g} GB are available"
+        return Finding(self.name, what, "Free memory, or allow more")
 
     def work(self, call: Call) -> HingeSolid:
         """Compute the 6x6; errors name the hinge as the user does."""
@@ -66,9 +66,9 @@ class HingeJob(StoredJob):
 
 
 def hinges_from_cache(forms: Mapping[str, HingeForm], asked: Accuracy, ways: Ways) -> dict[str, HingeSolid]:
-    """The 6x6 of hinges by name, from the cache, else computed in processes of their own, side by side, each kept as soon as it is done.
+    """The 6x6 of hinges by name, from the cache, else computed in separate parallel processes, each stored immediately.
 
-    The solver is needed only for those that are not there. Raises `DesignError` with all that could not be computed.
+    Only missing ones need the solver. Raises `DesignError` with all failures.
 
     >>> hinges_from_cache({}, Accuracy(), Ways())
     {}
@@ -79,7 +79,7 @@ def hinges_from_cache(forms: Mapping[str, HingeForm], asked: Accuracy, ways: Way
 
 
 def hinge_jobs(forms: Mapping[str, HingeForm], asked: Accuracy) -> list[HingeJob]:
-    """A job a hinge."""
+    """A job for each hinge."""
     return [HingeJob(_key(form, asked), name, form, asked) for name, form in forms.items()]
 
 

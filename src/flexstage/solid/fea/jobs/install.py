@@ -1,4 +1,4 @@
-"""Is the solver of the solid model there: NGSolve with netgen, in the version flexstage was tested with, able to load its libraries?"""
+"""Check of the solid model's solver: NGSolve with netgen, in the tested version, with loadable libraries."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _INSTALL = f"Install {SOLVER_VERSION} with: pip install 'flexstage[solid]' (Pyth
 
 
 def solver_findings() -> tuple[Finding, ...]:
-    """What keeps NGSolve and netgen from working here; nothing if they do. Imports them unless something is already known to be wrong.
+    """Problems that prevent NGSolve and netgen from working here; empty if they work. Imports them unless a problem is already known.
 
     >>> solver_findings()
     ()
@@ -24,7 +24,7 @@ def solver_findings() -> tuple[Finding, ...]:
 
 
 def require_solver() -> None:
-    """Raise a `DesignError` that names the remedy if NGSolve or netgen is missing, of another version or does not load.
+    """Raise a `DesignError` with the remedy if NGSolve or netgen is missing, of another version or does not load.
 
     >>> require_solver()
     """
@@ -32,9 +32,9 @@ def require_solver() -> None:
 
 
 def require_installed() -> None:
-    """Raise a `DesignError` that names the remedy if NGSolve or netgen is missing or of another version; they are not loaded.
+    """Raise a `DesignError` with the remedy if NGSolve or netgen is missing or of another version; they are not loaded.
 
-    For what computes in processes of their own, if at all: they load it, and say so where it does not load.
+    For computations in separate processes: they load it, and report loading errors.
 
     >>> require_installed()
     """
@@ -55,6 +55,6 @@ def _versions() -> Iterator[Finding]:
 def _loading() -> Iterator[Finding]:
     try:
         import_module("ngsolve")
-    except (ImportError, OSError) as error:  # a library that does not load is either, by who loads it
-        advice = "See what is broken, and the command that mends it, with: flexstage doctor"
+    except (ImportError, OSError) as error:  # the type depends on the loader
+        advice = "Run flexstage doctor for the cause and its remedy"
         yield Finding("the solid model's package ngsolve", f"does not load ({error})", advice)

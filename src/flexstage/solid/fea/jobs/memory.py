@@ -1,6 +1,6 @@
-"""Memory of a reduction: estimated from the mesh before anything is assembled, against what the machine has left.
+"""Memory of a reduction: estimated from the mesh before assembly, compared with the free memory of the machine.
 
-Degrees of freedom and matrix entries are counted exactly from the mesh; what the factor takes is measured: between 20 and 70 bytes an entry
+Degrees of freedom and matrix entries are counted exactly from the mesh. The factor is measured: between 20 and 70 bytes an entry
 of the matrix on hinges, levers, plates and stacks of 2,000 to 440,000 degrees of freedom at orders two to four.
 """
 
@@ -16,22 +16,22 @@ from flexstage.solid.fea.meshing.fineness import Fineness
 _PROCESS = 180e6
 _PER_ELEMENT = 3500.0
 _MATRICES = 24.0
-"""Bytes an entry: stiffness and inertia, 8 bytes of value and 4 of index each."""
+"""Bytes for each entry: stiffness and inertia, 8 bytes of value and 4 of index each."""
 _FACTOR, _FACTOR_FREEDOMS, _FACTOR_GROWTH = 50.0, 4e5, 1.0 / 6.0
-"""Bytes an entry of the matrix for its factor; above so many freedoms they grow by this power of them."""
+"""Bytes of the factor for each entry of the matrix; they grow by this power of the DOFs above this number."""
 _COPIES = 4.0
-"""Copies of the basis that are alive at once."""
+"""Simultaneous copies of the basis."""
 _LANCZOS = 40
 _DRAWN, _PER_MESHED = 0.5, 1.4e-4
 """Seconds to draw; seconds an element to mesh."""
 _PER_FREEDOM, _PER_PROJECTED, _SLOWER = 3.3e-5, 1.7e-7, 2e5
-"""Seconds an unknown, and an unknown and coordinate; above so many unknowns they grow by the root of them, as factors fill."""
+"""Seconds an unknown, and an unknown and coordinate; above this number of unknowns they grow by its root, because of fill-in."""
 _COARSER, _COARSEST = 1.25, 12.0
 
 
 @dataclass(frozen=True)
 class Counts:
-    """What a tetrahedral mesh consists of, and of how many sides like it the whole does."""
+    """Counts of a tetrahedral mesh, and the number of its mirror images in the whole."""
 
     vertices: float
     edges: float
@@ -41,7 +41,7 @@ class Counts:
 
     @staticmethod
     def of(elements: float, sides: int = 1) -> Counts:
-        """The usual counts of a mesh with so many elements.
+        """The usual counts of a mesh with this number of elements.
 
         >>> Counts.of(1000.0)
         Counts(vertices=300.0, edges=1500.0, faces=2200.0, elements=1000.0, sides=1)
@@ -49,7 +49,7 @@ class Counts:
         return Counts(0.3 * elements, 1.5 * elements, 2.2 * elements, elements, sides)
 
     def coarser(self, factor: float) -> Counts:
-        """Roughly the counts with all sizes larger by a factor: graded meshes shrink with its square rather than its cube.
+        """Approximate counts with all sizes larger by a factor: graded meshes shrink with its square rather than its cube.
 
         >>> Counts(8.0, 8.0, 8.0, 8.0).coarser(2.0).elements
         2.0
@@ -57,7 +57,7 @@ class Counts:
         return self._times(1.0 / factor**2)
 
     def enriched(self, share: float, order: int) -> Counts:
-        """Of a mesh all of whose elements are of an order, the counts that have as many freedoms as this one with a share of one more.
+        """Counts with as many DOFs in elements of one order as this mesh has with a share of elements of one order more.
 
         >>> Counts(4, 6, 4, 1).enriched(1.0, 1).vertices  # ten nodes instead of four
         10.0
@@ -80,7 +80,7 @@ def freedoms(counts: Counts, order: int) -> float:
 
 
 def entries(counts: Counts, order: int) -> float:
-    """Entries of the stiffness matrix: nine for every pair of nodal functions that share an element, counted at the simplex they span.
+    """Entries of the stiffness matrix: nine for every pair of nodal functions with a common element, counted at their common simplex.
 
     >>> entries(Counts(4, 6, 4, 1), order=2)  # one tetrahedron: full
     900.0
@@ -95,8 +95,8 @@ def entries(counts: Counts, order: int) -> float:
 def needed(counts: Counts, order: int, columns: int) -> float:
     """Highest memory of a reduction [bytes] to `columns` coordinates: process, mesh, matrices, their factors, basis.
 
-    One side of what is symmetric has a factor for every kind of its motions, as many as there are sides. Within -15 and +40 % of what was
-    measured at orders two to four with modes; without them, as one factor at a time is there, up to 70 % more.
+    One side of a symmetric component has a factor for every kind of motion, as many as mirror images. Within -15 and +40 % of
+    measurements at orders two to four with modes. Without modes only one factor exists at a time, and the estimate is up to 70 % too high.
 
     >>> round(needed(Counts(1416, 7258, 10580, 4737), order=3, columns=24) / 1e6)  # a lever's foot: 967 MB measured
     1030
@@ -108,9 +108,9 @@ def needed(counts: Counts, order: int, columns: int) -> float:
 
 
 def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
-    """What a reduction usually takes on one core [s]: drawing, mesh, and each unknown solved for and projected once a coordinate.
+    """Usual duration of a reduction on one core [s]: drawing, mesh, and each unknown solved for and projected for each coordinate.
 
-    Within a factor of two between parts of one stage; how fast a machine is shows with the first ones.
+    Within a factor of two between parts of one stage; the first ones show the speed of the machine.
 
     >>> round(reduction_seconds(Counts.of(1000.0), 2, 24), 1), round(reduction_seconds(Counts.of(20_000.0), 3, 60))
     (0.8, 22)
@@ -121,24 +121,24 @@ def reduction_seconds(counts: Counts, order: int, columns: int) -> float:
 
 
 def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit: float) -> Finding | None:
-    """Why a component does not fit into `limit` bytes, with an order or a fineness that does; nothing if it fits.
+    """Reason why a component does not fit into `limit` bytes, with an order or a fineness that does; nothing if it fits.
 
     >>> found = refusal("lever", Counts(1416, 7258, 10580, 4737), Fineness(), 24, 0.5e9)
     >>> found.what
-    'its reduction at order 3 needs about 1.03 GB (79,536 degrees of freedom), and 0.5 GB are there'
+    'its reduction at order 3 needs about 1.03 GB (79,536 degrees of freedom), and 0.5 GB are available'
     >>> found.advice
-    'Ask for order 2, about 0.363 GB, or for larger elements, Fineness(neck=2.9, block=2.9, order=3), about 0.403 GB'
+    'Use order 2, about 0.363 GB, or larger elements, Fineness(neck=2.9, block=2.9, order=3), about 0.403 GB'
     >>> refusal("half a lever", Counts(1416, 7258, 10580, 4737, sides=2), Fineness(), 24, 0.5e9).what
-    'its reduction at order 3 needs about 1.53 GB (79,536 degrees of freedom of one side), and 0.5 GB are there'
+    'its reduction at order 3 needs about 1.53 GB (79,536 degrees of freedom of one side), and 0.5 GB are available'
     """
     wanted = needed(counts, fineness.order, columns)
     if wanted <= limit:
         return None
     what = f"its reduction at order {fineness.order} needs about {gigabytes(wanted)}"
     size = f"{freedoms(counts, fineness.order):,.0f} degrees of freedom{' of one side' if counts.sides > 1 else ''}"
-    what += f" ({size}), and {gigabytes(limit)} are there"
+    what += f" ({size}), and {gigabytes(limit)} are available"
     smaller = [*_lower_order(counts, fineness, columns, limit), *_larger_elements(counts, fineness, columns, limit)]
-    remedy = f"Ask for {', or for '.join(smaller)}" if smaller else "Free memory, or read its parts one by one"
+    remedy = f"Use {', or '.join(smaller)}" if smaller else "Free memory, or compute its parts separately"
     return Finding(where, what, remedy)
 
 

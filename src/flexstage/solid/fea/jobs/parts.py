@@ -1,4 +1,4 @@
-"""The reduced components of a stage: each distinct one once, from the cache where it is there, else in a process of its own."""
+"""The reduced components of a stage: each distinct one once, from the cache if possible, else in a separate process."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ _NO_SPRINGS: Mapping[str, Array] = MappingProxyType({})
 
 @dataclass(frozen=True)
 class Ways:
-    """How components are obtained: the `cache` (`None`: none is used), who is called with `progress` and notices, and the `limits`.
+    """Options of the jobs: the `cache` (`None`: none), the receiver of `progress` and of notices, and the `limits`.
 
-    With a `pool` processes and results stay for later calls.
+    With a `pool`, processes and results remain for later calls.
     """
 
     cache: Cache | None = Cache()
@@ -50,8 +50,8 @@ def reduce_parts(
 ) -> Parts:
     """Reduce components; `springs` between the interfaces of some, by name.
 
-    The solver is needed only for those that are not in the cache. Each is kept as soon as it is done: what is interrupted resumes. Raises
-    `DesignError` with all that could not be reduced.
+    Only components missing from the cache need the solver. Each is stored immediately, so an interrupted run resumes. Raises
+    `DesignError` with all failures.
 
     >>> reduce_parts((), Reduction())
     ()
@@ -62,7 +62,7 @@ def reduce_parts(
 
 
 def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mapping[str, Array] = _NO_SPRINGS) -> list[Reduce]:
-    """A job a component: what is reduced yields at the ends of its links, so that a unit alone and in its stage are one job.
+    """A job for each component: the ends of its links deform, so that a unit has one job isolated and in its stage.
 
     >>> reduce_jobs((), Reduction())
     []
@@ -78,7 +78,7 @@ def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mappi
 
 @SESSION.keep(KEPT)
 def content_in_stage(part: Component) -> str:
-    """The content of what is reduced for a component, the same for a unit alone and in its stage.
+    """The content of a component's reduction, the same for a unit isolated and in its stage.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> content_in_stage(bar()) == content(with_yielding_ends(bar()))
@@ -88,7 +88,7 @@ def content_in_stage(part: Component) -> str:
 
 
 def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Superelement]]) -> Parts:
-    """Components with the superelements of their `reduce_jobs`, faces that end on what is rigid held; equal ones share one.
+    """Components with the superelements of their `reduce_jobs`, faces on rigid bodies fixed; equal ones share one.
 
     >>> as_joined((), ())
     ()
@@ -105,7 +105,7 @@ def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Sup
 
 
 def obtain(jobs: Sequence[StoredJob], ways: Ways) -> dict[str, Any]:
-    """Results of jobs by key, from the cache, else computed, each once and kept as soon as it is done.
+    """Results of jobs by key, from the cache, else computed, each once and stored immediately.
 
     >>> obtain((), Ways())
     {}
@@ -119,7 +119,7 @@ def obtain(jobs: Sequence[StoredJob], ways: Ways) -> dict[str, Any]:
     missing = [job for job in todo if job.key not in results]
     if missing:
         require_installed()  # the processes load it
-        missing.sort(key=lambda job: -job.seconds())  # the longest first: the others fill the time beside it
+        missing.sort(key=lambda job: -job.seconds())  # the longest first, for an even load of the cores
         work_all(missing, partial(_take, results, ways), ways.limits, ways.progress, ways.pool)
     return {job.key: results[job.key] for job in jobs}
 
@@ -133,7 +133,7 @@ def distinct(jobs: Iterable[AnyStored]) -> tuple[AnyStored, ...]:
 
 
 def _take(results: dict[str, Any], ways: Ways, job: StoredJob, found: Any) -> None:
-    """Take a result of a worker, and keep it."""
+    """Take a result of a worker, and store it."""
     results[job.key] = found
     if ways.cache is not None:
         keep(ways.cache, job.key, job.name, found, job.stored, notice=ways.notice)

@@ -1,4 +1,4 @@
-"""Stages of a solid model, told by the process that computes and gathered over all components by the one that waits."""
+"""Stages of a solid model, reported by the computing process and summed over all components by the waiting one."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import Enum
 
 
 class Stage(Enum):
-    """What is being done to a component, in this order."""
+    """Stage of a component's computation, in this order."""
 
     STARTING = "starting"
     DRAWING = "drawing"
@@ -30,18 +30,18 @@ _SHARES = {
 """Usual shares of a component's time, at orders two and three."""
 
 Report = Callable[[Stage, float], None]
-"""Told of a stage and the fraction of it that is done."""
+"""Called with a stage and its completed fraction."""
 
 
 def silent(_stage: Stage, _fraction: float) -> None:
-    """Report to nobody.
+    """Ignore the progress.
 
     >>> silent(Stage.DRAWING, 0.0)
     """
 
 
 def fraction_done(stage: Stage, fraction: float) -> float:
-    """Fraction of a component that is done when a fraction of a stage is.
+    """Completed fraction of a component from the fraction of a stage.
 
     >>> fraction_done(Stage.STARTING, 0.0), round(fraction_done(Stage.MESHING, 1.0), 2), round(fraction_done(Stage.PROJECTING, 1.0), 9)
     (0.0, 0.2, 1.0)

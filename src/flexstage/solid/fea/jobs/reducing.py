@@ -23,19 +23,19 @@ from flexstage.solid.fea.solver.component import Component
 from flexstage.solid.fea.solver.superelement import Superelement
 
 _PER_PIECE, _PER_FEWEST = 450.0, 12.0
-"""Elements of usual meshes: so many a piece, and so many times the fewest."""
+"""Elements of usual meshes: a number for each piece, and a multiple of the smallest possible number."""
 _LEAF, _NOTCH, _LEAST_THIN = 3.0, 5.5, 0.6
-"""Elements over each triangle of the middle plane of a leaf and of the fine part of a notch, as counted; the least share of them."""
+"""Elements over each triangle of the middle plane of a leaf and of the fine part of a notch, as counted; their smallest share."""
 _SURELY = 0.85
-"""Share of the usual elements that meshes of leaves and notches had at least."""
+"""Smallest observed share of the usual elements in meshes of leaves and notches."""
 _TRIANGLE = 0.433
 """Area of an equilateral triangle of side one."""
 
 
 def fewest_elements(component: Component, fineness: Fineness) -> float:
-    """Elements a mesh has at least: one at every triangle of the surface, were it that of the pieces' necks and blocks alone.
+    """Lower bound of a mesh's elements: one for each triangle of the lateral surface of the pieces' necks and blocks.
 
-    What asks for more memory than there is need not be meshed first.
+    Meshes beyond the available memory are refused before meshing.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.solid.fea.solver.component import components
@@ -47,12 +47,12 @@ def fewest_elements(component: Component, fineness: Fineness) -> float:
 
 
 def _narrow_elements(piece: Piece, fineness: Fineness) -> float:
-    """One at every triangle of the lateral surface, were the piece as wide as its least dimension."""
+    """Elements of a piece with all widths equal to its smallest dimension: one for each triangle of the lateral surface."""
     return _surface(piece.form) / (_TRIANGLE * _size(piece, fineness) ** 2)
 
 
 def _thin_elements(form: Form, fineness: Fineness) -> float:
-    """Elements of usual meshes in what is thin over a width: a layer of prisms in a leaf, several about the middle plane of a notch."""
+    """Elements of usual meshes in thin wide forms: a layer of prisms in a leaf, several about the middle plane of a notch."""
     if not isinstance(form, Shaped) or form.is_axisymmetric:
         return 0.0
     size, width = fineness.neck * thinnest(form), float(np.real(form.throat.area)) / thinnest(form)
@@ -69,7 +69,7 @@ def _size(piece: Piece, fineness: Fineness) -> float:
 
 
 def _surface(form: Form) -> float:
-    """Lateral surface [m^2], that of the square around the least dimension."""
+    """Lateral surface [m^2] for a square section of the smallest dimension."""
     return 4.0 * thinnest(form) * max(span(form), thinnest(form))
 
 
@@ -103,11 +103,11 @@ class ComponentJob(StoredJob):
 
     @property
     def kin(self) -> str:
-        """Its content: at whatever order, its mesh is the same."""
+        """Its content: the mesh is the same at all orders."""
         return content(self.component)
 
     def expected(self, fineness: Fineness) -> Counts:
-        """What its mesh usually consists of, with elements of one order more in its notches."""
+        """Usual counts of its mesh, with elements of one order more in its notches."""
         forms = [piece.form for piece in self.component.pieces]
         thin = [_thin_elements(form, fineness) for form in forms]
         narrow = (_PER_FEWEST * _narrow_elements(piece, fineness) for piece in self.component.pieces)
@@ -125,7 +125,7 @@ class Reduce(ComponentJob):
 
     @property
     def columns(self) -> int:
-        """Coordinates its superelement will have at most."""
+        """Upper bound of its superelement's coordinates."""
         part = self.component
         stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
         warps = WARPS * sum(item.yields for item in part.interfaces)
@@ -136,7 +136,7 @@ class Reduce(ComponentJob):
 
     @property
     def _is_plain(self) -> bool:
-        """Whether faces alone hold it, plane or as they warp: then motions about a plane of symmetry are told apart by what moves them."""
+        """Whether only faces carry it, plane or warping: then the kinds of motions about a symmetry plane follow from the moved faces."""
         part = self.component
         return self.springs is None and self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
 
@@ -145,7 +145,7 @@ class Reduce(ComponentJob):
         return self.expected(self.reduction.fineness)
 
     def seconds(self, counts: Counts | None = None) -> float:
-        """What the reduction usually takes [s]: every unknown is solved for and projected once a coordinate."""
+        """Usual duration of the reduction [s]: every unknown is solved for and projected for each coordinate."""
         found = counts or self._usual
         return reduction_seconds(found, self.reduction.fineness.order, self.columns)
 
@@ -154,26 +154,26 @@ class Reduce(ComponentJob):
         return needed(counts, self.reduction.fineness.order, self.columns)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Why it does not fit, with an order or a fineness that does."""
+        """Reason why it does not fit, with an order or a fineness that does."""
         return refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
 
     def foreseen_refusal(self, memory: float, seconds: float) -> Finding | None:
-        """Why its usual mesh is beyond a memory [bytes] or a time, by far more than usual meshes differ; with its thinnest wide piece."""
+        """Reason why its usual mesh exceeds a memory [bytes] or a time by a large margin; with its thinnest wide piece."""
         scaled = self._usual.coarser(_SURELY**-0.5)
         found = self.refusal(scaled, memory)
         if found is None and self.seconds(scaled) > seconds:
             what = f"its reduction at order {self.reduction.fineness.order} takes about {duration(self.seconds(scaled))}"
-            found = Finding(self.name, f"{what}, {duration(seconds)} are allowed", "Ask for a lower order (--order 2)")
+            found = Finding(self.name, f"{what}, {duration(seconds)} are allowed", "Use a lower order (--order 2)")
         thin = max(self.component.pieces, key=lambda piece: _thin_elements(piece.form, self.reduction.fineness))
         if found is None or not isinstance(thin.form, Shaped):
             return found
         width, height = (1e3 * float(np.real(each)) for each in (thin.form.throat.width, thin.form.throat.thinnest))
         ratio = f"{thin.name} is {height:.3g} mm thick and {width:.3g} mm wide, 1 to {width / height:.3g}"
-        more = "or make that part thicker or narrower; its theory needs no elements: flexstage analyse"
+        more = "or make that part thicker or narrower, or use theory: flexstage analyse"
         return Finding(found.where, f"{found.what}: {ratio}", f"{found.advice}, {more}")
 
     def work(self, call: Call) -> Superelement:
-        """Ask for what the surface alone takes, or one side of it, draw, mesh, ask for the mesh, reduce; the superelement as stored."""
+        """Request the memory of the surface, draw, mesh, request the memory of the mesh, and reduce; returns the stored superelement."""
         from flexstage.solid.fea.geometry.cad import mirrors_of
         from flexstage.solid.fea.meshing.mesh import mesh_component
         from flexstage.solid.fea.solver.reduce import reduce_mesh

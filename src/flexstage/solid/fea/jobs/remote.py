@@ -1,6 +1,6 @@
-"""Jobs of the solid model in processes of their own: as many at once as cores and memory allow, with time limits.
+"""Jobs of the solid model in separate processes: as many at once as cores and memory allow, with time limits.
 
-One loop in the caller's thread starts, watches and ends them, so that an interruption, wherever it comes, ends every process.
+One loop in the caller's thread starts, watches and ends them, so that an interruption ends every process.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ _MESHED = frozenset(Stage) - {Stage.STARTING, Stage.DRAWING, Stage.MESHING}
 
 @dataclass(frozen=True)
 class Limits:
-    """What jobs may take.
+    """Resources of jobs.
 
-    `memory` in all [bytes] (absent: what the machine has left), `seconds` each, `mesh_seconds` for one attempt at a mesh, and
-    `workers` at once (absent: one a core, two at most).
+    `memory` in all [bytes] (absent: the free memory of the machine), `seconds` each, `mesh_seconds` for one attempt at a mesh. There are
+    `workers` at once (absent: one for each core, at most two).
     """
 
     memory: float | None = None
@@ -47,9 +47,9 @@ AnyJob = TypeVar("AnyJob", bound=Job)
 
 
 class Pool:
-    """Processes that stay from one run of jobs to the next, as loading the solver takes longer than a small job; results at hand by key.
+    """Processes kept between runs of jobs, as loading the solver takes longer than a small job; with their results by key.
 
-    They end where its context is left.
+    They end with its context.
 
     >>> with Pool() as pool:
     ...     work_all([], print, Limits(), pool=pool)
@@ -69,7 +69,7 @@ class Pool:
             self.end(worker)
 
     def worker(self, job: Job) -> Worker:
-        """A process for a job: one that waits, best that which did the like last, else a new one. Raises `OSError` where none starts."""
+        """A process for a job: an idle one, preferably with a similar last job, else a new one. Raises `OSError` if none starts."""
         for each in self.idle:
             if each.process.poll() is not None:
                 self.end(each)
@@ -82,7 +82,7 @@ class Pool:
         return found
 
     def end(self, worker: Worker) -> None:
-        """End a process, or forget one that has ended."""
+        """End a process, or remove an ended one."""
         self.idle = [each for each in self.idle if each is not worker]
         self._latest = {kin: each for kin, each in self._latest.items() if each is not worker}
         worker.end()
@@ -95,10 +95,10 @@ def work_all(
     progress: Progress | None = None,
     pool: Pool | None = None,
 ) -> None:
-    """Do jobs in processes of their own; `done` is told of each as it is finished, with its result.
+    """Run jobs in separate processes; `done` is called with each finished job and its result.
 
-    The processes stay where a `pool` is given. Raises `DesignError` with the findings of all that failed, after the others are done:
-    refused by themselves, crashed, out of time, without room. Raising from `progress` or an interruption ends all.
+    The processes remain in the `pool`, if any. Raises `DesignError` with all failures after the others are done: refused, crashed, out of
+    time, out of memory. An exception from `progress` or an interruption ends all.
 
     >>> work_all([], print, Limits())
     """
@@ -112,11 +112,11 @@ def work_all(
 
 
 def _nobody(_step: Step) -> None:
-    """Nobody is told."""
+    """Ignore the progress."""
 
 
 def workers(limits: Limits) -> int:
-    """How many jobs are done at once.
+    """Number of simultaneous jobs.
 
     >>> workers(Limits(workers=1))
     1
@@ -126,7 +126,7 @@ def workers(limits: Limits) -> int:
 
 @dataclass(eq=False)
 class _Child(Generic[AnyJob]):
-    """A running worker and what it said last."""
+    """A running worker and its last report."""
 
     job: AnyJob
     attempt: int
@@ -139,7 +139,7 @@ class _Child(Generic[AnyJob]):
     granted: float | None = None
 
     def note(self, told: Counts | tuple[Stage, float]) -> None:
-        """Note what it tells."""
+        """Store its report."""
         if isinstance(told, Counts):
             self.counts, self.granted = told, None
         else:
@@ -147,22 +147,22 @@ class _Child(Generic[AnyJob]):
 
     @property
     def waits(self) -> bool:
-        """Whether it waits for the permission it asked for."""
+        """Whether it waits for permission."""
         return self.counts is not None and self.granted is None
 
     @property
     def wanted(self) -> float:
-        """Memory it is going to need [bytes]."""
+        """Memory it will need [bytes]."""
         return 0.0 if self.counts is None else self.job.needed(self.counts)
 
     def permit(self) -> None:
-        """Let it assemble."""
+        """Permit the assembly."""
         self.granted, self.since = self.wanted, time.monotonic()
         self.worker.ask()
 
 
 class _Run(Generic[AnyJob]):
-    """The jobs of one call: those to come, those running, those done."""
+    """The jobs of one call: waiting, running, finished."""
 
     def __init__(self, jobs: Sequence[AnyJob], done: Callable[[AnyJob, Any], None], limits: Limits, progress: Progress, pool: Pool) -> None:
         self.done, self.limits, self.progress, self.pool = done, limits, progress, pool
@@ -174,7 +174,7 @@ class _Run(Generic[AnyJob]):
         self.begun, self.told, self.text, self.fraction = time.monotonic(), 0.0, "", 0.0
 
     def finish(self) -> None:
-        """Go on until nothing waits and nothing runs."""
+        """Run until no job waits or runs."""
         while self.waiting or self.children:
             while self.waiting and len(self.children) < workers(self.limits):
                 self._start(*self.waiting.pop(0))
@@ -185,7 +185,7 @@ class _Run(Generic[AnyJob]):
             self._tell()
 
     def end(self) -> None:
-        """Leave no process at work."""
+        """End all processes."""
         for child in self.children:
             self.pool.end(child.worker)
 
@@ -199,7 +199,7 @@ class _Run(Generic[AnyJob]):
         worker.ask(job, attempt, memory, self.limits.seconds)
 
     def _hear(self) -> None:
-        """Take in what the workers said, waiting a moment for it."""
+        """Receive the reports of the workers, waiting briefly."""
         try:
             worker, word, value = self.pool.heard.get(timeout=_PAUSE)
         except queue.Empty:
@@ -234,7 +234,7 @@ class _Run(Generic[AnyJob]):
             self._close(child, _out_of_time(child, self.limits.seconds))
 
     def _again(self, child: _Child[AnyJob]) -> bool:
-        """Begin with the next attempt at a mesh, where one took the process down or did not end."""
+        """Start the next attempt at a mesh after a crash or a timeout of one."""
         attempt = round(child.fraction * child.job.attempts) + 1
         if child.stage is not Stage.MESHING or attempt >= child.job.attempts:
             return False
@@ -253,7 +253,7 @@ class _Run(Generic[AnyJob]):
         self.children.remove(child)
 
     def _permit(self) -> None:
-        """Permit what fits beside those that run; refuse what does not fit even alone."""
+        """Permit jobs that fit next to the running ones; refuse those that do not fit alone."""
         for child in tuple(self.children):
             if child.counts is None or not child.waits:
                 continue
@@ -278,7 +278,7 @@ class _Run(Generic[AnyJob]):
             self.progress(Step(text, self.fraction, seconds_left(self.fraction, now - self.begun)))
 
     def _fraction_done(self) -> float:
-        """Fraction of the time of all jobs, by what each usually takes; those that have a mesh are planned again."""
+        """Completed fraction of the time of all jobs, by their usual durations; updated for those with a mesh."""
         self.planned |= {child.job.mark: child.job.seconds(child.counts) for child in self.children if child.stage in _MESHED}
         done = sum(self.planned[mark] for mark in self.finished)
         done += sum(self.planned[child.job.mark] * fraction_done(child.stage, child.fraction) for child in self.children)
@@ -286,7 +286,7 @@ class _Run(Generic[AnyJob]):
 
 
 def _failure_findings(child: _Child[AnyJob], error: Exception) -> tuple[Finding, ...]:
-    """What keeps a job from being done that its process lived to tell."""
+    """Errors of a job reported by its process."""
     if isinstance(error, DesignError):
         return error.findings
     if isinstance(error, MemoryError):
@@ -301,16 +301,16 @@ def _failure(child: _Child[AnyJob], code: int) -> Finding:
     if code == 1:
         return _fault(child, child.worker.last_words())
     tried = f", at {child.attempt + 1} sizes of elements" if child.attempt else ""
-    advice = "Ask for elements of another size or order, and report it with the design if it happens again"
+    advice = "Use elements of another size or order, and report it with the design if it happens again"
     if child.stage in {Stage.DRAWING, Stage.MESHING}:
-        advice = "Change the outline or the elements' sizes a little: slivers and faces that nearly touch bring the mesher down"
+        advice = "Change the outline or the elements' sizes a little: slivers and nearly touching faces crash the mesher"
     elif code == -signal.SIGKILL:
-        advice = "Something ended it, as systems do when memory runs out: ask for larger elements or a lower order, or state less memory"
+        advice = "Use larger elements or a lower order, or a smaller --memory: the system probably ran out of memory"
     return Finding(child.job.name, f"its process crashed while {doing} ({_reason(code)}){tried}", advice)
 
 
 def _fault(child: _Child[AnyJob], said: str) -> Finding:
-    advice = "This is a fault of flexstage or its solver: please report it with the design; other sizes of elements may get around it"
+    advice = "Report this fault of flexstage or its solver with the design; other sizes of elements may avoid it"
     return Finding(child.job.name, f"its process failed while {child.stage.value} ({said})", advice)
 
 
@@ -320,21 +320,21 @@ def _reason(code: int) -> str:
 
 
 def _out_of_time(child: _Child[AnyJob], seconds: float) -> Finding:
-    advice = "Ask for larger elements or a lower order, allow more time, or look for slivers, which can keep the mesher busy for ever"
+    advice = "Use larger elements or a lower order, allow more time, or remove slivers, which can block the mesher"
     return Finding(child.job.name, f"it was still {child.stage.value} after the {seconds:.4g} s allowed", advice)
 
 
 def _memory_full(child: _Child[AnyJob]) -> Finding:
-    advice = "Ask for larger elements or a lower order, or let it have more"
-    return Finding(child.job.name, f"it took more memory while {child.stage.value} than it may", advice)
+    advice = "Use larger elements or a lower order, or allow more memory"
+    return Finding(child.job.name, f"it exceeded its memory while {child.stage.value}", advice)
 
 
 def _disk_full(name: str) -> Finding:
-    advice = "Free some of it, or let the environment variable TMPDIR name a folder with more room"
-    return Finding(name, f"no room is left in the folder for temporary files, {tempfile.gettempdir()}", advice)
+    advice = "Free space, or set the environment variable TMPDIR to a folder with more space"
+    return Finding(name, f"no space is left in the folder for temporary files, {tempfile.gettempdir()}", advice)
 
 
 def _refuse_start(name: str, error: OSError) -> Exception:
     where = tempfile.gettempdir()
-    advice = "See that Python can be started and that the folder for temporary files (environment variable TMPDIR) has room"
+    advice = "Check that Python starts, and that the folder for temporary files (environment variable TMPDIR) has space"
     return refuse(name, f"no process could be started for it in {where} ({error.strerror})", advice)

@@ -1,4 +1,4 @@
-"""Storing superelements and the 6x6 of hinges: one line of JSON that says what follows, then the arrays as npz. Nothing in it is code."""
+"""Storing superelements and the 6x6 of hinges: one line of JSON that describes the data, then the arrays as npz. No code is stored."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from flexstage.solid.fea.jobs.install import SOLVER_VERSION
 from flexstage.solid.fea.solver.superelement import Skin, Superelement
 
 FORMAT = 1
-"""To be raised when the form of the file changes."""
+"""Raise this number if the form of the file changes."""
 
 _RECORDS = {record.__name__: record for record in (Superelement, Skin, HingeSolid, Finding)}
 
 
 @functools.cache
 def program() -> str:
-    """Return what computes here: flexstage with a digest of the code of its solid model, NGSolve, the form of the file.
+    """Return the identity of the program: flexstage with a digest of its solid model's code, NGSolve, the form of the file.
 
-    Results of code that changed are never taken for new ones.
+    Results of changed code are never reused.
 
     >>> program().endswith(f"with NGSolve {SOLVER_VERSION}, format {FORMAT}")
     True
@@ -57,23 +57,23 @@ def to_bytes(element: Superelement | HingeSolid | None, key: str) -> bytes:
 
 
 def from_bytes(data: bytes, key: str) -> Any:
-    """What was `to_bytes` into a file's bytes; else, in words, what is wrong with them: damaged, of another version, of other content.
+    """The value of a file's bytes from `to_bytes`; else the problem as text: damaged, of another version, of other content.
 
     >>> from_bytes(b"nonsense", "key")
-    'it is damaged: it does not begin as such files do'
+    'it is damaged: unknown header'
     """
     line, _, body = data.partition(b"\n")
     try:
         head = json.loads(line)
         stated = head.pop("checksum")
     except (ValueError, KeyError, AttributeError, RecursionError):
-        return "it is damaged: it does not begin as such files do"
+        return "it is damaged: unknown header"
     if _checksum(head, body) != stated:
-        return f"it is damaged: its {len(data):,} bytes do not have the checksum it states"
+        return f"it is damaged: wrong checksum of its {len(data):,} bytes"
     if head.get("made") != program():
         return f"it is of another version: {head.get('made')}"
     if head.get("key") != key:
-        return "it holds something else"
+        return "it has other content"
     with np.load(io.BytesIO(body), allow_pickle=False) as arrays:
         return _build(head["tree"], arrays)
 

@@ -1,4 +1,4 @@
-"""Jobs of the solid model, and what a process does with one: CAD and mesher may crash or hang; there they take nothing with them."""
+"""Jobs of the solid model, run in a separate process: a crash or hang of CAD and mesher ends only that process."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from flexstage.solid.fea.jobs.memory import Counts
 from flexstage.solid.fea.jobs.progress import Report, Stage, silent
 
 _SLACK, _SHARE = 5e8, 1.2
-"""What libraries take beyond a job's own memory [bytes], and how much more it may take than was planned with."""
+"""Memory of libraries beyond a job's own [bytes], and the tolerance on its planned memory."""
 USUAL_SECONDS = 2.0
-"""What a small job takes: a process that loads its libraries, draws and meshes."""
+"""Usual duration of a small job: a process that loads its libraries, draws and meshes."""
 _PATIENCE = 60.0
-"""How much longer than allowed it lives if nobody ends it [s]."""
+"""Additional life time of a process without a caller [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Call:
-    """What a job is given where it works: whom to tell, whom to ask for memory, which attempt at a mesh to begin with.
+    """Environment of a job: progress report, request for memory, first attempt at a mesh.
 
-    `ask` waits until there is room for a mesh, expected or made.
+    `ask` waits until memory for an expected or existing mesh is available.
     """
 
     report: Report = silent
@@ -35,47 +35,47 @@ class Call:
 
 
 class Job(ABC):
-    """Work for a process of its own: a value that can be pickled, with a result that can be."""
+    """Work for a separate process: a value that can be pickled, with a result that can be pickled."""
 
     attempts: int = 1
-    """How many attempts at a mesh can be told apart by their number, so that one that takes the process down is followed by the next."""
+    """Number of numbered attempts at a mesh: if one crashes the process, the next follows."""
 
     @property
     @abstractmethod
     def name(self) -> str:
-        """What it works on, as the user knows it."""
+        """Name of its object for the user."""
 
     @property
     def mark(self) -> str:
-        """What it is told apart by from all others."""
+        """Its identifier among all jobs."""
         return self.name
 
     @property
     def kin(self) -> str:
-        """What it shares with jobs that a process does sooner when it did the like before; nothing where that does not matter."""
+        """Property shared with jobs that a process does faster after a similar one; empty if irrelevant."""
         return ""
 
     def seconds(self, _counts: Counts | None = None) -> float:
-        """What it usually takes on one core [s], before or after its mesh is known."""
+        """Usual duration on one core [s], before or after meshing."""
         return USUAL_SECONDS
 
     @abstractmethod
     def work(self, call: Call) -> Any:
-        """Do it."""
+        """Compute the result."""
 
     def needed(self, _counts: Counts) -> float:
-        """Memory it is going to need for a mesh [bytes]."""
+        """Memory for a mesh [bytes]."""
         return 0.0
 
     def refusal(self, _counts: Counts, _limit: float) -> Finding | None:
-        """Why it does not fit into memory, with a smaller suggestion."""
+        """Reason why it does not fit into memory, with a smaller suggestion."""
         return None
 
 
 def work(line: Line, job: Job, attempt: int, memory: float, seconds: float) -> Any:
-    """Do a job within a memory [bytes] and a time [s]: report stages and counts of meshes, and wait for room for each mesh.
+    """Run a job within a memory [bytes] and a time [s]: report stages and counts of meshes, and wait for memory for each mesh.
 
-    Raises a `DesignError` that names the remedy if the solver does not load.
+    Raises a `DesignError` with the remedy if the solver does not load.
     """
 
     def ask(counts: Counts) -> None:
@@ -86,11 +86,11 @@ def work(line: Line, job: Job, attempt: int, memory: float, seconds: float) -> A
         line.tell((stage, fraction))
 
     limit_memory(_SHARE * memory + _SLACK)
-    faulthandler.dump_traceback_later(seconds + _PATIENCE, exit=True)  # should compiled code keep the lock and the caller be gone
+    faulthandler.dump_traceback_later(seconds + _PATIENCE, exit=True)  # in case compiled code holds the lock and the caller has ended
     try:
         return job.work(Call(report, ask, attempt))
     except (ImportError, OSError):
-        require_solver()  # what did not load may be the solver
+        require_solver()  # the missing module may be the solver
         raise
     finally:
         faulthandler.cancel_dump_traceback_later()

@@ -1,1 +1,1 @@
-"""Meshes, how fine they are, and the errors that their sequence shows."""
+"""Meshes, their fineness, and error estimates from their sequence."""

@@ -1,4 +1,4 @@
-"""How accurate a result of finite elements is, from a sequence of orders and meshes, and when to stop."""
+"""Error estimate of finite elements from a sequence of orders and meshes, and the stopping criterion."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
 
 _MOST = 0.8
-"""Largest ratio of one change to the one before that is taken to say something about convergence."""
+"""Largest ratio of successive changes used for convergence."""
 
 
 @dataclass(frozen=True)
 class Accuracy(CheckedFields):
-    """What to ask of an adaptive solve.
+    """Requirements of an adaptive solve.
 
-    `error` is the relative error wanted, `freedoms` the most degrees of freedom to spend. On the first mesh the order rises from the first
-    to the second of `orders`; then it stays, and elements shrink by `shrink` from mesh to mesh, `meshes` in all.
+    `error` is the required relative error, `freedoms` the maximum number of DOFs. On the first mesh the order rises from the first
+    to the second of `orders`. Then it is constant, and elements shrink by `shrink` from mesh to mesh, `meshes` in all.
     """
 
     error: float = 0.01
@@ -30,7 +30,7 @@ class Accuracy(CheckedFields):
 
 
 def change(first: Array, second: Array) -> float:
-    """Largest change between two compliances (6, 6), each entry ij against sqrt(C_ii C_jj) of the second: free of units.
+    """Largest change between two compliances (6, 6), each entry ij against sqrt(C_ii C_jj) of the second: dimensionless.
 
     >>> change(np.diag([1.0, 2.0]), np.diag([1.0, 2.02])).__round__(4)
     0.0099
@@ -40,10 +40,10 @@ def change(first: Array, second: Array) -> float:
 
 
 def remaining(changes: Iterable[float]) -> float:
-    """Error left in the last of a sequence of results, from the changes d_1, d_2, ... between neighbours: max(1, r / (1 - r)) d_n.
+    """Error of the last of a sequence of results, from the changes d_1, d_2, ... between neighbours: max(1, r / (1 - r)) d_n.
 
-    r = d_n / d_(n-1), at most 0.8: a geometric series where it converges slowly, and the last change, which overestimates, where it does
-    not. Infinite without any change. An estimate, not a bound.
+    r = d_n / d_(n-1), at most 0.8: a geometric series for slow convergence, and the last change, an overestimate, for fast convergence.
+    Infinite without any change. An estimate, not a bound.
 
     >>> remaining([0.4, 0.1]), round(remaining([0.4, 0.3]), 6), round(remaining([0.4, 0.4]), 6), remaining([0.4]), remaining([])
     (0.1, 0.9, 1.6, 0.4, inf)

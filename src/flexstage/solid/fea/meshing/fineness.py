@@ -1,4 +1,4 @@
-"""What is asked of a solid model: how fine a mesh, of which order, and how many modes within each component. Loads no solver."""
+"""Options of a solid model: fineness and order of the mesh, and number of modes in each component. Loads no solver."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from enum import Enum
 from flexstage.base.arguments import CheckedFields
 
 ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
-"""How the mesh is varied where the mesher fails: factors on all sizes, on the grading and on the segments per radius of curvature."""
+"""Variations of the mesh if the mesher fails: factors on all sizes, on the grading and on the segments per radius of curvature."""
 
 
 NOTCH_MIDDLE, NOTCH_REACH = 0.7, 1.6
-"""Elements in the middle plane of a notch are this share of those on the faces of other hinges, so far along it on both sides, in geometric
-means of radius and thickness: there strain changes most."""
+"""Element size in the middle plane of a notch over that on the faces of other hinges, and its extent on both sides, in geometric
+means of radius and thickness. The strain gradient is largest there."""
 WARPS = 12
-"""Motions of an interface face that are linear or quadratic over it, and not rigid."""
+"""Linear and quadratic motions of an interface face, without rigid ones."""
 
 
 @dataclass(frozen=True)
 class Fineness(CheckedFields):
-    """How fine to mesh and of which polynomial `order`, that of the curved geometry included; notches take one order more within.
+    """Mesh size and polynomial `order`, also of the curved geometry; elements in notches have one order more.
 
-    Elements are `neck` times a link's least thickness on its faces, `block` times a body's least dimension elsewhere, and grow by
+    Elements are `neck` times a link's smallest thickness on its faces, `block` times a body's smallest dimension elsewhere, and grow by
     `grading` (0.1 slow to 0.9 fast).
     """
 
@@ -33,7 +33,7 @@ class Fineness(CheckedFields):
 
 
 class Hold(Enum):
-    """How interface faces between elastic bodies follow: held to a twist and quadratic warps, or by their mean twist only."""
+    """Motion of interface faces between elastic bodies: a twist and quadratic warps, or only the mean twist."""
 
     RIGID = "rigid"
     AVERAGED = "averaged"
@@ -41,11 +41,11 @@ class Hold(Enum):
 
 @dataclass(frozen=True)
 class Reduction(CheckedFields):
-    """How a component is reduced: mesh and order, how many fixed-interface modes it keeps, how its interface faces are held.
+    """Options of a component's reduction: mesh and order, number of fixed-interface modes, constraint of its interface faces.
 
-    `residual`: it also keeps the static response, faces held, to the inertia of the faces' motions: what is left of the modes that are not
-    kept, to first order in frequency squared. Components whose content is `raised` get elements of one order more than the others, and no
-    modes where they are `static`: the response to loads at rest does not need them.
+    `residual`: also keep the static response, faces fixed, to the inertia of the faces' motions. It replaces the omitted modes to first
+    order in frequency squared. Components whose content is `raised` have elements of one order more than the others, and no
+    modes if `static`: the static response does not need them.
     """
 
     fineness: Fineness = Fineness()
@@ -56,7 +56,7 @@ class Reduction(CheckedFields):
     static: bool = False
 
     def of(self, content: str) -> Reduction:
-        """What it asks of a component, by its content.
+        """The options of a component, by its content.
 
         >>> own = Reduction(raised=frozenset({"lever"}), static=True).of("lever")
         >>> own.fineness.order, own.modes

@@ -27,36 +27,36 @@ from flexstage.solid.fea.solver.component import Component
 _CURVATURE = 1.5
 """Segments per radius of curved faces."""
 _NECK = 0.5
-"""Share of a link's length, about its middle, whose elements follow the drawing."""
+"""Share of a link's length, about its middle, with curved elements."""
 _CORE, _AWAY = 1.0 / 6.0, 0.1
-"""Elements within a round neck with an arc, on circles of half its radius about its axis: this share of those on its faces in the middle,
-larger by this share of the distance from it. From its surface alone the mesher fills it with flat ones, twice as wide."""
+"""Elements within a round neck with an arc, on circles of half its radius about its axis. Size in the middle over that on its faces,
+and its growth with the distance. From the surface alone the mesher would make flat elements, twice as wide."""
 _ROUND = 0.85
-"""Elements within round necks are this share of those of the same neck alone, as its faces are coarser."""
+"""Size of elements within round necks relative to those of the isolated neck, as its faces are coarser."""
 _NOTCH = 5.0 / 3.0
-"""Elements of notches, which are of one order more, are as much larger than those on the faces of other hinges."""
+"""Size of elements in notches, of one order more, relative to those on the faces of other hinges."""
 _SLENDER = 0.4
-"""Share for straight necks: as wide as thick, they cost little."""
+"""Share for straight necks: elements as wide as thick, at low cost."""
 _ROOT = 2.0 / 15.0
-"""Elements around the ends of straight necks are this share of the usual: at the edge there the block they grow on yields most."""
+"""Size of elements around the ends of straight necks relative to the usual: the block deforms most at the edge there."""
 _HELD = 0.9
 """Share of its length within which a round neck's inside is graded."""
 _PRINT = 1.0 / 3.0
-"""Elements under another component's end face over the root of its area, at a neck of one: a small one presses a root into the body."""
+"""Elements under another component's end face over the root of its area, for a neck of one. A small face needs a fine root."""
 _MOST = 3e5
-"""Elements that may cover one link."""
+"""Largest number of elements in one link."""
 _WITHIN = 1e-6
-"""A face belongs to a piece when its centre is this near its bounding box [m]."""
+"""Largest distance between a face's centre and the bounding box of its piece [m]."""
 _AT_HAND = 8
-"""Drawings and meshes that are kept for the next order."""
+"""Drawings and meshes cached for the next order."""
 
 
 @dataclass(frozen=True)
 class PieceMesh:
     """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) each element belongs to.
 
-    Elements that are `finer` (mask) take one order more than the others: those of notches. Where it is the positive side of what is
-    symmetric about `mirrors`, `images` (copies - 1, elements) are the pieces that the mirror images of its elements belong to.
+    `finer` elements (mask) have one order more than the others: those of notches. If the mesh is the positive side of a component with
+    `mirrors`, `images` (copies - 1, elements) are the pieces of the mirror images of its elements.
     """
 
     mesh: ngsolve.Mesh
@@ -71,12 +71,11 @@ class PieceMesh:
 def mesh_component(
     component: Component, fineness: Fineness, report: Report = silent, first: int = 0, *, by_symmetry: bool = False
 ) -> PieceMesh:
-    """Draw and mesh a component; `by_symmetry` the positive side alone where it is symmetric.
+    """Draw and mesh a component; with `by_symmetry` only the positive side of a symmetric one.
 
-    Elements that curved faces turn inside out get straight sides, near the ends of arcs. Where the mesher fails, or an element of a neck is
-    turned inside out, sizes and grading are varied and it is tried again, a few times; `first` is the attempt to begin with, where an
-    earlier one took the process down. What is drawn and meshed is kept at hand: at another order it is only curved anew. Raises
-    `DesignError` when none of that helps.
+    Elements near the ends of arcs that curving inverts get straight sides. If the mesher fails, or an element of a neck is inverted, sizes
+    and grading are varied, a few times. `first` is the first attempt, after a crash of an earlier one. Drawings and meshes are cached:
+    another order only needs a new curving. Raises `DesignError` if all attempts fail.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -88,7 +87,7 @@ def mesh_component(
     report(Stage.DRAWING, 0.0)
     subject = _Subject.of(component, by_symmetry=by_symmetry)
     drawing = _drawing(subject)
-    failure = "the mesher was not asked"
+    failure = "the mesher did not run"
     for number in range(first, len(ATTEMPTS)):
         report(Stage.MESHING, number / len(ATTEMPTS))
         outcome = _straight_mesh(subject, replace(fineness, order=1), number)
@@ -100,7 +99,7 @@ def mesh_component(
 
 
 def _thin_findings(component: Component, fineness: Fineness) -> Iterator[Finding]:
-    """Links so thin for their length and width that elements of their size would never end."""
+    """Links too thin for their length and width to be meshed with elements of their thickness."""
     for piece in component.pieces:
         size = _size(piece, fineness) / MILLIMETRES
         sides = sorted(2.0 * half_extents(piece))
@@ -109,12 +108,12 @@ def _thin_findings(component: Component, fineness: Fineness) -> Iterator[Finding
             over = " x ".join(f"{side * MILLIMETRES:.4g}" for side in (sides[2], sides[1]))
             what = f"its {thinnest(piece.form) * MILLIMETRES:.3g} mm are too thin to mesh over {over} mm"
             more = f"that takes some {count:.1g} elements of {size * MILLIMETRES:.3g} mm, {_MOST:.1g} are allowed"
-            yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or ask for larger elements (Fineness.neck)")
+            yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or use larger elements (Fineness.neck)")
 
 
 @dataclass(frozen=True)
 class _Subject:
-    """A component, told apart by what its mesh depends on: its content and what its faces are called."""
+    """A component, identified by the inputs of its mesh: its content and the names of its faces."""
 
     content: str
     faces: tuple[str, ...]
@@ -135,7 +134,7 @@ def _drawing(subject: _Subject) -> Cad:
 
 @SESSION.keep(_AT_HAND)
 def _straight_mesh(subject: _Subject, fineness: Fineness, number: int) -> ngsolve.Mesh | str:
-    """An attempt at a mesh, not curved yet; else what went wrong."""
+    """An attempt at a mesh, without curving; else the reason of the failure."""
     component, drawing = subject.component, _drawing(subject)
     shrink, grading, curvature = ATTEMPTS[number]
     sizes = {
@@ -155,9 +154,9 @@ def _curve(straight: ngsolve.Mesh, order: int) -> ngsolve.Mesh:
 
 
 def generate_mesh(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
-    """A mesh [mm] of a drawing with the sizes the mesher is given; else what went wrong.
+    """A mesh [mm] of a drawing with these mesher options; else the reason of the failure.
 
-    By one thread: several may make another mesh from run to run, and spend most of their time waiting for one another.
+    Uses one thread: several may give different meshes from run to run, and mostly wait for one another.
 
     >>> generate_mesh(occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(1, 1, 1)), {"maxh": 2.0}).ne > 0
     True
@@ -167,11 +166,11 @@ def generate_mesh(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.
     except Exception as error:  # noqa: BLE001 (netgen raises a bare NgException, and others for CAD it cannot read)
         return str(error)
     mesh = ngsolve.Mesh(raw)
-    return mesh if mesh.ne else "no elements came out"
+    return mesh if mesh.ne else "no elements"
 
 
 def _finish(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> PieceMesh | str:
-    """A mesh without folded elements, those of necks curved; else what is wrong with it."""
+    """A mesh without folded elements, those of necks curved; else the problem."""
     places = centroids(mesh)
     owner = owners(pieces, places)
     necks = np.zeros(len(places), dtype=bool)
@@ -185,12 +184,12 @@ def _finish(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Piec
 
 
 def _is_notch(form: Form) -> bool:
-    """Whether it is a hinge with arcs across a width: its strain changes from face to face and along it, but smoothly."""
+    """Whether it is a hinge with arcs across a width: its strain varies smoothly across and along it."""
     return isinstance(form, Shaped) and form.has_arc and not (form.is_axisymmetric or form.slender)
 
 
 def _refine_necks(pieces: tuple[Piece, ...], neck: float, mirrors: Mirrors) -> MeshingParameters:
-    """Smaller elements where the strain of hinges changes most from one to the next."""
+    """Smaller elements at the largest strain gradients of hinges."""
     return restrict_sizes(
         (mirrors.within(points @ piece.frame.rotation.T + piece.frame.position), size)
         for piece in pieces
@@ -200,7 +199,7 @@ def _refine_necks(pieces: tuple[Piece, ...], neck: float, mirrors: Mirrors) -> M
 
 
 def restrict_sizes(places: Iterable[tuple[Array, float]]) -> MeshingParameters:
-    """Elements of at most a size at points (n, 3) [m].
+    """Limit the element size at points (n, 3) [m].
 
     >>> restrict_sizes([(np.zeros((1, 3)), 1e-3)]) is not None
     True
@@ -232,9 +231,9 @@ def _middle_points(form: Shaped, size: float) -> Array:
 
 
 def core_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
-    """Points (n, 3) within a round neck with an arc, in its frame, and the size of elements there [m] that are `neck` thicknesses outside.
+    """Points (n, 3) within a round neck with an arc, in its frame, and the element size there [m] for `neck` thicknesses on its faces.
 
-    They lie on its axis and halfway to its surface. None in any other hinge.
+    They are on its axis and halfway to its surface. None in other hinges.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> list(core_points(Leaf("steel", 0.01, 1e-3, 5e-3), 1.5))
@@ -279,7 +278,7 @@ def _set_sizes(component: Component, drawing: Cad, fineness: Fineness, shrink: f
 
 
 def _near(pieces: tuple[Piece, ...], sizes: list[float], face: occ.Face) -> list[float]:
-    """Sizes of the pieces a face belongs to: links it lies on as a whole, bodies that hold its centre."""
+    """Sizes of the pieces of a face: links that contain it entirely, bodies that contain its centre."""
     centre = coordinates(face.center)[None] / MILLIMETRES
     corners = np.array([coordinates(vertex.p) for vertex in face.vertices]).reshape(-1, 3) / MILLIMETRES
     held = [region(piece, centre)[0] <= _WITHIN for piece in pieces]
@@ -293,7 +292,7 @@ def _near(pieces: tuple[Piece, ...], sizes: list[float], face: occ.Face) -> list
 
 
 def _thicker(piece: Piece, centre: Array) -> float:
-    """How many times thicker than at its throat a leaf in pieces is at a point (1, 3) [m]; 1 for what is thick at its ends alone."""
+    """Thickness of a leaf in pieces at a point (1, 3) [m], over that at its throat; 1 for other forms."""
     if not isinstance(piece.form, Shaped) or piece.form.is_prismatic or not piece.form.slender:
         return 1.0
     stations, sections = zip(*piece.form.silhouette, strict=True)
@@ -319,7 +318,7 @@ def _refuse_mesh(component: Component, reason: str) -> Exception:
     return refuse(
         component.name,
         f"no mesh could be made ({reason}); its thinnest piece is {thin.name} with {thinnest(thin.form) * MILLIMETRES:.4g} mm",
-        "Ask for a finer mesh, or look for steps and slivers between outlines that are much smaller than the neck",
+        "Use a finer mesh, or remove steps and slivers between outlines that are much smaller than the neck",
     )
 
 
@@ -338,7 +337,7 @@ def centroids(mesh: ngsolve.Mesh) -> Array:
 
 
 def owners(pieces: tuple[Piece, ...], points: Array) -> Array:
-    """The piece (index) each point belongs to: the nearest by bounding box, links before bodies where both hold it.
+    """The piece (index) of each point: the nearest by bounding box, links before bodies.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> owners(bar().pieces, np.array([[0.05, 0.0, 0.0]])).tolist()

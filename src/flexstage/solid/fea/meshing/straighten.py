@@ -1,7 +1,7 @@
-"""Straightening: elements that curved sides turn inside out get straight ones, where that does not matter.
+"""Straightening: elements inverted by curved sides get straight ones, where this is harmless.
 
-A concave arc bulges into its elements by h^2 / (8 R); one that is flatter than that is turned inside out. Few are, all near the ends of
-arcs, where sections are thick: drawing anew with smaller elements everywhere costs far more than their straight sides.
+A concave arc bulges into its elements by h^2 / (8 R) and inverts flatter ones. They are few, all near the ends of arcs, where sections
+are thick: smaller elements everywhere would cost far more than these straight sides.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ import numpy as np
 from flexstage.base.number import Array
 
 _FLAT = 0.05
-"""Lowest share of its highest Jacobian that an element may fall to."""
+"""Smallest ratio of the lowest to the highest Jacobian of an element."""
 _ORDER = 4
 
 
 def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
-    """Give the elements of a curved mesh that are folded straight sides, or say why not.
+    """Give folded elements of a curved mesh straight sides, or return the reason of the failure.
 
-    Elements of `kept` (mask) keep their curved sides: the answer names the lowest Jacobian if one of them is inside out. Where any are
-    straightened the mesh is of order one and carries the rest of the curved shape as its deformation: curving it again needs
-    `UnsetDeformation` first.
+    Elements of `kept` (mask) keep their curved sides: the result names the lowest Jacobian if one of them is inverted. After a
+    straightening, the mesh is of order one and has the remaining curved shape as its deformation: call
+    `UnsetDeformation` before curving it again.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -39,7 +39,7 @@ def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
     shape = _shape(mesh)
     mesh.Curve(1)
     mesh.SetDeformation(shape)
-    while np.any(folded):  # ends: an element all of whose sides are straight is the mesher's own
+    while np.any(folded):  # ends: an element with straight sides only is valid
         _flatten(shape, folded)
         lowest, highest = jacobians(mesh)
         folded = _folded_elements(lowest, highest) & ~kept
@@ -68,7 +68,7 @@ def _folded_elements(lowest: Array, highest: Array) -> Array:
 
 
 def _shape(mesh: ngsolve.Mesh) -> ngsolve.GridFunction:
-    """What curving adds to the straight mesh [mm]: the hierarchical coordinates of the position without those of vertices."""
+    """Difference between curved and straight mesh [mm]: the hierarchical coordinates of the position without those of vertices."""
     space = ngsolve.VectorH1(mesh, order=mesh.GetCurveOrder())
     shape = ngsolve.GridFunction(space)
     shape.Set(ngsolve.CoefficientFunction((ngsolve.x, ngsolve.y, ngsolve.z)))

@@ -72,7 +72,7 @@ class _Model:
         return Motions(self.twists, self.twist)
 
     def end(self, name: str, body: str, frame: Frame) -> Array:
-        """The twist (6, N) at a frame of where a part without a shape ends: of the surface there, or of a rigid body."""
+        """The twist (6, N) at a frame at the end of a part without a shape: of the surface there, or of a rigid body."""
         if name not in self.seats:
             return self.twist(body, frame)
         point, twist = self.seats[name]
@@ -96,8 +96,8 @@ def linear_model(
 ) -> LinearModel:
     """Join reduced components to a model.
 
-    Coordinates: twists of rigid bodies, twists of the joints between elastic components (stage axes, at the joint), warps of their faces
-    (in the joint's own axes), and each component's internal coordinates. Raises `DesignError` when the joined stage can move freely.
+    Coordinates: twists of rigid bodies and of the joints between elastic components (stage axes, at the joint). Then warps of their faces
+    (in the joint's own axes), and each component's internal coordinates. Raises `DesignError` if the joined stage has a rigid-body motion.
     """
     model = _join(mechanism, assembly, parts)
     elastic, mass = dict(_stiffness(model)), dict(_inertia(model))
@@ -138,7 +138,7 @@ def _join(mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Component
 
 
 def _seats(placed: tuple[Placed, ...]) -> Iterator[tuple[str, tuple[Array, Array]]]:
-    """Point (3,) and twist (6, N) there, in the stage's axes, of the surface around every end of a part without a shape, by its name."""
+    """Point (3,) and twist (6, N) in the stage's axes of the surface around every end of a part without a shape, by its name."""
     for item in placed:
         turn = spatial_rotation(item.component.place.rotation)
         for end, rows in zip(item.component.seats, item.element.seats.values(), strict=True):
@@ -275,7 +275,7 @@ def _inertia(model: _Model) -> Iterator[tuple[str, Contribution]]:
 
 
 def _body_inertia(model: _Model, item: Placed, name: str, number: int) -> Iterator[tuple[str, Contribution]]:
-    """A body's inertia with its mean twist, and what its elastic motion about that carries; the two are orthogonal."""
+    """A body's inertia with its mean twist, and that of its elastic motion about it; the two are orthogonal."""
     place = list(item.component.bodies).index(name)
     mean, own = list(item.element.bodies.values())[place], list(item.element.body_inertia.values())[place]
     turn = spatial_rotation(item.component.place.rotation)
@@ -295,7 +295,7 @@ def _require_support(model: _Model, elastic: Mapping[str, Contribution]) -> None
         raise refuse(
             "stage",
             f"some motion has no stiffness (lowest scaled eigenvalue {values[0]:.2g}); it moves {moving}",
-            "Join it to the ground: a link whose end face meets neither body, or a unit without foot, leaves it free",
+            "Join it to the ground: check for links without contact, and units without a grounded link",
         )
 
 
@@ -309,7 +309,7 @@ def _inputs(model: _Model) -> tuple[Array, dict[str, Array]]:
 
 
 def _stroke(model: _Model, link: str) -> Array:
-    """What a link's unit stroke imposes on its component's coordinates (n,), or between its faces (6,) where it has no shape."""
+    """Coordinates of a component (n,) imposed by a link's unit stroke, or the twist between its faces (6,) without a shape."""
     if link in model.ties:
         return np.real(actuator_of(model.assembly.links[link].part).free_deformation)
     item = _holder(model, link)
@@ -335,7 +335,7 @@ def _outputs(model: _Model, imposed: Mapping[str, Array]) -> tuple[Array, Array]
 
 
 def _resultant(model: _Model, name: str) -> tuple[Array, Array]:
-    """What makes the wrenches (w,) that pass through a link of what strains it, and the same of all coordinates (w, N)."""
+    """Matrix from a link's strains to its wrenches (w,), and from all coordinates (w, N)."""
     tie = model.ties.get(name)
     if tie is not None:
         law = tie.passed @ tie.strain.law
@@ -347,7 +347,7 @@ def _resultant(model: _Model, name: str) -> tuple[Array, Array]:
 
 
 def _rigid(model: _Model) -> Array:
-    """Motion (N, 6) of bodies and joints with the ground; internal coordinates stay at rest (exact where nothing within is held)."""
+    """Motion (N, 6) of bodies and joints with the ground; internal coordinates are zero (exact if nothing inside is fixed)."""
     centre = model.assembly.bodies[PLATFORM].reference
     result = np.zeros((model.size, 6))
     for body in model.assembly.bodies:
@@ -362,7 +362,7 @@ def _rigid(model: _Model) -> Array:
 
 
 def _rigid_outputs(model: _Model) -> Array:
-    """Outputs (p, 6) when everything moves with the ground: absolute twists do."""
+    """Outputs (p, 6) when everything moves with the ground: only absolute twists respond."""
     centre = model.assembly.bodies[PLATFORM].reference
     result = np.zeros((len(output_channels(model.assembly)), 6))
     result[absolute(model.assembly)] = np.vstack([transport(place.point - centre) for place in twist_places(model.assembly).values()])

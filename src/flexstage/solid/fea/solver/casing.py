@@ -1,4 +1,4 @@
-"""Casings: the bending stiffness that an encapsulated stack has beyond its ceramic's, as a sleeve that slides along the axis."""
+"""Casings: the bending stiffness of an encapsulated stack beyond its ceramic's, as a sleeve that slides along the axis."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from flexstage.spatial.frame import twist_transform
 def casing(link: PlacedLink) -> Array | None:
     """Stiffness (6, 6) of a stack's casing about its centre, in its frame: 12 B/L^3 across, B/L in bending, B/((1 + nu) L) in torsion.
 
-    B is the stated bending rigidity less the ceramic's E I; nothing along the axis, where the casing slides. `None` without a stated one.
-    Raises `DesignError` when the stated rigidity is below the ceramic's own.
+    B is the specified bending rigidity less the ceramic's E I; zero along the axis, where the casing slides. `None` without one.
+    Raises `DesignError` if the specified rigidity is below the ceramic's own.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -35,7 +35,7 @@ def casing(link: PlacedLink) -> Array | None:
         raise refuse(
             link.name,
             f"its bending rigidity {stated:.4g} N m^2 is below the {own:.4g} N m^2 of its ceramic alone",
-            "State the encapsulated stack's rigidity, or leave it out",
+            "Give the encapsulated stack's rigidity, or leave it out",
         )
     extra = stated - own
     across, bending = 12.0 * extra / length**3, extra / length

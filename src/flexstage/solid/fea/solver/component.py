@@ -1,8 +1,8 @@
-"""Components: a stage cut where units meet other bodies, at the ends of stacks and at rigid bodies.
+"""Components: a stage cut at interfaces of units with other bodies, at the ends of stacks and at rigid bodies.
 
-A body with outlines is elastic, one without is rigid. A component is a set of pieces that are one solid: links and elastic bodies of one
-unit's copy (or of the stage itself) that touch. Every other joint of a link with a body is an interface: a flat end face that stays plane.
-Stacks stand alone, between rigid end caps. Components drawn in their unit's frame (a lone link in its own) repeat, and are reduced once.
+A body with outlines is elastic, one without is rigid. A component is a set of touching pieces of one instance (or of the stage): links
+and elastic bodies. Every other joint of a link with a body is an interface: a flat end face that remains plane.
+Stacks are separate, between rigid end caps. Components drawn in their unit's frame (a single link in its own) repeat, and are reduced once.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from flexstage.spatial.frame import Frame, identity
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """Where a link's end face meets a body: its name (`B1/front:platform`), frame, x along the link out of its end face, and area [m^2]."""
+    """End face of a link at a body: its name (`B1/front:platform`), frame, x along the link out of its end face, and area [m^2]."""
 
     name: str
     link: str
@@ -37,9 +37,9 @@ class Joint:
 
 @dataclass(frozen=True, eq=False)
 class Interface:
-    """A joint as a component sees it: on its own end face, or (`footprint`) printed on its body by another component's link.
+    """A joint of a component: on its own end face, or (`footprint`) imprinted on its body by another component's link.
 
-    It `yields` where both sides are elastic: the face may deform, both sides alike. End caps of stacks and rigid bodies keep it plane.
+    It `yields` if both sides are elastic: the face deforms, equally on both sides. End caps of stacks and rigid bodies keep it plane.
     """
 
     joint: Joint
@@ -50,7 +50,7 @@ class Interface:
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """One solid in its own axes: `pieces`, the `interfaces` it is joined by, the joints `fixed` to the ground.
+    """One solid in its own axes: `pieces`, the `interfaces` to its neighbours, the joints `fixed` to the ground.
 
     `bodies` maps each elastic body to the reference point (3,) of its mean twist. `place` is its frame in the stage. `seats` are the ends
     of parts without a shape on it.
@@ -66,7 +66,7 @@ class Component:
 
     @property
     def floats(self) -> bool:
-        """Whether no joint holds it: it hangs on parts without a shape alone, and moves as a whole."""
+        """Whether no joint supports it: only parts without a shape do, and it can move as a whole."""
         return not self.interfaces and not self.fixed
 
 
@@ -80,7 +80,7 @@ class _Graph:
 
 
 class Cut(Enum):
-    """Where a stage is cut: at units and stacks, or nowhere (stacks keep their rigid end caps)."""
+    """Cuts of a stage: at units and stacks, or none (stacks keep their rigid end caps)."""
 
     UNITS = "units"
     NONE = "none"
@@ -89,7 +89,7 @@ class Cut(Enum):
 def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, ...]:
     """Cut a stage into components, each in its own axes.
 
-    Raises `DesignError` naming every link that has no shape.
+    Raises `DesignError` with the names of links without a shape.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [part.name for part in components(double_triangle())][:4]
@@ -107,9 +107,9 @@ def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, .
 
 
 def groups(component: Component) -> dict[str, tuple[int, ...]]:
-    """Pieces that count under one name, in order: every link by itself, all solids of a body together.
+    """Pieces under one name, in order: every link separately, all solids of a body together.
 
-    The order is the same in every copy, so that one copy's superelement serves all.
+    The order is the same in every instance, so that one superelement serves all.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> groups(bar())
@@ -122,9 +122,9 @@ def groups(component: Component) -> dict[str, tuple[int, ...]]:
 
 
 def with_yielding_ends(component: Component) -> Component:
-    """The same component with the ends of its links on rigid bodies yielding too: what it is on elastic ones, where all else is equal.
+    """The same component with elastic link ends also on rigid bodies, as on elastic ones.
 
-    A unit drawn alone ends on a rigid output, in its stage on an elastic platform; with all warps nought both are one.
+    An isolated unit ends on a rigid output, but on an elastic platform in its stage; with all warps zero both are equal.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> bar().interfaces[0].yields, with_yielding_ends(bar()).interfaces[0].yields
@@ -177,7 +177,7 @@ def _group(name: str) -> str:
 
 
 def _owners(assembly: Assembly, forms: Mapping[str, Form], cut: Cut) -> dict[str, str]:
-    """Which component each elastic body and link belongs to, named after its first body (a lone link: itself)."""
+    """The component of each elastic body and link, named after its first body (a single link: itself)."""
     bodies = [body for body in assembly.bodies if is_elastic(assembly, body)]
     nodes = sorted([*bodies, *forms], key=lambda name: _order(assembly, name))
     owner = {node: node for node in nodes}
@@ -271,7 +271,7 @@ def _place(joint: Joint, place: Frame) -> Joint:
 
 
 def _in_frame(frame: Frame, place: Frame) -> Frame:
-    """A frame of the stage in the axes of `place`, without the last bits of rounding: copies of one unit must come out equal."""
+    """A frame of the stage in the axes of `place`, rounded: instances of one unit must be equal."""
     back = np.swapaxes(place.rotation, -1, -2)
     rotation, position = back @ frame.rotation, back @ (frame.position - place.position)
     return Frame(np.round(rotation, 12) + 0.0, np.round(position, 12) + 0.0)

@@ -1,6 +1,6 @@
-"""Contributions: the elastic forces and the momenta that each group of elements adds.
+"""Contributions: elastic forces and momenta of each group of elements.
 
-Groups that share no degree of freedom are alike: they are assembled together, and a whole stage takes a few matrices.
+Groups without a common DOF are assembled together, so that a whole stage needs few matrices.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from flexstage.spatial.frame import Frame
 
 @dataclass(frozen=True, eq=False)
 class Contribution:
-    """What a group of elements does in k motions, on its degrees of freedom `rows` (m,).
+    """Forces and momenta of a group of elements in k motions, on its degrees of freedom `rows` (m,).
 
     `forces` (m, k) are those of the motions less their rigid part, `strained` (m, k); `momenta` (m, k) those of the `motions` (m, k).
     """
@@ -33,7 +33,7 @@ class Contribution:
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """A group's `elements` (mask), and which degrees of freedom (n,) are theirs."""
+    """A group's `elements` (mask), and the mask (n,) of its degrees of freedom."""
 
     name: str
     elements: Array
@@ -42,7 +42,7 @@ class Group:
 
 @dataclass(frozen=True, eq=False)
 class Assembled:
-    """Groups that share no degree of freedom, with the stiffness and the inertia of all their elements."""
+    """Groups without a common degree of freedom, with the stiffness and the inertia of all their elements."""
 
     groups: tuple[Group, ...]
     stiffness: ngsolve.BilinearForm
@@ -50,7 +50,7 @@ class Assembled:
 
 
 def assemble_groups(space: Field, groups: Mapping[str, Array]) -> tuple[Assembled, ...]:
-    """Assemble groups of elements (masks), those that share no degree of freedom together."""
+    """Assemble groups of elements (masks), those without a common degree of freedom together."""
     sets = _group_by_law([Group(name, elements, degrees_of(space, elements)) for name, elements in groups.items()])
     together = [np.any([group.elements for group in alike], axis=0) for alike in sets]
     return tuple(
@@ -60,9 +60,9 @@ def assemble_groups(space: Field, groups: Mapping[str, Array]) -> tuple[Assemble
 
 
 def contributions(space: Field, sets: Sequence[Assembled], basis: Array) -> Iterator[Contribution]:
-    """Contributions of groups of elements to motions (n, k), in no order.
+    """Contributions of groups of elements to motions (n, k), unordered.
 
-    Rigid parts are taken off before elastic forces are formed: their rounding would drown those of a thin leaf.
+    Rigid parts are subtracted before computing elastic forces: their rounding would exceed the forces of a thin leaf.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.solver.field import field
@@ -84,7 +84,7 @@ def contributions(space: Field, sets: Sequence[Assembled], basis: Array) -> Iter
 
 
 def _group_by_law(groups: Sequence[Group]) -> list[list[Group]]:
-    """The groups in as few sets as come at once, none of which has two that share a degree of freedom."""
+    """The groups in few sets without a common degree of freedom within a set."""
     sets: list[list[Group]] = []
     taken: list[Array] = []
     for group in groups:
@@ -109,7 +109,7 @@ def _strain_operator(space: Field, groups: Sequence[Group], basis: Array) -> Arr
 
 
 def _middle(space: Field, degrees: Array) -> Array:
-    """A point (3,) amid the vertices that degrees of freedom belong to."""
+    """Mean position (3,) of the vertices of some degrees of freedom."""
     one, place = space.linear
     vertices = degrees.reshape(3, -1).any(axis=0) & (np.abs(one) > 0.5)
     return np.mean(place[vertices], axis=0)

@@ -21,17 +21,17 @@ from flexstage.solid.fea.solver.frontal import Fronts, Grid, dissect, factorise_
 from flexstage.spatial.frame import Frame
 
 _PER_METRE = 1.0 / MILLIMETRES
-"""Of energies: gradients per mm are 1e3 smaller than per m, squared, over volumes 1e9 larger."""
+"""Factor on energies: gradients per mm are 1e3 smaller than per m, squared, over volumes 1e9 larger."""
 _PER_VOLUME = 1.0 / MILLIMETRES**3
 _FEW = 0.5
-"""Share of rows with entries below which a product takes these rows only."""
+"""Share of nonzero rows below which a product uses only these rows."""
 _BELL = 6
-"""By how much the order of integration is raised where a bell is integrated."""
+"""Increase of the integration order for bell functions."""
 
 
 @dataclass(frozen=True)
 class Field:
-    """The displacement space of a mesh, held on `held` faces, and the coefficients of its media."""
+    """The displacement space of a mesh, fixed on `held` faces, and the coefficients of its media."""
 
     meshed: PieceMesh
     space: ngsolve.FESpace
@@ -47,14 +47,14 @@ class Field:
 
     @property
     def whole_size(self) -> int:
-        """Number of degrees of freedom of the whole that its mesh is one side of: those on a mirror are their own images."""
+        """Number of degrees of freedom of the whole, if the mesh is one side: those on a mirror are their own images."""
         mirrors = self.meshed.mirrors
         own = sum((nodes_on(self, MIRRORS[axis]).astype(np.int64) for axis in mirrors.axes), np.zeros(self.size // 3, dtype=np.int64))
         return 3 * int(np.sum(mirrors.copies >> own))
 
     @cached_property
     def members(self) -> tuple[Array, Array]:
-        """The functions (m,) of one component of the space and the elements (m,) of all that belong to each other, element by element."""
+        """The functions (m,) of one component of the space and their elements (m,), for all pairs, element by element."""
         scalar, count = self.space.components[0], self.meshed.mesh.ne
         nodes = [np.array(scalar.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, number)), dtype=np.int64) for number in range(count)]
         return np.concatenate(nodes), np.repeat(np.arange(count), [len(each) for each in nodes])
@@ -66,7 +66,7 @@ class Field:
 
     @cached_property
     def free(self) -> Array:
-        """Which degrees of freedom (n,) are not on a held face."""
+        """Mask of degrees of freedom (n,) off the fixed faces."""
         return np.array([bool(bit) for bit in self.space.FreeDofs()], dtype=bool)
 
     @cached_property
@@ -76,16 +76,16 @@ class Field:
         for axis, coordinate in enumerate(_coordinates()):
             function.Set(coordinate, dual=False)
             place[:, axis] = function.vec.FV().NumPy()
-        at_vertices = np.arange(self.size // 3) < self.meshed.mesh.nv  # functions of higher order vanish there
+        at_vertices = np.arange(self.size // 3) < self.meshed.mesh.nv  # higher-order functions are zero there
         return at_vertices.astype(float), place / MILLIMETRES
 
     @cached_property
     def fronts(self) -> Fronts:
-        """The order in which its free nodes are eliminated."""
+        """The elimination order of its free nodes."""
         return dissect(grid(self), self.free.reshape(3, -1)[0])
 
     def stress(self, strain: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
-        """Hooke's law: 2 mu strain + lambda tr(strain) I, or by the tensor where a medium is a crystal [Pa, with strains per m]."""
+        """Hooke's law: 2 mu strain + lambda tr(strain) I, or with the tensor of a crystal [Pa, with strains per m]."""
         if self.tensor is not None:
             pairs = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
             found = self.tensor * ngsolve.CoefficientFunction(tuple(strain[i, j] + (0.0 if i == j else strain[j, i]) for i, j in pairs))
@@ -94,7 +94,7 @@ class Field:
 
 
 def field(meshed: PieceMesh, held: Iterable[str], order: int) -> Field:
-    """The displacement space of `order`, and of one more in elements that are `finer`, on a mesh with named faces held.
+    """The displacement space of `order`, and of one more in `finer` elements, on a mesh with named faces fixed.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -181,7 +181,7 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """int rho u . v dV [kg] by the sum of `scalar` matrices (n / 3, n / 3): the same for each component, and nothing between them."""
+    """int rho u . v dV [kg] by the sum of `scalar` matrices (n / 3, n / 3): equal for each component, without coupling."""
 
     scalar: tuple[Any, ...]
 
@@ -194,7 +194,7 @@ class Inertia:
 
 
 def total(parts: Sequence[Inertia]) -> Inertia:
-    """The inertia of what has some inertias.
+    """The sum of inertias.
 
     >>> one = Inertia((scipy.sparse.csr_array(np.eye(1)),))
     >>> total([one, one]).times(np.ones((3, 1))).tolist()
@@ -241,7 +241,7 @@ def apply_form(form: ngsolve.BilinearForm, vectors: Array) -> Array:
 
 
 def _apply_by_columns(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector], object], vectors: Array) -> Array:
-    """Columns (n, k) that an operator, which writes to its second vector, makes of columns (n, k)."""
+    """Columns (n, k) that an operator, which writes to its second vector, computes from columns (n, k)."""
     x, y = ngsolve.BaseVector(len(vectors)), ngsolve.BaseVector(len(vectors))
     result = np.empty_like(vectors)
     for number in range(vectors.shape[1]):
@@ -353,7 +353,7 @@ def _interpolated_on(space: Field, columns: list[ngsolve.CoefficientFunction], f
 
 
 def degrees_of(space: Field, elements: Array) -> Array:
-    """Which degrees of freedom (n,) belong to some of the elements (mask).
+    """Mask (n,) of the degrees of freedom of some elements (mask).
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -369,7 +369,7 @@ def degrees_of(space: Field, elements: Array) -> Array:
 
 
 def nodes_on(space: Field, face: str) -> Array:
-    """Which functions (n / 3,) of one component of the space belong to a named face.
+    """Mask (n / 3,) of the functions of one component of the space on a named face.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -406,8 +406,8 @@ def mean_motion(space: Field, frame: Frame, face: str) -> Array:
 def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array:
     """Rows (6, n) of the mean twist about a point, in the field's axes, of the surface elements `faces` (mask) around it.
 
-    Each bit of surface counts by exp(-(d^2 - d0^2) / reach^2), d its distance from the point and d0 the least of all: on a flat face a bell
-    around the foot of the point, on a ball about its centre all of it alike.
+    The weight of the surface is exp(-(d^2 - d0^2) / reach^2), d its distance from the point and d0 the smallest. On a flat face
+    it is a bell around the foot of the point, on a ball about its centre uniform.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -436,7 +436,7 @@ def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array
 
 
 Forms = Sequence[ngsolve.BilinearForm]
-"""What is assembled of some elements each, and in all the sum of."""
+"""Assembled forms of some elements each; their sum is meant."""
 
 
 def times(forms: Forms, vectors: Array) -> Array:
@@ -453,18 +453,18 @@ def times(forms: Forms, vectors: Array) -> Array:
 
 
 def _symmetric_times(matrix: Any, vectors: Array) -> Array:
-    """A symmetric matrix times vectors (n, k): where few of their entries are not zero, by the rows of these."""
+    """A symmetric matrix times vectors (n, k); with few nonzero entries, by their rows."""
     moving = vectors.any(axis=1)
     return matrix @ vectors if np.mean(moving) > _FEW else matrix[moving].T @ vectors[moving]
 
 
 def _matrix(form: ngsolve.BilinearForm) -> Any:
-    """The matrix (n, n) of a form as `scipy.sparse.csr_array`, whose memory it shares."""
+    """The matrix (n, n) of a form as `scipy.sparse.csr_array`, sharing its memory."""
     return scipy.sparse.csr_array(tuple(np.asarray(each) for each in form.mat.CSR()), shape=(form.mat.height, form.mat.width))
 
 
 def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
-    """Stiffness plus shift times inertia: definite without any support.
+    """Stiffness plus shift times inertia: positive definite without any support.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -482,7 +482,7 @@ def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
 
 
 def held_at_mirrors(space: Field, kind: int) -> Array:
-    """Which degrees of freedom (n,) motions of a kind do not move at the mesh's mirrors: those across even ones, those along odd ones.
+    """Mask (n,) of DOFs that motions of a kind keep zero at the mesh's mirrors: normal ones if even, tangential ones if odd.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -502,27 +502,27 @@ Solver = Callable[[Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """Motions or forces (n, k) side by side, and their `kinds` (k,) about the mesh's mirrors."""
+    """Motions or forces (n, k) as columns, and their `kinds` (k,) about the mesh's mirrors."""
 
     values: Array
     kinds: Array
 
     @staticmethod
     def of(values: Array) -> Columns:
-        """Of what is whole: of one kind."""
+        """Columns of one kind, without mirrors."""
         return Columns(values, np.zeros(values.shape[1], dtype=np.int64))
 
     def kind(self, kind: int) -> Array:
-        """Those of one kind."""
+        """The columns of one kind."""
         return self.values[:, self.kinds == kind]
 
     def some(self, columns: slice) -> Columns:
-        """Some of them."""
+        """A slice of the columns."""
         return Columns(self.values[:, columns], self.kinds[columns])
 
 
 def beside(columns: Sequence[Columns]) -> Columns:
-    """Columns side by side.
+    """Concatenate columns.
 
     >>> beside([Columns.of(np.zeros((3, 2))), Columns.of(np.ones((3, 1)))]).values[0].tolist()
     [0.0, 0.0, 1.0]
@@ -531,11 +531,11 @@ def beside(columns: Sequence[Columns]) -> Columns:
 
 
 KindSolver = Callable[[Columns], Array]
-"""Displacements (n, k) that forces make."""
+"""Displacements (n, k) from forces."""
 
 
 def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
-    """Solve with the sum of forms' matrices for forces of all kinds, by a factor each.
+    """Solve with the sum of forms' matrices for forces of all kinds, by one factor each.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -549,7 +549,7 @@ def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
 
 
 def solve_kinds(space: Field, forms: Forms, forces: Columns) -> Array:
-    """Solve with the sum of forms' matrices for forces of some kinds, once: kind after kind, no factor is kept.
+    """Solve with the sum of forms' matrices for forces of some kinds, once: kind after kind, without keeping a factor.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -564,7 +564,7 @@ def solve_kinds(space: Field, forms: Forms, forces: Columns) -> Array:
 
 
 def _solve_each(forces: Columns, solver: Callable[[int], Solver]) -> Array:
-    """Displacements that forces make, kind after kind, each by its solver."""
+    """Displacements from forces, kind after kind, each by its solver."""
     result = np.empty_like(forces.values)
     for kind in np.unique(forces.kinds):
         result[:, forces.kinds == kind] = solver(kind)(forces.kind(kind))
@@ -572,9 +572,9 @@ def _solve_each(forces: Columns, solver: Callable[[int], Solver]) -> Array:
 
 
 def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver:
-    """Solve with a form's matrix on the free degrees of freedom: columns (n, k) of forces to columns of displacements, zero where held.
+    """Solve with a form's matrix on the free degrees of freedom: columns (n, k) of forces to columns of displacements, zero if fixed.
 
-    Beside those of the field, those are held that motions of a `kind` do not move at its mirrors.
+    DOFs that motions of a `kind` keep zero at the mirrors are fixed in addition to those of the field.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -590,15 +590,15 @@ def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver
 
 
 def _solvers(space: Field, forms: Forms, kinds: Iterable[int]) -> Iterator[Solver]:
-    """Solvers for forces (n, k) of each of some kinds, made as they are asked for."""
+    """Solvers for forces (n, k) of each of some kinds, made when needed."""
     matrices, held = [_matrix(form) for form in forms], [held_at_mirrors(space, kind) for kind in kinds]
     done = 0
     try:
         for solve in map(operator.attrgetter("solve"), factorise_fronts(space.fronts, matrices, np.array(held))):
             yield solve
-            del solve  # its factor is as large as the next one
+            del solve  # frees its large factor
             done += 1
-    except np.linalg.LinAlgError:  # of a part so thin that its rounded stiffness has eigenvalues below nought
+    except np.linalg.LinAlgError:  # very thin part: rounding makes eigenvalues negative
         entries = functools.reduce(operator.add, matrices).tocoo()
         create = cast("Callable[..., ngsolve.BaseMatrix]", ngsolve.la.SparseMatrixd.CreateFromCOO)
         law = create(entries.row, entries.col, entries.data, space.size, space.size)
@@ -612,7 +612,7 @@ def _apply_held(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector], obj
 
 
 def grid(space: Field) -> Grid:
-    """The elements and nodes of a field, to be cut.
+    """The elements and nodes of a field, for dissection.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -1,8 +1,8 @@
-"""Direct solution of finite elements, by fronts: nested dissection of the elements, dense Cholesky factors of what each cut separates.
+"""Direct solution of finite elements, by fronts: nested dissection of the elements, dense Cholesky factors at each cut.
 
-Elements of high order make large dense fronts, and hinges between blocks short cuts: there LAPACK does nearly all of the work, for many
-right-hand sides at once too. The method is Duff and Reid's (ACM Trans. Math. Softw. 9, 302, 1983), the order George's (SIAM J.
-Numer. Anal. 10, 345, 1973). A node is what has three degrees of freedom: the three components of one scalar basis function.
+Elements of high order make large dense fronts, and hinges between blocks short cuts: LAPACK does nearly all of the work, also for many
+right-hand sides at once. The method is Duff and Reid's (ACM Trans. Math. Softw. 9, 302, 1983), the order George's (SIAM J.
+Numer. Anal. 10, 345, 1973). A node has three degrees of freedom: the three components of one scalar basis function.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ from flexstage.base.number import Array
 _dtrsm, _dsyrk, _dpotrf = scipy.linalg.blas.dtrsm, scipy.linalg.blas.dsyrk, scipy.linalg.lapack.dpotrf
 
 _AT_HAND = 8
-"""Meshes whose cuts are kept for the next order."""
+"""Meshes with cached cuts for the next order."""
 _LEAF = 12
-"""Elements that are not cut further."""
+"""Number of elements without further cuts."""
 _LEAST, _UNEVEN = 0.2, 0.5
-"""Least share of the elements on either side of a cut; how many faces more one is worth that leaves halves equal."""
+"""Smallest share of the elements on either side of a cut; weight of unequal halves in faces."""
 _COLUMNS = 256
-"""Columns of a trace that are added at once where its nodes lie scattered: more runs of them than this share of their number."""
+"""Columns of a trace added at once if its nodes are scattered: the number of runs exceeds this share of the nodes."""
 SCATTERED = 0.12
 _EDGES = np.eye(3)
 _ACROSS = np.array([turn for turn in np.ndindex(3, 3, 3) if turn > (1, 1, 1)]) - 1.0
-"""What cuts are tried across: the edges of a cube, and the edges and diagonals."""
+"""Directions of trial cuts: the edges of a cube, and the edges and diagonals."""
 _SMALL = 40
-"""Elements of which fewer are cut across edges alone."""
+"""Number of elements below which only edges are tried."""
 
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """What is cut: `faces` (n, 4) of elements, their `places` (n, 3), and the node and the element (m,) of all that belong to each other.
+    """Input of the dissection: `faces` (n, 4) of elements, their `places` (n, 3), and all pairs (m,) of a node and its element.
 
-    `count` nodes in all.
+    `count` is the number of nodes.
     """
 
     faces: Array
@@ -52,7 +52,7 @@ class Grid:
 
 @dataclass(frozen=True, eq=False)
 class _Place:
-    """Where `nodes` lie: in `runs` of consecutive ones, from where to where in the list, and the first of them."""
+    """Positions of `nodes`: `runs` of consecutive ones by their ends in the list, and the first of each run."""
 
     nodes: Array
     runs: list[tuple[int, int, int]]
@@ -66,9 +66,9 @@ class _Place:
 
 @dataclass(frozen=True, eq=False)
 class _Front:
-    """Nodes `first` to `last` in the order of elimination go at this cut and leave a trace on those `beyond`.
+    """Nodes `first` to `last` in the elimination order are eliminated here and leave a trace (Schur complement) on those `beyond`.
 
-    Its `children` went before; of the nodes that each left a trace on, those `near` go here, those `far` lie beyond: by their places there.
+    Its `children` are eliminated before; of the nodes of their traces, those `near` are eliminated here, those `far` later: by position.
     """
 
     first: int
@@ -81,7 +81,7 @@ class _Front:
 
 @dataclass(frozen=True, eq=False)
 class _Factor:
-    """Lower factor L of the nodes eliminated, and what couples those beyond to them times L^-T."""
+    """Lower factor L of the eliminated nodes, and their coupling to those beyond times L^-T."""
 
     own: Array
     below: Array
@@ -89,7 +89,7 @@ class _Factor:
 
 @dataclass(frozen=True, eq=False)
 class Fronts:
-    """The order of elimination: nodes by rank, and the fronts, children before their parent."""
+    """The elimination order: nodes by rank, and the fronts, children before their parent."""
 
     nodes: Array
     fronts: tuple[_Front, ...]
@@ -101,7 +101,7 @@ class Fronts:
 
 
 def dissect(grid: Grid, free: Array) -> Fronts:
-    """The order in which free nodes (mask) are eliminated: elements are cut in two where few faces lie on the cut, again and again."""
+    """The elimination order of free nodes (mask): elements are cut in two repeatedly, with few faces at the cut."""
     leaves, spans = _cuts(grid.faces.tobytes(), grid.places.tobytes())
     leaf = np.repeat(np.arange(len(leaves)), [len(each) for each in leaves])[np.argsort(np.concatenate(leaves))]
     owner, low = _owners(grid, leaf, spans)
@@ -125,7 +125,7 @@ def dissect(grid: Grid, free: Array) -> Fronts:
 
 
 def _front(first: int, last: int, beyond: Array, met: dict[int, Array]) -> _Front:
-    """A front, with the nodes that each of its children left a trace on."""
+    """A front, with the nodes of the traces of its children."""
     near = tuple(_Place.of(nodes[nodes < last] - first) for nodes in met.values())
     far = tuple(_Place.of(np.searchsorted(beyond, nodes[nodes >= last])) for nodes in met.values())
     return _Front(first, last, beyond, tuple(met), near, far)
@@ -136,7 +136,7 @@ _Span = tuple[int, int, int, int]
 
 @lru_cache(maxsize=_AT_HAND)
 def _cuts(faces: bytes, places: bytes) -> tuple[tuple[Array, ...], tuple[_Span, ...]]:
-    """Leaves and spans of elements with these faces and places: at every order of a mesh the same."""
+    """Leaves and spans of elements with these faces and positions: equal at every order of a mesh."""
     leaves: list[Array] = []
     spans: list[_Span] = []
     own = np.frombuffer(faces, dtype=np.int64).reshape(-1, 4)
@@ -145,7 +145,7 @@ def _cuts(faces: bytes, places: bytes) -> tuple[tuple[Array, ...], tuple[_Span, 
 
 
 def _cut(faces: Array, places: Array, elements: Array, leaves: list[Array], spans: list[_Span]) -> int:
-    """Cut elements; a span is the first leaf, the one after the last, and the numbers of both halves. The number of the own span."""
+    """Cut elements; a span is the first leaf, the one after the last, and the numbers of both halves. Returns the number of its span."""
     if len(elements) <= _LEAF:
         leaves.append(elements)
         spans.append((len(leaves) - 1, len(leaves), -1, -1))
@@ -159,7 +159,7 @@ def _cut(faces: Array, places: Array, elements: Array, leaves: list[Array], span
 
 
 def _halves(faces: Array, places: Array) -> tuple[Array, Array]:
-    """The elements on both sides of the best of the cuts that are tried."""
+    """The elements on both sides of the best trial cut."""
     count = len(faces)
     sizes = np.arange(max(1, int(_LEAST * count)), count - max(1, int(_LEAST * count)) + 1)
     _, local = np.unique(faces, return_inverse=True)
@@ -181,9 +181,9 @@ def _halves(faces: Array, places: Array) -> tuple[Array, Array]:
 
 
 def _owners(grid: Grid, leaf: Array, spans: tuple[_Span, ...]) -> tuple[Array, Array]:
-    """The span each node is eliminated at, the least that holds all its elements, and the first of their leaves, which `leaf` tells.
+    """The span of each node's elimination, the smallest that contains all its elements, and the first of their leaves, from `leaf`.
 
-    Nodes of one cut stand in the order of these leaves: those that a half of the half meets too lie together.
+    Nodes of one cut are in the order of these leaves, so that nodes shared with a smaller half are consecutive.
     """
     low, high = np.full(grid.count, len(spans), dtype=np.int64), np.full(grid.count, -1, dtype=np.int64)
     np.minimum.at(low, grid.nodes, leaf[grid.elements])
@@ -201,16 +201,16 @@ def _owners(grid: Grid, leaf: Array, spans: tuple[_Span, ...]) -> tuple[Array, A
 
 @dataclass(frozen=True, eq=False)
 class Factorised:
-    """A matrix factorised front by front; `order` tells which nodes are held, `held` (m, 3) which degrees of freedom of the others."""
+    """A matrix factorised front by front; `order` defines the fixed nodes, `held` (m, 3) fixed degrees of freedom of the others."""
 
     order: Fronts
     held: Array
     factors: tuple[_Factor, ...]
 
     def solve(self, forces: Array) -> Array:
-        """Displacements (n, k) that forces (n, k) make, zero where held."""
+        """Displacements (n, k) from forces (n, k), zero if fixed."""
         nodes, (size, columns) = self.order.nodes, forces.shape
-        work = np.empty((len(nodes), 3, columns))  # by node, its three components side by side
+        work = np.empty((len(nodes), 3, columns))  # by node, with its three components
         for axis, along in enumerate(forces.reshape(3, -1, columns)):
             work[:, axis] = along[nodes]
         work[self.held] = 0.0
@@ -228,13 +228,13 @@ class Factorised:
 
 
 def factorise_fronts(order: Fronts, matrices: Sequence[Any], held: Array) -> Iterator[Factorised]:
-    """Factorise a sum of matrices, positive definite on the free nodes, for each of some sets of degrees of freedom that are `held`.
+    """Factorise a sum of matrices, positive definite on the free nodes, for each of some sets of `held` degrees of freedom.
 
-    Matrices are `scipy.sparse.csr_array` with both triangles. Degrees of freedom are in the order of components: those of all nodes along
-    x, then along y, then along z; every pair of nodes that has an entry has all nine. Those of a set (masks (k, n)) are not coupled.
-    A front that meets none of any set, nor do those before it, is the same for all. The sets are done one after another, as they are
-    asked for: what is not the same takes no memory but in what was given out.
-    Raises `numpy.linalg.LinAlgError` where a front is not positive definite.
+    Matrices are `scipy.sparse.csr_array` with both triangles. Degrees of freedom are ordered by components: those of all nodes along
+    x, then along y, then along z; every pair of nodes with an entry has all nine. Those of a set (masks (k, n)) are not coupled.
+    A front is shared if neither it nor its children meet any set. The sets are factorised one after another, when
+    needed: only results in use take additional memory.
+    Raises `numpy.linalg.LinAlgError` if a front is not positive definite.
     """
     by_node = held.reshape(len(held), 3, -1)[:, :, order.nodes].transpose(0, 2, 1)
     parts, met = [_Entries.of(order, matrix) for matrix in matrices], np.any(by_node, axis=(0, 2))
@@ -254,7 +254,7 @@ def _in_order(factors: dict[int, _Factor]) -> tuple[_Factor, ...]:
 
 
 def _eliminate_fronts(order: Fronts, parts: list[_Entries], numbers: Array, held: Array, traces: dict[int, Array]) -> dict[int, _Factor]:
-    """Factors of some fronts, children before their parents: `traces` of those before are taken out, those that others need put in."""
+    """Factors of some fronts, children before their parents: takes earlier `traces`, and adds those for later fronts."""
     local, factors = np.empty(len(order.nodes), dtype=np.int64), {}
     for number in numbers.tolist():
         front = order.fronts[number]
@@ -271,7 +271,7 @@ def _eliminate_fronts(order: Fronts, parts: list[_Entries], numbers: Array, held
 
 
 def _gather(panel: _Panel, front: _Front, before: list[Array]) -> Array:
-    """Add the traces of the fronts before to a front's own columns, and to what is beyond: a new trace."""
+    """Add the traces of the children to a front's own columns, and to the nodes beyond: a new trace."""
     trace = np.zeros((len(panel.below), len(panel.below)), order="F")
     for left, near, far in zip(before, front.near, front.far, strict=True):
         cut = 3 * len(near.nodes)
@@ -283,7 +283,7 @@ def _gather(panel: _Panel, front: _Front, before: list[Array]) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _Panel:
-    """Columns of a front's own nodes: rows of their `own`, of which the lower triangle counts, and those `below`, one after another."""
+    """Columns of a front's own nodes: rows of their `own` (lower triangle), and those `below`, consecutively."""
 
     own: Array
     below: Array
@@ -291,12 +291,12 @@ class _Panel:
 
     @staticmethod
     def of(entries: Array, own: int, beyond: int) -> _Panel:
-        """Of so many columns, with so many rows below."""
+        """Make a panel with these columns and the rows below."""
         square = own * own
         return _Panel(entries[:square].reshape(own, own, order="F"), entries[square:].reshape(beyond, own, order="F"), entries)
 
     def uncouple(self, held: Array) -> None:
-        """Leave of some rows, and of the same of its own columns, the diagonal alone."""
+        """Keep only the diagonal of some rows and of the same own columns."""
         own = held[held < len(self.own)]
         diagonal = self.own[own, own]
         self.own[own], self.own[:, own], self.below[:, own] = 0.0, 0.0, 0.0
@@ -305,7 +305,7 @@ class _Panel:
 
 
 def _add_trace(law: Array, trace: Array, rows: _Place, columns: _Place) -> None:
-    """Add what counts of a part of a trace to rows and columns of nodes: where both are the same, the lower triangle."""
+    """Add a part of a trace to rows and columns of nodes; if both are equal, the lower triangle."""
     triangle = rows is columns
     if len(rows.runs) > SCATTERED * len(rows.nodes):
         at, across = ((3 * place.nodes[:, None] + np.arange(3)).ravel() for place in (rows, columns))
@@ -321,7 +321,7 @@ def _add_trace(law: Array, trace: Array, rows: _Place, columns: _Place) -> None:
 
 
 def _eliminate(panel: _Panel, trace: Array) -> tuple[_Factor, Array]:
-    """The factor of a front's own columns, its `panel`, and the trace left on the nodes beyond, whose front is added to."""
+    """The factor of a front's own columns, its `panel`, and the trace on the nodes beyond, updated."""
     if not len(panel.own):
         return _Factor(panel.own, panel.below), trace
     factor, fault = _dpotrf(panel.own, lower=1, overwrite_a=1, clean=0)
@@ -335,7 +335,7 @@ def _eliminate(panel: _Panel, trace: Array) -> tuple[_Factor, Array]:
 
 @dataclass(frozen=True, eq=False)
 class _Entries:
-    """Entries of a matrix by nodes; `rank` is that of elimination, -1 of nodes that are held."""
+    """Entries of a matrix by nodes; `rank` is that of elimination, -1 for fixed nodes."""
 
     matrix: Any
     nodes: Array
@@ -343,7 +343,7 @@ class _Entries:
 
     @staticmethod
     def of(order: Fronts, matrix: Any) -> _Entries:
-        """The entries, to be taken in an order."""
+        """The entries, prepared for an order."""
         rank = np.full((matrix.shape[0]) // 3, -1, dtype=np.int64)
         rank[order.nodes] = np.arange(len(order.nodes))
         return _Entries(matrix, order.nodes, rank)

@@ -1,7 +1,7 @@
-"""Interfaces held: faces that move rigidly and warp as quadratic functions, or whose mean motion counts while they warp freely (averaged).
+"""Constrained interfaces: faces with rigid and quadratic motions, or with a prescribed mean motion and free warping (averaged).
 
-What is held is stiffer than the joint it stands for, an averaged face softer: the two bracket what cutting there costs. The end caps of
-stacks and faces on rigid bodies stay plane always.
+A constrained face is stiffer than the joint, an averaged face softer: the two bracket the error of the cut. The end caps of
+stacks and faces on rigid bodies always remain plane.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ from flexstage.solid.fea.solver.field import (
 from flexstage.spatial.frame import Frame
 
 _SHIFT = (2.0 * np.pi * 10.0) ** 2
-"""Inertia that carries a component no face holds, as of a motion at 10 Hz: it enters the basis only, not the energies [1/s^2]."""
+"""Inertia that supports a component without constrained faces, as of a motion at 10 Hz: in the basis only, not in the energies [1/s^2]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """Motions (n, 6 m) of unit interface twists, (n, w) of unit warps of faces, and with all of them zero of loads `within`; the solver."""
+    """Motions (n, 6 m) for unit interface twists, (n, w) for unit warps of faces, and for loads `within` with fixed faces; the solver."""
 
     faces: Columns
     warps: Columns
@@ -49,7 +49,7 @@ class Support:
 
 
 def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
-    """Whether an interface stays plane: asked for, or a stack's end cap.
+    """Whether an interface remains plane: by option, or as a stack's end cap.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> is_rigid(bar(), bar().interfaces[0], Hold.RIGID), is_rigid(bar(), bar().interfaces[0], Hold.AVERAGED)
@@ -60,9 +60,9 @@ def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
 
 
 def support(component: Component, space: Field, reduction: Reduction, *, elastic: Forms, mass: Inertia, loads: Columns) -> Support:
-    """Hold a component's interfaces; `elastic` and `mass` are its stiffness and inertia; `space` must hold its rigid and grounded faces.
+    """Constrain a component's interfaces; `elastic` and `mass` are its stiffness and inertia; `space` fixes its rigid and grounded faces.
 
-    What `loads` within make is solved for at once with the rest: where nothing else is asked for, no factor is kept.
+    The responses to `loads` within are solved for in the same call: without further requests, no factor is kept.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.solver.field import field, inertia, stiffness
@@ -98,9 +98,9 @@ def support(component: Component, space: Field, reduction: Reduction, *, elastic
 
 
 def _held(plain: KindSolver, means: Array) -> tuple[Array, KindSolver]:
-    """Motions (n, m) that make one of some means (m, n) a unit and the others nought, and the solver with all of them nought.
+    """Motions (n, m) with one of some means (m, n) equal to one and the others zero, and the solver with all of them zero.
 
-    Of what is whole: all is of one kind.
+    Without mirrors: all is of one kind.
     """
     carried = plain(Columns.of(means.T))
     gain = np.linalg.inv(means @ carried)
@@ -113,7 +113,7 @@ def _held(plain: KindSolver, means: Array) -> tuple[Array, KindSolver]:
 
 
 def middle(component: Component) -> Array:
-    """The point (3,) about which a component that floats moves: the reference of its first body.
+    """The reference point (3,) for the motion of a floating component: that of its first body.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from dataclasses import replace
@@ -124,7 +124,7 @@ def middle(component: Component) -> Array:
 
 
 def _afloat(component: Component, space: Field, mass: Inertia, loads: Columns) -> Support:
-    """What nothing holds: it moves rigidly, and all else has neither momentum nor angular momentum."""
+    """Response of a component without support: a rigid motion, and a remainder without momentum and angular momentum."""
     motion = rigid(space, Frame(np.eye(3), middle(component)))
     plain = factorise_kinds(space, [shift_stiffness(space, _SHIFT)])
     solve = _held(plain, mass.times(motion).T)[1]
@@ -141,7 +141,7 @@ def _face_warping(item: Interface, space: Field) -> Columns:
 
 
 def _static_motions(moved: Sequence[Columns], space: Field, elastic: Forms, solve: KindSolver, loads: Columns) -> tuple[Columns, Columns]:
-    """One face moved and all others held, u = R - K_ff^-1 K R; and what loads within make."""
+    """One face moved and all others fixed, u = R - K_ff^-1 K R; and the responses to loads within."""
     motions = beside([Columns.of(np.zeros((space.size, 0))), *moved])
     found = _moved(beside([replace(motions, values=times(elastic, motions.values)), loads]), solve)
     count = len(motions.kinds)

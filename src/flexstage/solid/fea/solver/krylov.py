@@ -1,4 +1,4 @@
-"""The lowest modes of large models by blocks of inverse iteration: a factor serves many vectors in the time of a few."""
+"""The lowest modes of large models by block inverse iteration: one factor solves many vectors in the time of a few."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from flexstage.base.number import Array
 
 _BLOCK = 12
 _EIGENVALUES = 1e-9
-"""Change of the eigenvalues, relative, from one block to the next, below which they are found: their errors are smaller still."""
+"""Relative change of the eigenvalues between blocks for convergence: their errors are smaller."""
 _DEPENDENT = 1e-14
 _MOST = 20
-"""Blocks."""
+"""Largest number of blocks."""
 
 Operator = Callable[[Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
 class Pencil:
-    """A `mass` and the `inverse` of a stiffness, of vectors of a size."""
+    """A `mass` and the `inverse` of a stiffness, for vectors of this size."""
 
     mass: Operator
     inverse: Operator
@@ -29,9 +29,9 @@ class Pencil:
 
 
 def lowest_modes(pencils: Sequence[Pencil], count: int) -> list[Array]:
-    """The `count` lowest modes of some pencils in all, (size, k) of each: block Lanczos, orthogonalised in full.
+    """The `count` lowest modes of some pencils together, (size, k) of each: block Lanczos with full orthogonalisation.
 
-    Fewer where masses have a lower rank. Golub and Underwood, in Mathematical Software III (1977), 361.
+    Fewer if masses have a lower rank. Golub and Underwood, in Mathematical Software III (1977), 361.
 
     >>> stiffness = np.arange(1.0, 41.0)[:, None]
     >>> pencils = [Pencil(lambda x: x, lambda x: x / stiffness, 40), Pencil(lambda x: x, lambda x: x / (0.5 + stiffness), 40)]
@@ -62,7 +62,7 @@ class _Chain:
         self.values, self.weights = np.zeros(0), np.zeros((0, 0))
 
     def extend(self) -> None:
-        """One block more, where there is one that does not depend on those before."""
+        """Add one block, if independent of the previous ones."""
         if not self.block.shape[1]:
             return
         block, momentum = _orthonormal(self.block, self.pencil.mass(self.block), self.vectors, self.momenta)
@@ -77,12 +77,12 @@ class _Chain:
         self.values, self.weights = values[::-1], weights[:, ::-1]
 
     def modes(self, count: int) -> Array:
-        """The lowest."""
+        """The lowest modes."""
         return self.vectors @ self.weights[:, :count]
 
 
 def _orthonormal(block: Array, momentum: Array, vectors: Array, momenta: Array) -> tuple[Array, Array]:
-    """A block with its momenta, orthonormal in mass, to earlier vectors too; less what depends on these."""
+    """A block with its momenta, orthonormal in mass, also to earlier vectors; without dependent columns."""
     scale = np.sqrt(np.einsum("ij,ij->j", block, momentum))
     kept = scale > 0.0
     block, momentum = block[:, kept] / scale[kept], momentum[:, kept] / scale[kept]

@@ -1,7 +1,7 @@
 """Reduction of a component by Craig and Bampton's method (AIAA J. 6, 1313, 1968), with attachment motions for the loads within.
 
-u = sum of rigid motions and warps of the interface faces and their static continuation + fixed-interface modes + static response, faces
-held, to a wrench on each body and to each stroke: statics under these loads is that of the full model, whatever the number of modes.
+u = static continuation of rigid motions and warps of the interface faces + fixed-interface modes + static response, faces
+fixed, to a wrench on each body and to each stroke. Statics under these loads is that of the full model, for any number of modes.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from flexstage.spatial.frame import Frame, identity, transport
 
 _DEPENDENT = 1e-13
 _REACH = 0.5
-"""How far around the end of a part without a shape a body's surface counts, over the least dimension of its solid there."""
+"""Extent of a body's surface around the end of a part without a shape, over the smallest dimension of its solid there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,15 +57,15 @@ class _Problem:
 
     @property
     def stiffness(self) -> list[ngsolve.BilinearForm]:
-        """What is the stiffness in all."""
+        """The forms of the total stiffness."""
         return [alike.stiffness for alike in self.assembled]
 
 
 @dataclass(frozen=True, eq=False)
 class _Motions:
-    """The `basis` (n, k) that a component moves in: so many columns of `faces`, of their `warps`, then those within; what loads it.
+    """The `basis` (n, k) of a component's motion: columns of `faces`, of their `warps`, then those within; its loads.
 
-    `weights` (6, 6) are the bodies' inertias about their reference points. The factor is not kept: it is as large as all that is to come.
+    `weights` (6, 6) are the bodies' inertias about their reference points. The factor is not kept: it is as large as all later data.
     """
 
     problem: _Problem
@@ -80,11 +80,11 @@ class _Motions:
 def reduce_mesh(
     component: Component, mesh: PieceMesh, reduction: Reduction, springs: Array | None = None, report: Report = silent
 ) -> Superelement:
-    """Assemble and reduce a component that is meshed already, telling how far it is.
+    """Assemble and reduce a meshed component, with progress reports.
 
-    With `springs` (6 m, 6 m) between its interfaces the modes kept are those of the component free at its interfaces and joined by the
-    springs, in place of the fixed-interface modes: so a whole stage in one piece has its own modes, exactly. Its statics is then exact
-    for strokes and wrenches on the platform only, which spares most of the motions of so large a mesh.
+    With `springs` (6 m, 6 m) between its interfaces, the modes are those of the component with free interfaces joined by the
+    springs, in place of the fixed-interface modes. A whole stage in one piece then has its exact modes. Its statics is exact only
+    for strokes and wrenches on the platform, which saves most of the motions of so large a mesh.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -141,7 +141,7 @@ def _strokes(problem: _Problem) -> dict[int, Array]:
 
 
 def _momenta(problem: _Problem, body: str) -> tuple[Array, Array]:
-    """Rigid motions R (n, 6) of a body's elements about its reference point, nought elsewhere, and their momenta M R (n, 6)."""
+    """Rigid motions R (n, 6) of a body's elements about its reference point, zero elsewhere, and their momenta M R (n, 6)."""
     law, own = next((alike.inertia, group.degrees) for alike in problem.assembled for group in alike.groups if group.name == body)
     motion = np.where(own[:, None], rigid(problem.field, Frame(np.eye(3), problem.component.bodies[body])), 0.0)
     return motion, law.times(motion)
@@ -252,9 +252,9 @@ def _project(found: _Motions, report: Report) -> Superelement:
 
 
 def _sections(problem: _Problem, number: int) -> Array:
-    """Test motions (n, 6): a link's elements beyond its middle move rigidly, in its frame about its centre, all others rest.
+    """Test motions (n, 6): a link's elements beyond its middle move rigidly, in its frame about its centre, all others are fixed.
 
-    The work of the link's stresses on them is what passes through it, exactly, by equilibrium in the discrete sense.
+    The work of the link's stresses on them is its wrench, exactly, by equilibrium in the discrete sense.
     """
     piece, space = problem.component.pieces[number], problem.field
     along = (space.places - piece.frame.position) @ piece.frame.rotation[:, 0]
@@ -263,9 +263,9 @@ def _sections(problem: _Problem, number: int) -> Array:
 
 
 def _free_stroke(found: _Motions, number: int, force: Array) -> Array:
-    """Coordinates that strain a stack as its unconstrained stroke does: its end caps moved apart by the stroke, and what follows within.
+    """Coordinates of a stack's unconstrained stroke: its end caps moved apart by the stroke, and the resulting internal motion.
 
-    Internal coordinates are orthonormal in energy with the interfaces held, so the response to the stroke's force is that force itself.
+    Internal coordinates are orthonormal in energy with the interfaces fixed, so the response to the stroke's force is that force.
     """
     component = found.problem.component
     piece, result = component.pieces[number], np.array(force)

@@ -19,24 +19,24 @@ _VOIGT = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 _FROM_VOIGT = [0, 1, 2, 5, 3, 4]
 """Stresses as xx, yy, zz, xy, yz, zx, from the order of a medium's law."""
 _AT_ONCE = 32
-"""Motions that are worked out at once."""
+"""Motions computed at once."""
 
 _WITHIN = [(2 / 3, 1 / 6), (1 / 6, 2 / 3), (1 / 6, 1 / 6)]
 """Points within a triangle, in the order of its corners."""
 _CONTINUED = 2.0 * np.eye(3) - np.full((3, 3), 1.0 / 3.0)
-"""Values at the corners of what is linear, from those at the points within: 5/3 of the own less 1/3 of the others."""
+"""Linear extrapolation from the points within to the corners: 5/3 of the own value less 1/3 of the others."""
 _EVEN = frozenset((order + 1) * (order + 2) * (order + 3) // 6 for order in range(1, 12))
-"""Functions of elements that are of one order."""
+"""Numbers of functions of elements with one order."""
 _LEAST_WEIGHT = 1e-12
 _NEAR = 1e-9
-"""Relative to the drawing's size: what counts as lying in a plane."""
+"""Relative to the drawing's size: tolerance for points in a plane."""
 
 
 def skin(space: Field, motions: Columns) -> Skin:
-    """The surface of a field's mesh with motions on it: of a mesh with mirrors the surface of the whole.
+    """The surface of a field's mesh with motions on it; of a mesh with mirrors the surface of the whole.
 
-    Stresses are taken within each triangle and continued to its corners; at a vertex they are means over its triangles, weighted by the
-    Jacobian: where an element is nearly folded, strains have no meaning.
+    Stresses are evaluated within each triangle and extrapolated to its corners. At a vertex they are means over its triangles, weighted by
+    the Jacobian. Strains of a nearly folded element have no meaning.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.solver.field import field
@@ -61,7 +61,7 @@ def skin(space: Field, motions: Columns) -> Skin:
     weights = _weights(within)
     average = _mean_by_vertex(triangles, weights[:, 0])
     columns, points = basis.shape[1], 3 * len(behind)
-    motion = basis.reshape(3, -1, columns)[:, used].transpose(1, 0, 2).astype(np.float32)  # a vertex has a function of its own
+    motion = basis.reshape(3, -1, columns)[:, used].transpose(1, 0, 2).astype(np.float32)  # each vertex has its own function
     stress = np.empty((len(used), 6, columns), dtype=np.float32)
     for first in range(0, columns, _AT_ONCE):
         part = basis[:, first : first + _AT_ONCE]
@@ -78,7 +78,7 @@ def skin(space: Field, motions: Columns) -> Skin:
 
 
 def _with_image(side: Skin, axis: int, odd: Array) -> Skin:
-    """A surface and its mirror image across an axis, motions that are `odd` (k,) turned round there."""
+    """A surface and its mirror image across an axis, with the sign of `odd` (k,) motions changed."""
     signs, turn = np.where(np.arange(3) == axis, -1.0, 1.0), np.where(odd, -1.0, 1.0)
     apart = np.abs(side.vertices[:, axis]) > _NEAR * np.max(np.abs(side.vertices))
     images = np.where(apart, len(apart) + np.cumsum(apart) - 1, np.arange(len(apart)))
@@ -95,9 +95,9 @@ def _with_image(side: Skin, axis: int, odd: Array) -> Skin:
 
 
 def _gradient(space: Field, corners: Array, behind: Array, points: Any) -> Any:
-    """What makes derivatives along x, y and z [1/m] at the points within each triangle, of the scalar functions of the elements behind.
+    """Operator of the derivatives along x, y and z [1/m] at points within each triangle, of the scalar functions of the elements behind.
 
-    Elements whose corners are numbered in the same order have the same functions where all are of one order: those are evaluated once.
+    Elements of one order with corners numbered in the same order have the same functions: those are evaluated once.
     """
     scalar, mesh = space.space.components[0], space.meshed.mesh
     turned = ngsolve.BoundaryFromVolumeCF(ngsolve.specialcf.JacobianMatrix(3))(points)
@@ -134,13 +134,13 @@ def _media(space: Field) -> Array:
 
 
 def _weights(points: Any) -> Array:
-    """Jacobian of the element behind each triangle (3 t, 1) at points within it, never quite zero."""
+    """Jacobian of the element behind each triangle (3 t, 1) at points within it, with a positive minimum."""
     values = np.asarray(ngsolve.BoundaryFromVolumeCF(ngsolve.Det(ngsolve.specialcf.JacobianMatrix(3)))(points)).reshape(-1, 1)
     return np.maximum(values, _LEAST_WEIGHT * float(np.max(values)))
 
 
 def _mean_by_vertex(triangles: Array, weights: Array) -> Any:
-    """What makes weighted means at vertices of values at the corners of all triangles."""
+    """Operator of weighted means at vertices of values at the corners of all triangles."""
     count = int(triangles.max()) + 1
     shares = weights / np.bincount(triangles.ravel(), weights, count)[triangles.ravel()]
     return scipy.sparse.csr_array((shares, (triangles.ravel(), np.arange(len(shares)))), shape=(count, len(shares)))

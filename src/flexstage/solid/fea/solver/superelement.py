@@ -1,4 +1,4 @@
-"""Superelements: a component reduced to its interfaces and a few motions within."""
+"""Superelements: a component reduced to its interfaces and a few internal motions."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ class Skin:
 
 @dataclass(frozen=True, eq=False)
 class Superelement:
-    """A component reduced, in its own axes: six coordinates an interface (its twist, at its own point), `warps` of faces, internal ones.
+    """A reduced component, in its own axes: six coordinates for each interface (its twist, at its own point), `warps`, internal ones.
 
-    `stiffness` and `inertia` per piece group (links and bodies by position in the component), (n, n). `bodies` (6, n) mean twists and
-    `body_inertia` (6, 6) the inertia they carry (what is left of `inertia` is elastic motion within the body),
-    `resultants` (6, n) at links' centres in their frames, `strokes` (n,) forces of a unit free stroke with the `free` coordinates of the
-    unconstrained stroke and `stroke_resultants` (6,) it takes off. `rigid` (n, 6) is a rigid motion about the component's origin (only
-    where nothing is fixed), `carried` (n, 6) the inertial forces of a unit rigid acceleration. `seats` (6, n) are the twists, at their
-    points, of the surface around the ends of parts without a shape. A component that floats has one interface: itself, moved rigidly about
+    `stiffness` and `inertia` (n, n) are for each piece group (links and bodies by position in the component). `bodies` (6, n) are mean
+    twists and `body_inertia` (6, 6) their inertia (`inertia` then contains only elastic motion within the body).
+    `resultants` (6, n) are at links' centres in their frames. `strokes` (n,) are forces of a unit free stroke, with the `free` coordinates
+    of the unconstrained stroke and its `stroke_resultants` (6,) to subtract. `rigid` (n, 6) is a rigid motion about the component's origin
+    (only without fixed joints), `carried` (n, 6) the inertial forces of a unit rigid acceleration. `seats` (6, n) are the twists, at their
+    points, of the surface around the ends of parts without a shape. A floating component has one interface: itself, moved rigidly about
     the reference of its first body.
     """
 
@@ -56,7 +56,7 @@ class Superelement:
 
     @property
     def boundary_coordinates(self) -> int:
-        """Number of coordinates it shares with what it is joined to: all but the internal ones."""
+        """Number of coordinates shared with neighbours: all but the internal ones."""
         return 6 * self.interfaces + self.warps
 
     @property
@@ -66,7 +66,7 @@ class Superelement:
 
 
 def hold_faces(element: Superelement, held: Sequence[bool]) -> Superelement:
-    """A superelement with the warps of some of its yielding faces nought, those `held`, in order.
+    """A superelement with zero warps of the `held` ones of its yielding faces, in order.
 
     >>> bare = Skin(*[np.zeros((0, 20))] * 5)
     >>> whole = Superelement(1, 12, {"a": np.eye(20)}, {}, {}, {}, {}, {}, {}, np.zeros((20, 6)), np.zeros((20, 6)), bare, 3, 1)

@@ -1,4 +1,4 @@
-"""Surfaces: displacement and stress at the skins of all components, for given coordinates of the stage's linear model."""
+"""Surfaces: displacement and stress at the skins of all components, for coordinates of the stage's linear model."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from flexstage.solid.fea.solver.component import groups
 
 
 def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array] | None = None) -> Array:
-    """A component's coordinates (n, k) that its stress follows, for the model's (N, k), with the `strokes` (k,) [m] of its stacks, by link.
+    """A component's coordinates (n, k) for its stress, from the model's (N, k), with the `strokes` (k,) [m] of its stacks, by link.
 
-    A stack that expands freely is without stress, so its free stroke must not count.
+    A freely expanding stack has no stress, so its free stroke is subtracted.
 
     >>> from types import SimpleNamespace as Of
     >>> stack = Of(name="B/pzt", body=None)
@@ -32,7 +32,7 @@ def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array
 
 
 def _stacks(item: Placed) -> Iterator[tuple[str, Array]]:
-    """The names of the component's stacks in this copy (the superelement may be another copy's), with their free strokes."""
+    """The names of the stacks in this instance (the superelement may be another instance's), with their free strokes."""
     reduced = [name for name in item.element.stiffness if name in item.element.resultants]
     links = [piece.name for piece in item.component.pieces if piece.body is None]
     for name, free in item.element.free_strokes.items():
@@ -62,7 +62,7 @@ def von_mises(stress: Array) -> Array:
 
 
 def vertex_places(item: Placed, motion: Array, factor: float) -> Array:
-    """Places (v, 3) [m] of a component's skin in the stage's frame, moved by `factor` times the motion of coordinates (N,).
+    """Positions (v, 3) [m] of a component's skin in the stage's frame, displaced by `factor` times the motion of coordinates (N,).
 
     >>> from types import SimpleNamespace as Of
     >>> from flexstage.spatial.frame import identity
@@ -78,7 +78,7 @@ def vertex_places(item: Placed, motion: Array, factor: float) -> Array:
 
 
 def piece_vertices(item: Placed) -> Iterator[tuple[str, Array]]:
-    """Every link and body of a component in this copy's names, with the vertices (indices) of its skin.
+    """Every link and body of a component in this instance's names, with the vertices (indices) of its skin.
 
     >>> from types import SimpleNamespace as Of
     >>> skin = Of(triangles=np.array([[0, 1, 2], [2, 1, 3]]), owner=np.array([0, 1]))

@@ -1,7 +1,7 @@
-"""Ties: what parts without a shape do in a stage of solids, by the numbers that they state.
+"""Ties: effects of parts without a shape in a stage of solids, from their specified values.
 
 A spring, a force actuator, a compliance matrix, a contact or a superelement has no outline to mesh. Its stiffness and mass are data, the
-same for every model; where it ends on an elastic body is found here: it moves with the surface around its end (`field.seat_motion`).
+same for every model; its end on an elastic body moves with the surface around it (`field.seat_motion`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from flexstage.spatial.frame import Frame, spatial_rotation, twist_transform
 
 @dataclass(frozen=True, eq=False)
 class End:
-    """Where a part without a shape ends: the `name` of the end (`motor:platform`, `frame.left:platform`), its body, the point (3,)."""
+    """End of a part without a shape: the `name` of the end (`motor:platform`, `frame.left:platform`), its body, the point (3,)."""
 
     name: str
     body: str
@@ -35,10 +35,10 @@ class End:
 
 @dataclass(frozen=True, eq=False)
 class Tie:
-    """What a part without a shape adds: stiffness over its `strain`, `inertia` over the motion of its ends and its inner coordinates.
+    """Contribution of a part without a shape: stiffness over its `strain`, `inertia` over the motion of its ends and inner coordinates.
 
-    `carried` (r, 6) is that motion when everything moves rigidly about the stage's origin; `passed` (w, s) makes the wrenches that are
-    outputs of the forces (s,) of its strain; viscous `damping` over the strain.
+    `carried` (r, 6) is that motion when everything moves rigidly about the stage's origin. `passed` (w, s) maps the forces (s,) of its
+    strain to the wrenches that are outputs; viscous `damping` over the strain.
     """
 
     strain: Contribution
@@ -49,7 +49,7 @@ class Tie:
 
 
 def stated_of(link: PlacedLink) -> Stated | None:
-    """What a link without a shape is stated to do; `None` where it has a shape, is ideal or restricted, or states nothing.
+    """The specified behaviour of a link without a shape; `None` if it has a shape, is ideal or restricted, or specifies nothing.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -81,7 +81,7 @@ def ends(assembly: Assembly) -> Iterator[End]:
 
 
 def inner_coordinates(element: PlacedSuperelement) -> tuple[str, ...]:
-    """The names of a superelement's modes with its ports held."""
+    """The names of a superelement's modes with its ports fixed."""
     return tuple(f"{element.name}.mode{number + 1}" for number in range(len(_condensed(element).squares)))
 
 
@@ -136,18 +136,18 @@ def _condensed(element: PlacedSuperelement) -> Condensed:
 
 
 def _carry(start: Frame, end: Frame) -> Array:
-    """What makes the twist at one frame, in its axes, of that at another one on the same rigid body."""
+    """Transformation of a rigid body's twist from one frame to another, each in its axes."""
     return twist_transform(end, start.position) @ spatial_rotation(start.rotation)
 
 
 def _all_ports(frames: Sequence[Frame]) -> Array:
-    """What makes the wrenches (6 p, 6 (p - 1)) at all ports of those at all but the first, which balances them."""
+    """Operator from the wrenches at all ports but the first to those at all ports (6 p, 6 (p - 1)); the first balances the others."""
     balance = -np.hstack([_carry(frames[0], frame).T for frame in frames[1:]])
     return np.vstack([balance, np.eye(balance.shape[1])])
 
 
 def stated_links(assembly: Assembly) -> dict[str, str]:
-    """The links that are taken as stated, with the kind of their part.
+    """The links with specified behaviour, with the kind of their part.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -159,14 +159,14 @@ def stated_links(assembly: Assembly) -> dict[str, str]:
 
 
 def in_words(stated: Mapping[str, str]) -> str:
-    """How many links of each kind are taken as stated; nothing where none is.
+    """Number of links of each kind with specified behaviour; empty without any.
 
     >>> in_words({"a": "spring", "b": "spring", "motor": "voice_coil"})
-    '2 springs, 1 voice coil as stated'
+    '2 springs, 1 voice coil as specified'
     """
     counts = Counter(_NOUNS.get(kind, kind.replace("_", " ")) for kind in stated.values())
     said = ", ".join(f"{count} {noun}{'s' if count > 1 else ''}" for noun, count in counts.items())
-    return f"{said} as stated" if said else ""
+    return f"{said} as specified" if said else ""
 
 
 _NOUNS = {

@@ -1,4 +1,4 @@
-"""What binds at an optimum, and what one more unit of it would buy: Lagrange multipliers in the user's units."""
+"""Binding limits of an optimum, and their sensitivities: Lagrange multipliers in the user's units."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _EDGE = 1e-7
 
 
 def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, ...]:
-    """Limits and ends of ranges that bind at an optimum, those that cost the objective most first (relative to what a tenth of them buys).
+    """Binding limits and range ends of an optimum, by their effect on the objective (for a tenth of their value).
 
-    The multipliers are those of the convex model around the optimum with unit curvature, whose solution is the optimum itself: for
-    min c_0 with c_i <= e_i they are -d c_0 / d e_i. Only derivatives: true for small changes, and one-sided where modes are repeated.
+    The multipliers are those of the convex model around the optimum with unit curvature, whose solution is the optimum itself. For
+    min c_0 with c_i <= e_i they are -d c_0 / d e_i. From derivatives only: valid for small changes, and one-sided for repeated modes.
     """
     size = len(point.shares)
     model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))
@@ -51,7 +51,7 @@ def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, 
 
 
 def _ends(setting: Setting, problem: Problem, point: Point, back: float) -> Iterator[tuple[float, Binding]]:
-    """Ends of ranges at which the Lagrangian still falls outward."""
+    """Range ends at which the Lagrangian still decreases outward."""
     size, unit = len(point.shares), setting.definition.objectives[0].measure.quantity.si
     model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))
     slopes = lagrangian(problem, point, model.weights)

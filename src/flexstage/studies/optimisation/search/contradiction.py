@@ -1,4 +1,4 @@
-"""Which limits contradict each other within the ranges."""
+"""Limits that contradict each other within the ranges."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ _COUNTS = 1e-4
 
 
 def contradictions(setting: Setting, starts: Sequence[Array], told: Told | None = None) -> tuple[Contradiction, ...]:
-    """Sets of limits that cannot be kept together, from any of the starts; none where all can after all.
+    """Irreducible infeasible sets of limits, from any of the starts; none if all limits can be met.
 
-    The largest relative violation is made least; then limits are left out one at a time for good, as long as the rest cannot be kept
-    either. What remains is irreducible: without any one of them the others can be kept. It is set aside, and the rest is looked through
-    for further sets.
+    The largest relative violation is minimised; then limits are removed one at a time for as long as the others remain
+    infeasible. The result is irreducible: without any one of them the others are feasible. It is set aside, and the other limits
+    are searched for further sets.
     """
     return tuple(_irreducible_sets(setting, list(starts), told))
 
@@ -44,7 +44,7 @@ def _irreducible_sets(setting: Setting, starts: list[Array], told: Told | None) 
 
 @dataclass(frozen=True, eq=False)
 class _Least:
-    """The least largest violation of some limits, the design there, and how much each limit holds it up."""
+    """The smallest largest violation of some limits, the design there, and the multiplier of each limit."""
 
     violation: float
     point: Point
@@ -52,9 +52,9 @@ class _Least:
 
 
 def _irreducible_set(setting: Setting, suspects: tuple[int, ...], starts: list[Array], told: Told | None) -> tuple[tuple[int, ...], _Least]:
-    """A set of limits that cannot be kept though each left out the others can; halves are tried before single ones."""
+    """An irreducible infeasible set of limits; halves are tried before single ones."""
     ended = _least_violation(setting, suspects, starts, told)
-    assert ended is not None  # noqa: S101  one of the starts is a design already found
+    assert ended is not None  # noqa: S101  one of the starts is an evaluated design
     size = max(1, len(suspects) // 2)
     place = 0
     while place < len(suspects):
@@ -71,7 +71,7 @@ def _irreducible_set(setting: Setting, suspects: tuple[int, ...], starts: list[A
 
 
 def _least_violation(setting: Setting, chosen: tuple[int, ...], starts: Sequence[Array], told: Told | None) -> _Least | None:
-    """The least largest violation, found from any of the starts; `None` where nothing is asked or no start can be evaluated."""
+    """The smallest largest violation, from any of the starts; `None` without limits or if no start can be evaluated."""
     if not chosen:
         return None
     problem = Problem(tuple(setting.side(number) for number in chosen), ())

@@ -1,4 +1,4 @@
-"""Fronts of two objectives: designs none of which is better in both, by bounding one objective and optimising the other."""
+"""Pareto fronts of two objectives, by bounding one objective and optimising the other."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from flexstage.studies.optimisation.values import Point
 from flexstage.studies.sweeps.definition import Study
 
 _KEEP = 1e-6
-"""By how much (relative) an objective may give way while the other is improved at an end of the front."""
+"""Largest relative loss of an objective while the other is improved at an end of the front."""
 
 
 @check_arguments
@@ -32,12 +32,12 @@ _KEEP = 1e-6
 def pareto_front(study: Study, definition: OptimisationProblem, progress: Progress | None = None) -> Front:
     """The front of two objectives within ranges and limits (epsilon-constraint method: Haimes, Lasdon & Wismer 1971).
 
-    First each objective alone, the other improved as far as that costs nothing; between these ends the first is optimised with the second
-    bounded at equally spaced values, each from both ends. What another design of the front beats in both is left out. An interrupt ends it
-    with what is there.
+    First each objective is optimised alone, then the other improved without loss. Between these ends the first is optimised with the second
+    bounded at equally spaced values, each from both ends. Dominated designs are left out. An interruption ends the search
+    with the designs so far.
     """
     if len(definition.objectives) != 2:
-        raise refuse("optimise", f"found {len(definition.objectives)} objectives", "A front is drawn of two")
+        raise refuse("optimise", f"a front needs two objectives (got {len(definition.objectives)})", "Use optimise for one")
     begun = time.monotonic()
     set_up = setting(study, definition)
     counted = Count(progress, "ends of the front")
@@ -50,7 +50,7 @@ def pareto_front(study: Study, definition: OptimisationProblem, progress: Progre
             counted.about = "front"
             found += _between(set_up, found, counted)
         else:
-            counted.about = "looking for limits that contradict"
+            counted.about = "contradictory limits"
             against = contradictions(set_up, [trace.point.shares for trace in traces if trace.point is not None], counted)
     except KeyboardInterrupt:
         interrupted = True
@@ -69,7 +69,7 @@ def pareto_front(study: Study, definition: OptimisationProblem, progress: Progre
 
 
 def _ends(set_up: Setting, counted: Count) -> tuple[list[Point], list[Trace]]:
-    """The best design in each objective; nothing where no design keeps the limits."""
+    """The best design in each objective; nothing without a feasible design."""
     ends: list[Point] = []
     all_traces: list[Trace] = []
     for number in (0, 1):
@@ -86,7 +86,7 @@ def _ends(set_up: Setting, counted: Count) -> tuple[list[Point], list[Trace]]:
 
 
 def _bound(set_up: Setting, number: int, point: Point) -> Side:
-    """An objective kept at its value in a design, but for a millionth."""
+    """An objective bounded by its value in a design, with a tolerance of a millionth."""
     aim, value = set_up.objective(number), float(point.values[number])
     give = _KEEP * (abs(value) or aim.scale)
     return replace(aim, limit=value - give if aim.sense is Sense.AT_LEAST else value + give)
@@ -108,7 +108,7 @@ def _between(set_up: Setting, ends: list[Point], counted: Count) -> list[Point]:
 
 
 def non_dominated(set_up: Setting, points: Iterable[Point]) -> list[Point]:
-    """The points that no other one beats in one objective and equals in the other, from the best in the first on."""
+    """The non-dominated points, from the best in the first objective on."""
     points = list(points)
     worth = np.array([[set_up.objective(number).at(point) for number in (0, 1)] for point in points]).reshape(-1, 2)
     kept = [number for number in range(len(points)) if not _is_dominated(worth, number)]
@@ -116,7 +116,7 @@ def non_dominated(set_up: Setting, points: Iterable[Point]) -> list[Point]:
 
 
 def _is_dominated(worth: Array, number: int) -> bool:
-    """Whether another design is as good in both and better in one, beyond rounding; of equals the first one stays."""
+    """Whether another design is as good in both and better in one, beyond rounding; of equal ones the first remains."""
     own = worth[number]
     better = np.all(worth <= own + SPARE, axis=1) & np.any(worth < own - 10.0 * SPARE, axis=1)
     same = np.all(np.abs(worth - own) <= 10.0 * SPARE, axis=1)

@@ -25,16 +25,16 @@ from flexstage.studies.sweeps.definition import Study
 _ALIKE = 1e-4
 
 Progress = Callable[[str], None]
-"""Told what is being done, with how many designs were evaluated."""
+"""Called with the current task and the number of evaluated designs."""
 
 
 @check_arguments
 @one_thread
 def optimise(study: Study, definition: OptimisationProblem, progress: Progress | None = None) -> Optimum:
-    """The best design within the variables' ranges that keeps all limits.
+    """Find the best design within the variables' ranges that keeps all limits.
 
-    From every start a sequence of convex models with exact derivatives; frequencies enter as matrices of neighbouring modes, so that
-    repeated and crossing modes are no obstacle. A local method: `starts` says how many ends agree. A keyboard interrupt ends the
+    From every start, a sequence of convex models with exact derivatives is solved. Frequencies enter as matrices of neighbouring modes, so
+    that repeated and crossing modes are no obstacle. A local method: `starts` lists the number of equal ends. A keyboard interrupt ends the
     search with the best design so far. Raises `DesignError` for a study that cannot be optimised.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
@@ -43,7 +43,7 @@ def optimise(study: Study, definition: OptimisationProblem, progress: Progress |
     (2, ['stroke.x at least 18 um'])
     """
     if len(definition.objectives) != 1:
-        raise refuse("optimise", f"there are {len(definition.objectives)} objectives", "Draw a front of two with `pareto_front`")
+        raise refuse("optimise", f"must be one objective (got {len(definition.objectives)})", "Use `pareto_front` for two")
     begun = time.monotonic()
     set_up = setting(study, definition)
     problem, begins = set_up.problem, set_up.starts()
@@ -62,7 +62,7 @@ def optimise(study: Study, definition: OptimisationProblem, progress: Progress |
         before=set_up.before,
         point=point,
         starts=starts,
-        binding=() if point is None or broken else binding(set_up, problem, point),  # of an optimum only
+        binding=() if point is None or broken else binding(set_up, problem, point),  # only for an optimum
         rounded=near,
         contradictions=against,
         idle=set_up.idle,
@@ -73,7 +73,7 @@ def optimise(study: Study, definition: OptimisationProblem, progress: Progress |
 
 
 def _search_all(set_up: Setting, begins: Array, traces: list[Trace], counted: Count) -> bool:
-    """Search from all starts; whether that was interrupted. The traces keep what was found."""
+    """Search from all starts; return whether it was interrupted. The traces keep the results."""
     try:
         run_searches([search(set_up.problem, start, trace) for start, trace in zip(begins, traces, strict=True)], set_up.values, counted)
     except KeyboardInterrupt:
@@ -89,7 +89,7 @@ def _conclude(
         if point is not None:
             counted.about = "rounding"
             return (), round_to_steps(set_up, set_up.problem, point), False
-        counted.about = "looking for limits that contradict"
+        counted.about = "contradictory limits"
         ends = [trace.point.shares for trace in traces if trace.point is not None]
         return contradictions(set_up, ends, counted), None, False
     except KeyboardInterrupt:
@@ -97,7 +97,7 @@ def _conclude(
 
 
 class Count:
-    """Counts evaluated designs and says so."""
+    """Counts evaluated designs and reports them."""
 
     def __init__(self, progress: Progress | None, about: str) -> None:
         self.progress, self.about, self.done = progress, about, 0
@@ -110,7 +110,7 @@ class Count:
 
 
 def best_of(problem: Problem, traces: list[Trace]) -> Point | None:
-    """The best design that any search went through and that keeps the limits.
+    """The best feasible design of all searches.
 
     >>> best_of(Problem((), ()), []) is None
     True

@@ -1,4 +1,4 @@
-"""What a search minimises and keeps: sides of measures, each normalised, and what they are to first order around a design."""
+"""Problem of a search: objective and limits as normalised sides of measures, and their linearisation about a design."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.base.number import Array
 from flexstage.studies.optimisation.values import Numbered, Point, Scalars
 
 SPARE = 1e-8
-"""Share of its scale by which a limit is kept with room to spare, so that rounding does not break it."""
+"""Margin of a limit over its scale, so that rounding does not violate it."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Problem:
-    """Minimise the largest c of `objective` while no c of `limits` is above 0."""
+    """Minimise the largest c of `objective` with all c of `limits` <= 0."""
 
     objective: tuple[Side, ...]
     limits: tuple[Side, ...]
@@ -51,7 +51,7 @@ class Problem:
         return max(side.at(point) for side in self.objective)
 
     def excess(self, point: Point) -> float:
-        """The largest violation, normalised; 0 where all limits are kept."""
+        """The largest violation, normalised; 0 for a feasible design."""
         return max((side.at(point) for side in self.limits), default=0.0) if self.limits else 0.0
 
     def violation(self, point: Point) -> float:
@@ -63,7 +63,7 @@ class Problem:
 class Linear:
     """One side around a design: c = the largest eigenvalue of constant + sum_p d_p slope_p, matrices (k, k) and (n, k, k).
 
-    For scalars the matrices are diagonal and only their diagonals are given: (m,) and (n, m).
+    For scalars the matrices are diagonal, and only their diagonals are stored: (m,) and (n, m).
     """
 
     constant: Array
@@ -86,8 +86,8 @@ class Linear:
 def linear(side: Side, point: Point) -> Linear:
     """A side to first order around a design.
 
-    The pieces of a least above a limit are all to be above it, likewise below; of frequencies, those from the one asked for upward are to
-    be above it, or up to it below. The other way round, only the piece that the measure now is counts.
+    The pieces of a minimum are all bounded from below, and likewise of a maximum from above. Of frequencies, those from the requested
+    number upward are bounded from below, or those up to it from above. In the opposite direction, only the active piece counts.
 
     >>> at = Point(np.zeros(1), (Scalars(np.array([3.0, 2.0]), np.ones((2, 1)), Extreme.LEAST),))
     >>> linear(Side(0, Sense.AT_LEAST, 1.0, 1.0), at).constant.tolist()
@@ -103,7 +103,7 @@ def linear(side: Side, point: Point) -> Linear:
 
 
 def second_order_correction(side: Side, point: Point, tried: Point) -> Linear:
-    """A side around a design with its slopes, but lifted so that at another design it is what was found there.
+    """A side linearised about a design, with its constant corrected to match the value at another design.
 
     >>> first, second = (Point(np.array([x]), (Scalars(np.array([x * x]), np.array([[2.0 * x]]), Extreme.LEAST),)) for x in (1.0, 2.0))
     >>> second_order_correction(Side(0, Sense.AT_MOST, 0.0, 1.0), first, second).constant.tolist()  # 4 - 2 (2 - 1)
@@ -117,7 +117,7 @@ def second_order_correction(side: Side, point: Point, tried: Point) -> Linear:
 
 
 def members(side: Side, found: Numbered) -> slice:
-    """Which modes of the spectrum a side is about.
+    """The modes of the spectrum that a side contains.
 
     >>> from flexstage.studies.optimisation.search.spectrum import Spectrum
     >>> one = Numbered(Spectrum(np.ones(3), np.zeros((0, 3, 3)), np.eye(3), np.eye(3)), 2)
@@ -142,11 +142,11 @@ class Weights:
 
     @property
     def total(self) -> float:
-        """How much the side counts in all."""
+        """Sum of the multipliers."""
         return float(np.trace(self.values) if self.values.ndim == 2 else np.sum(self.values))
 
     def gradient(self, at: Linear) -> Array:
-        """What the side adds to the gradient (n,) of the Lagrangian."""
+        """Contribution of the side to the gradient (n,) of the Lagrangian."""
         if self.values.ndim == 1:
             return at.slope @ self.values
         return np.einsum("pij,ij->p", at.slope, self.values)
@@ -165,7 +165,7 @@ def sides(problem: Problem) -> Iterator[Side]:
 def lagrangian(problem: Problem, point: Point, weights: tuple[Weights, ...], seen_from: Point | None = None) -> Array | None:
     """Gradient (n,) of the Lagrangian at a design, with weights of the modes and pieces of the design `seen_from` (absent: of this one).
 
-    `None` where pieces do not correspond.
+    `None` if the pieces do not correspond.
 
     >>> at = Point(np.zeros(1), (Scalars(np.array([3.0]), np.array([[2.0]]), Extreme.LEAST),))
     >>> lagrangian(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()), at, (Weights(np.ones(1)),)).tolist()
@@ -183,7 +183,7 @@ def lagrangian(problem: Problem, point: Point, weights: tuple[Weights, ...], see
 
 
 def _change_basis(side: Side, values: Array, before: Point, now: Point) -> Array:
-    """A matrix in the modes of one design, in those of another."""
+    """A matrix transformed from the modes of one design to those of another."""
     first, second = before.found[side.index], now.found[side.index]
     assert isinstance(first, Numbered)  # noqa: S101  a side with a matrix is of frequencies
     assert isinstance(second, Numbered)  # noqa: S101

@@ -1,4 +1,4 @@
-"""Small strictly convex quadratic programs, as least distances."""
+"""Small strictly convex quadratic programs, as least-distance problems."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Solution:
 
 
 def quadratic(hessian: Array, linear: Array, normals: Array, bounds: Array) -> Solution:
-    """Minimise x^T H x / 2 + h^T x where A x <= b, for H positive definite and constraints that can be met.
+    """Minimise x^T H x / 2 + h^T x subject to A x <= b, for H positive definite and feasible constraints.
 
-    From the free minimiser, in y = L^T x, the constraints ask for the shortest way z with G z >= g, which is the residual of a
+    From the free minimiser, in y = L^T x, the constraints require the shortest step z with G z >= g. It is the residual of a
     non-negative least-squares problem: min |E u - e| over u >= 0 with E = [G^T; g^T] and e = (0, ..., 0, 1), z = G^T u / (1 - g^T u)
     (Lawson & Hanson, Solving Least Squares Problems, 1974, chapter 23).
 

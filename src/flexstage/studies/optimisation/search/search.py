@@ -1,4 +1,4 @@
-"""A search from one design: steps of the convex model in a trust region, until no gain is left."""
+"""A search from one design: steps of the convex model in a trust region, until convergence."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ _RADIUS, _SMALLEST = 0.25, 1e-8
 _PENALTY, _MOST = 10.0, 1e5
 _GAIN, _KEPT = 1e-9, 2e-9
 _CURVED = 0.75
-"""A step that gains less of what was promised, and breaks limits, is corrected."""
+"""Smallest ratio of actual to predicted gain without a second-order correction of an infeasible step."""
 _CURVATURE, _CURVATURES = 0.1, (1e-4, 1e4)
 STEPS = 80
-"""Steps of one search at most."""
+"""Largest number of steps of a search."""
 
 Evaluate = Callable[[Array], "list[Point | str]"]
-"""Points of designs at shares (s, n), or why there is none."""
+"""Points of designs at shares (s, n), or the reasons of failures."""
 
 Walk = Generator[Array, "Point | str", "Trace"]
-"""A search: yields shares of a design to be evaluated, is sent the point there or why there is none, and returns its trace."""
+"""A search: yields shares of a design to evaluate, receives the point or the reason of its failure, and returns its trace."""
 
 
 @dataclass(eq=False)
 class Trace:
-    """What a search went through: the best `point` and its `weights`, the `history` of accepted points, how many were `evaluated`.
+    """History of a search: the best `point` and its `weights`, the `history` of accepted points, the number of `evaluated` ones.
 
-    `converged`: no gain is left to first order. `reason` where there is no point at all.
+    `converged`: no further gain to first order. `reason` if there is no point.
     """
 
     point: Point | None = None
@@ -44,10 +44,11 @@ class Trace:
 
 
 def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough: float = -np.inf) -> Walk:
-    """Search from shares (n,) of the ranges; `trace` can be looked at while it runs. Ends early where the objective is `enough`.
+    """Search from shares (n,) of the ranges; `trace` can be read during the search. Ends early if the objective reaches `enough`.
 
     Sequential quadratic programming with an exact penalty of the largest violation (Fletcher & de la Maza, Mathematical Programming 43
-    (1989) 235), the Lagrangian's curvature by damped BFGS updates (Powell 1978) with weights carried over between modes by their overlap.
+    (1989) 235). The Lagrangian's curvature is estimated by damped BFGS updates (Powell 1978); modes carry
+    over their weights by their overlap.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting
@@ -99,12 +100,12 @@ def _merit(problem: Problem, point: Point, penalty: float) -> float:
 
 
 def _ratio(problem: Problem, before: Point, after: Point | str, move: Step, penalty: float) -> float:
-    """What a step gained over what the model promised; -1 where there is no design."""
+    """Actual over predicted gain of a step; -1 without a design."""
     return -1.0 if isinstance(after, str) else (_merit(problem, before, penalty) - _merit(problem, after, penalty)) / move.gain
 
 
 def _penalty_step(problem: Problem, point: Point, hessian: Array, bounds: Bounds) -> tuple[Step, float]:
-    """A step that closes at least a tenth of the violation that could be closed, the penalty raised as far as that needs."""
+    """A step that removes at least a tenth of the removable violation, with the penalty raised as needed."""
     radius, penalty = bounds.radius, bounds.penalty
     move = step(problem, point, hessian, bounds)
     if move.excess <= _KEPT or penalty >= _MOST:
@@ -124,7 +125,7 @@ def _update_radius(radius: float, ratio: float, move: Step) -> float:
 
 
 def _bfgs_update(problem: Problem, hessian: Array, before: Point, now: Point, weights: tuple[Weights, ...], *, fresh: bool) -> Array:
-    """The BFGS update of the Lagrangian's curvature, damped so that it stays positive definite."""
+    """The BFGS update of the Lagrangian's curvature, damped to remain positive definite."""
     change = now.shares - before.shares
     late, early = lagrangian(problem, now, weights, before), lagrangian(problem, before, weights)
     if late is None or early is None or not np.any(change):
@@ -137,20 +138,20 @@ def _bfgs_update(problem: Problem, hessian: Array, before: Point, now: Point, we
     share = 1.0 if seen >= 0.2 * own else 0.8 * own / (own - seen)
     bend = share * bend + (1.0 - share) * pushed
     updated = hessian - np.outer(pushed, pushed) / own + np.outer(bend, bend) / float(change @ bend)
-    values, vectors = np.linalg.eigh(0.5 * (updated + updated.T))  # pieces that change places bend like kinks: held within bounds
+    values, vectors = np.linalg.eigh(0.5 * (updated + updated.T))  # kinks of changing pieces: bounded
     return (vectors * np.clip(values, *_CURVATURES)) @ vectors.T
 
 
 def run_searches(
     walks: Sequence[Walk], evaluate: Callable[[Array], list[Point | str]], told: Callable[[int], None] | None = None
 ) -> list[Trace]:
-    """Run searches side by side: the designs that all of them wait for are evaluated as one batch.
+    """Run searches in parallel: the designs requested by all of them are evaluated as one batch.
 
     >>> def still():
     ...     yield np.zeros(1)
-    ...     return Trace(reason="stood still")
+    ...     return Trace(reason="no step")
     >>> run_searches([still()], lambda shares: ["no point"] * len(shares))[0].reason
-    'stood still'
+    'no step'
     """
     traces: list[Trace | None] = [None] * len(walks)
     waiting = {number: next(walk) for number, walk in enumerate(walks)}

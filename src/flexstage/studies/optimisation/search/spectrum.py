@@ -1,4 +1,4 @@
-"""Frequencies of neighbouring modes together with their derivatives as matrices, which stay true where modes meet and cross."""
+"""Frequencies of neighbouring modes with their derivatives as matrices, valid for repeated and crossing modes."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from flexstage.models.linear.model import Contribution, LinearModel, assemble
 
 _STEP = 1e-20
 _ROOM = 6
-"""How many modes beyond those asked for are kept: they may come down."""
+"""Additional modes beyond the requested ones: their frequencies may decrease."""
 
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
     """k modes of one design: `frequencies` (k,) ascending [Hz] and `slopes` (n, k, k) [Hz per unit of each variable].
 
-    Eigenvalues of diag(f) + sum_p d_p slopes_p are the frequencies after a small change d, to first order, whether modes are distinct,
-    repeated or about to cross: slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM) phi_j / (2 pi (omega_i + omega_j)). `shapes` (N, k)
-    and `weighted` = M shapes tell the modes of two designs apart.
+    Eigenvalues of diag(f) + sum_p d_p slopes_p are the frequencies after a small change d, to first order, for distinct,
+    repeated or crossing modes. slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM) phi_j / (2 pi (omega_i + omega_j)). `shapes` (N, k)
+    and `weighted` = M shapes identify the modes of two designs.
     """
 
     frequencies: Array
@@ -34,7 +34,7 @@ class Spectrum:
 
 @dataclass(frozen=True)
 class Modes:
-    """Which modes are asked for: the lowest `count`, of the platform or of any body."""
+    """Requested modes: the lowest `count`, of the platform or of any body."""
 
     count: int
     platform: bool
@@ -43,7 +43,7 @@ class Modes:
 def spectra(model: LinearModel, asked: tuple[Modes, ...], shape: tuple[int, int]) -> list[tuple[Spectrum, ...]]:
     """Spectra of s designs from the model of a batch (s n,): design after design, each with a tiny imaginary step in one variable.
 
-    `shape` is (s, n); with n = 0 the batch is (s,), real, and there are no slopes. Raises `DesignError` where there are fewer modes.
+    `shape` is (s, n); with n = 0 the batch is (s,), real, and there are no slopes. Raises `DesignError` for too few modes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -82,7 +82,7 @@ def _real(item: Contribution) -> Contribution:
 
 
 def _select_modes(wanted: Modes, values: Array, parts: Array) -> Array:
-    """Indices of the modes asked for and of some above them, from their `participation` (6, k)."""
+    """Indices of the requested modes and of some above them, from their `participation` (6, k)."""
     if not np.all(np.isfinite(values)):
         raise refuse("frequency", "some motion has no stiffness", "Narrow the ranges")
     if wanted.platform:
@@ -90,7 +90,7 @@ def _select_modes(wanted: Modes, values: Array, parts: Array) -> Array:
     else:
         found = np.arange(min(wanted.count + _ROOM, len(values)))
     if len(found) < wanted.count:
-        raise refuse("frequency", f"there are {len(found)} such modes", "Ask for a lower number")
+        raise refuse("frequency", f"the stage has only {len(found)} such modes", "Use a lower number")
     return found
 
 
@@ -111,7 +111,7 @@ def _rows_of(item: Contribution, rows: slice) -> Contribution:
 
 
 def _project(contributions: dict[str, Contribution], shapes: Array) -> Array:
-    """Phi^T dA Phi (n, k, k) of a stepped matrix given as contributions; those that no variable moves are passed over."""
+    """Phi^T dA Phi (n, k, k) of a stepped matrix in contributions; those without variables are skipped."""
     total = np.zeros((shapes.shape[-1], shapes.shape[-1]))
     for item in contributions.values():
         if np.iscomplexobj(item.operator) or np.iscomplexobj(item.law):

@@ -20,14 +20,14 @@ _SAME = 9
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """A `change` (n,) of shares; in the model: `gain` of the merit, `excess` over the limits that it leaves; `weights` of all sides."""
+    """A `change` (n,) of shares; in the model: `gain` of the merit, remaining `excess` over the limits; `weights` of all sides."""
 
     change: Array
     gain: float
     excess: float
     weights: tuple[Weights, ...]
     held: bool
-    """Whether the trust region held the step back."""
+    """Whether the trust region limited the step."""
 
 
 @dataclass(eq=False)
@@ -49,7 +49,7 @@ class _Rows:
 
 @dataclass(frozen=True)
 class Bounds:
-    """How far a step may go (shares), and what a unit of violation counts."""
+    """Largest step (shares), and the penalty of a unit of violation."""
 
     radius: float
     penalty: float
@@ -59,9 +59,9 @@ def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: 
     """Minimise t + d^T B d / 2 + penalty s over a change d within the radius and the ranges.
 
     t is above every side of the objective to first order, s >= 0 above every limit. Sides of frequencies are matrices: their eigenvectors
-    after the change are added as planes until no eigenvalue is above them any more, which is exact also for modes that meet. A design
-    already `tried` lifts the planes to what was found there: the correction of second order, without which steps along curved limits
-    stay short.
+    after the change are added as planes until no eigenvalue is above them, which is exact also for crossing modes. A design
+    already `tried` lifts the planes to its values: the second-order correction, without which steps along curved limits
+    are short.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting
@@ -87,7 +87,7 @@ def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: 
 
 
 def _initial_planes(problem: Problem, models: list[Linear], level: float, radius: float) -> _Rows:
-    """Planes that can matter within the radius, each once; of matrices, those of the modes as they are."""
+    """Planes that can be active within the radius, each once; of matrices, those of the present modes."""
     rows = _Rows([], [], [], [])
     for number, model in enumerate(models):
         aim = number < len(problem.objective)
@@ -120,7 +120,7 @@ def _solve(rows: _Rows, hessian: Array, low: Array, high: Array, penalty: float)
 
 
 def _add_planes(problem: Problem, models: list[Linear], rows: _Rows, found: Array, level: float) -> bool:
-    """Add the eigenvectors whose eigenvalue after the change is above t or s; whether there were any."""
+    """Add the eigenvectors whose eigenvalue after the change is above t or s; return whether there were any."""
     size, added = len(found) - 2, False
     for number, model in enumerate(models):
         if model.diagonal:
@@ -136,7 +136,7 @@ def _add_planes(problem: Problem, models: list[Linear], rows: _Rows, found: Arra
 
 
 def _weights(models: list[Linear], rows: _Rows, multipliers: Array) -> tuple[Weights, ...]:
-    """Multipliers of planes gathered by side."""
+    """Multipliers of planes, collected by side."""
     totals = [np.zeros(model.constant.shape) for model in models]
     for (number, own), value in zip(rows.owners, multipliers, strict=True):
         if isinstance(own, int):

@@ -1,4 +1,4 @@
-"""Figures of optimisations: how searches converge, variables before and after, fronts."""
+"""Figures of optimisations: convergence of searches, variables before and after, fronts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.studies.optimisation.result import Front, Optimum
 
 
 def convergence_figure(found: Optimum) -> Any:
-    """The objective over accepted designs, one line a start; open marks do not keep all limits. Beside it the variables in their ranges.
+    """The objective over accepted designs, one line for each start; open marks are infeasible. Right: the variables in their ranges.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.search.optimum import optimise
@@ -34,7 +34,7 @@ def _histories(ax: Any, found: Optimum) -> None:
     for index, start in enumerate(found.starts):
         heights, kept = start.history[:, 0] * form.factor, start.history[:, 1] <= 1e-8
         color, places = SERIES[index % len(SERIES)], np.arange(len(heights))
-        ax.plot(places, heights, color=color, linewidth=1.0, label="as it stands" if index == 0 else f"Sobol {index}")
+        ax.plot(places, heights, color=color, linewidth=1.0, label="nominal" if index == 0 else f"Sobol {index}")
         ax.plot(places[kept], heights[kept], "o", color=color, markersize=3)
         ax.plot(places[~kept], heights[~kept], "o", markerfacecolor="none", markeredgecolor=color, markersize=3)
     ax.set_xlabel("accepted designs")
@@ -43,7 +43,7 @@ def _histories(ax: Any, found: Optimum) -> None:
 
 
 def _ranges(ax: Any, found: Optimum) -> None:
-    """Every variable's range as a bar: a bar's end is the range's."""
+    """Every variable's range as a bar from end to end."""
     names = [each.name for each in found.study.variables]
     final = found.final or found.point
     for row, before in enumerate(found.before.shares):
@@ -60,7 +60,7 @@ def _ranges(ax: Any, found: Optimum) -> None:
 
 
 def front_figure(found: Front) -> Any:
-    """Both objectives of the designs of a front, and the design as it stands."""
+    """Both objectives of the designs of a front, and the nominal design."""
     forms = [
         display_unit_of(each.measure.quantity.si, float(np.max(np.abs([*found.values[:, number], found.before.values[number]]))))
         for number, each in enumerate(found.definition.objectives)
@@ -71,7 +71,7 @@ def front_figure(found: Front) -> Any:
         across, up = found.values[:, 1] * forms[1].factor, found.values[:, 0] * forms[0].factor
         ax.plot(across, up, "o-", color=SERIES[0], markersize=4, label="front")
         stands = found.before.values[:2] * np.array([forms[0].factor, forms[1].factor])
-        ax.plot(stands[1], stands[0], "o", markerfacecolor="none", markeredgecolor=INK, label="as it stands")
+        ax.plot(stands[1], stands[0], "o", markerfacecolor="none", markeredgecolor=INK, label="nominal")
         for axis, number in ((ax.set_xlabel, 1), (ax.set_ylabel, 0)):
             each = found.definition.objectives[number]
             axis(f"{each.name} [{forms[number].unit}], {each.direction.value}")

@@ -1,4 +1,4 @@
-"""Reports of optimisations: one HTML file each that stands alone."""
+"""Reports of optimisations: self-contained HTML files."""
 
 from __future__ import annotations
 
@@ -22,15 +22,13 @@ from flexstage.studies.optimisation.values import values_of
 from flexstage.studies.sweeps.loaded import loaded_findings, require_stable
 from flexstage.studies.sweeps.show.report import study_head
 
-_SEARCH = (
-    "Left: accepted designs of every start; open: some limit is not kept. Right: each variable in its range, as it stands and at the end."
-)
+_SEARCH = "Left: accepted designs of every start; open: infeasible. Right: each variable in its range, nominal and final."
 
 
 def optimise_report(found: Optimum) -> str:
-    """An optimisation as a page of HTML: objective, variables, limits, what binds, convergence.
+    """An optimisation as an HTML page: objective, variables, limits, binding limits, convergence.
 
-    Raises `DesignError` where the best design does not hold under its dead load.
+    Raises `DesignError` if the best design is unstable under its permanent load.
     """
     study = found.study
     warnings = () if found.final is None else require_stable(study, values_of(study, found.final.shares))
@@ -52,13 +50,13 @@ def optimise_report(found: Optimum) -> str:
 
 
 def _stage(stages: Mapping[str, StageData]) -> Section | None:
-    """The optimum, with the design as it stands behind it and, where nothing turns, beside it."""
+    """The optimum with the nominal design behind it, or, without a viewer, next to it."""
     if "before" not in stages:
         return stage_section(stages["stage"])
-    drawn = {"as it stands": stages["before"], "the optimum": stages["stage"]}
+    drawn = {"nominal": stages["before"], "optimum": stages["stage"]}
     pictures = [_still(each, f"stage{place}", f"The stage, {name}.") for place, (name, each) in enumerate(drawn.items())]
     viewer = Viewer("stage", (Abreast(tuple(pictures)),), first_motion(stages["stage"]), "before")
-    said = "Drawn is the optimum; where it turns, the outline behind it is the design as it stands."
+    said = "The optimum; in the viewer, the outline behind it is the nominal design."
     return section("The stage", [viewer, Legend(legend(stages["stage"])), Prose(said)])
 
 
@@ -67,25 +65,25 @@ def _still(data: StageData, name: str, caption: str) -> Picture:
 
 
 def front_report(found: Front) -> str:
-    """A front as a page of HTML."""
-    picture = Picture(to_svg(front_figure(found), "front", "designs of the front"), "None of these designs is better in both objectives.")
+    """A front as an HTML page."""
+    picture = Picture(to_svg(front_figure(found), "front", "designs of the front"), "Pareto-optimal designs.")
     data = stage_data(found.study.design)
     sections = [
         stage_section(data),
         section("Front", [picture, *front_tables(found)]),
         caveat_section(found.study.design, loaded_findings(found.study)),
     ]
-    said = Headline(f"{len(found.points)} designs, none of them better than another in both objectives.")
+    said = Headline(f"{len(found.points)} Pareto-optimal designs.")
     return page(study_head(found.study, "A front of two objectives", said), sections, {"stage": data})
 
 
 def _headline(found: Optimum) -> Headline:
-    """The objective before and after, and how many limits are kept."""
+    """The objective before and after, and the number of met limits."""
     asked, point = found.definition.objectives[0], found.final
     if point is None:
-        return Headline(f"No design was found: {found.failure}.", good=False)
+        return Headline(f"No design found: {found.failure}.", good=False)
     before, after = (format_value(found.value(each), asked.measure.quantity.si) for each in (found.before, point))
     limits = zip(found.limits, point.values[len(found.definition.objectives) :], strict=True)
     kept = [bool(Verdict(each, np.asarray(value)).passed) for each, value in limits]
-    told = f"; {sum(kept)} of {len(kept)} limits are kept" if kept else ""
-    return Headline(f"{asked.name}: {before} as it stands, {after} at the optimum{told}.", all(kept))
+    told = f"; {sum(kept)} of {len(kept)} limits are met" if kept else ""
+    return Headline(f"{asked.name}: {before} nominal, {after} at the optimum{told}.", all(kept))

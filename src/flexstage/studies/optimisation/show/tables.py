@@ -14,7 +14,7 @@ from flexstage.studies.sweeps.definition import Study
 
 
 def optimise_tables(found: Optimum) -> list[Table | None]:
-    """Objective and variables before and after, limits, what binds and what it costs, the starts.
+    """Objective and variables before and after, limits, binding limits and their sensitivities, the starts.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.search.optimum import optimise
@@ -33,13 +33,13 @@ def front_tables(found: Front) -> list[Table]:
         cells = [format_value(float(point.values[number]), each.measure.quantity.si, 6) for number, each in enumerate(objectives)]
         rows.append((str(index + 1), *cells, *_value_texts(found.study, values_of(found.study, point.shares))))
     columns = ["design", *(Column(head) for head in heads), *(Column(each.name) for each in found.study.variables)]
-    notes = [f"{found.evaluated} designs evaluated with derivatives. None of these is better in both objectives than another."]
+    notes = [f"{found.evaluated} designs evaluated with derivatives. All are Pareto-optimal."]
     return [make_table("Front", columns, rows, notes=[*notes, *_notes(interrupted=found.interrupted, idle=found.idle)])]
 
 
 def _notes(*, interrupted: bool, idle: tuple[str, ...]) -> list[str]:
     notes = ["Interrupted: the best so far."] if interrupted else []
-    return [*notes, *([f"Move nothing that is asked for: {', '.join(idle)}."] if idle else [])]
+    return [*notes, *([f"Variables without effect: {', '.join(idle)}."] if idle else [])]
 
 
 def _value_texts(study: Study, values: Array) -> list[str]:
@@ -49,7 +49,7 @@ def _value_texts(study: Study, values: Array) -> list[str]:
 def _objective(found: Optimum) -> Table:
     objective = found.definition.objectives[0]
     unit = objective.measure.quantity.si
-    rows = [("as it stands", format_value(found.value(found.before), unit, 6), "")]
+    rows = [("nominal", format_value(found.value(found.before), unit, 6), "")]
     for title, point in (("optimum", found.point), ("rounded", None if found.rounded is None else found.rounded.point)):
         if point is not None:
             change = found.value(point) / (found.value(found.before) or np.nan) - 1.0
@@ -67,7 +67,7 @@ def _objective(found: Optimum) -> Table:
 def _variables(found: Optimum) -> Table:
     study = found.study
     columns = [values_of(study, found.before.shares)]
-    heads = [Column("as it stands")]
+    heads = [Column("nominal")]
     if found.point is not None:
         columns.append(values_of(study, found.point.shares))
         heads.append(Column("optimum"))
@@ -89,21 +89,21 @@ def _limits(found: Optimum) -> Table:
         verdict = Verdict(each, np.asarray(point.values[first + index]))
         kept = bool(verdict.passed)
         values = [format_value(float(at.values[first + index]), each.quantity.si, 5) for at in (found.before, point)]
-        mark = Cell("kept" if kept else "not kept", Mark.PASS if kept else Mark.FAIL)
+        mark = Cell("met" if kept else "not met", Mark.PASS if kept else Mark.FAIL)
         rows.append((Cell(each.key, Mark.STRONG), each.text, *values, f"{100.0 * float(verdict.margin):+.3g} %", mark))
-    heads = ["limit", "demand", Column("as it stands"), Column("final"), Column("margin"), "verdict"]
+    heads = ["limit", "required", Column("nominal"), Column("final"), Column("margin"), "verdict"]
     return make_table("Limits", heads, rows)
 
 
 def _starts(found: Optimum) -> dict[str, Start]:
-    return {f"Sobol {index}" if index else "as it stands": each for index, each in enumerate(found.starts)}
+    return {f"Sobol {index}" if index else "nominal": each for index, each in enumerate(found.starts)}
 
 
 def contradiction_text(each: Contradiction, found: Optimum | Front) -> tuple[str, str]:
-    """What contradicts and how nearly the limits can be met, in words: what was found, and the advice."""
+    """A contradiction as text, with the nearest values of its limits, and the advice."""
     said = [f"'{limit.key} {limit.text}'" for limit in each.limits]
     at = [_nearest_value(limit.key, limit.point, each.point, found) for limit in each.limits]
-    least = f"the least violation is {100.0 * each.violation:.3g} %, with {', '.join(at)}"
+    least = f"the smallest violation is {100.0 * each.violation:.3g} %, with {', '.join(at)}"
     if len(said) == 1:
         return f"{said[0]} cannot hold within these ranges; {least}", "Loosen it, or widen the ranges"
     both = "both " if len(said) == 2 else "all "

@@ -1,1 +1,1 @@
-"""Execution of a study: designs evaluated, stored and gathered."""
+"""Execution of a study: designs evaluated, stored and combined."""

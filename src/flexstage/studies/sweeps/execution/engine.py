@@ -1,7 +1,7 @@
-"""Platform frequencies of a study's designs, thousands a second: planned once for a study, then asked for any designs of it.
+"""Platform frequencies of a study's designs, thousands a second: planned once for a study, then evaluated for any designs.
 
-Which way a design goes, and whether descriptions are fitted, depends on the study alone: not on how its designs are cut into pieces, nor on
-how many of them are left to compute.
+The method of a design, and whether descriptions are fitted, depend only on the study. They do not depend on the division into pieces,
+nor on the number of remaining designs.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from flexstage.studies.sweeps.numbers import Numbers
 
 _MODES = 6
 _FIT = 4_700
-"""Descriptions that fitting takes, and `_EACH` more for every number: so many more designs must there be that it pays, `_TIMES` over."""
+"""Cost of fitting in descriptions, `_EACH` more for every number; fitting requires `_TIMES` as many further designs."""
 _EACH = 34
 _TIMES = 4
 _BEYOND = 1e-9
-"""How much of a range is added at its ends, so that rounding leads no design out of it."""
+"""Extension of a range at both ends, against rounding."""
 _SURE = (Status.ITERATED, Status.WHOLE)
 
 
 @dataclass(frozen=True, eq=False)
 class Engine:
-    """What the engine answers of a study: platform modes (from 0) by name of the response, none where there is no `plan`.
+    """Responses computed by the engine: platform modes (from 0) by name of the response, none without a `plan`.
 
-    The plan is for `numbers`, or else for the variables themselves. `loaded`: designs may not hold under their dead load.
+    The plan is for `numbers`, or else for the variables themselves. `loaded`: designs may be unstable under their permanent load.
     """
 
     modes: Mapping[str, int]
@@ -47,9 +47,9 @@ class Engine:
     loaded: bool = False
 
     def answers(self, values: Array) -> tuple[Array, Array]:
-        """Frequencies (n, m) [Hz] of the m responses for designs with `values` (n, d) of the variables, and which designs (n,) have them.
+        """Frequencies (n, m) [Hz] of the m responses for designs with `values` (n, d) of the variables, and the valid designs (n,).
 
-        A design without them may have fewer such modes, or move freely: reading it by itself tells.
+        An invalid design may have fewer such modes, or a rigid-body motion: a separate evaluation gives the reason.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> engine_of(neck_study()).answers(np.array([[0.00154]]))[0].round(1).tolist()
@@ -62,7 +62,7 @@ class Engine:
 
     @property
     def provenance(self) -> str:
-        """By which versions of what numbers are computed here: where all are the same, results are the same to the bit.
+        """Versions of the programs: with equal ones, results are equal to the bit.
 
         >>> Engine(Table({})).provenance
         'flexstage ..., numpy ... on ...'
@@ -72,7 +72,7 @@ class Engine:
 
 
 def engine_covers(study: Study) -> bool:
-    """Whether a study that describes its designs in a way of its own does so for complex numbers too, or names the numbers.
+    """Whether a study with its own description of designs supports complex numbers, or names the numbers.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> engine_covers(neck_study())
@@ -83,9 +83,9 @@ def engine_covers(study: Study) -> bool:
 
 
 def engine_of(study: Study) -> Engine:
-    """The engine for a study: its plan, over the variables' ranges where the study has designs enough for that to pay.
+    """Make the engine of a study: its plan, over the variables' ranges if the study has enough designs.
 
-    What it does not cover is left to dense matrices: designs described in a way of the study's own. Raises nothing.
+    Other designs are left to dense matrices: those with a description of the study's own. Raises nothing.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> dict(engine_of(neck_study()).modes)
@@ -113,18 +113,18 @@ def _family(study: Study, numbers: Numbers | None) -> Family:
 
 
 def _ends(study: Study) -> Array:
-    """Least and largest values (2, d) of the variables."""
+    """Smallest and largest values (2, d) of the variables."""
     return np.array([[each.low, each.high] for each in study.variables]).T
 
 
 def _nominal(study: Study) -> Array:
-    """Values (d,) of the design as it stands, or as near to it as the ranges allow."""
+    """Values (d,) of the nominal design, limited to the ranges."""
     low, high = _ends(study)
     return np.clip([each.nominal(study.design) for each in study.variables], low, high)
 
 
 def _ranges(study: Study, numbers: Numbers | None) -> tuple[Array, Array] | None:
-    """Over what the descriptions are to be fitted."""
+    """Ranges of the fitted descriptions."""
     low, high = _ends(study)
     if study.plan.designs < _TIMES * (_FIT + _EACH * (len(low) if numbers is None else len(numbers.addresses))):
         return None

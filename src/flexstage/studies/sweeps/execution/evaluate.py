@@ -1,4 +1,4 @@
-"""Designs of a study computed: a batch at once, failures found one by one."""
+"""Evaluation of a study's designs: in batches, with failures isolated."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from flexstage.studies.sweeps.loaded import unstable_designs
 
 _LONGEST_REASON = 400
 _MOST = 256
-"""Designs read at once: matrices of more no longer fit into a processor's cache."""
+"""Designs evaluated at once: matrices of more do not fit into a processor's cache."""
 
 Reasons = dict[int, str]
-"""Why designs fail, by row."""
+"""Reasons of failed designs, by row."""
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Designs from `start` on: variables (n, d) and responses (n, r) in SI; `failures` gives reasons by row, their responses are NaN.
+    """Designs from `start` on: variables (n, d) and responses (n, r) in SI; `failures` are reasons by row, their responses are NaN.
 
-    `provenance` says by which versions of what: where these differ, so may the last digits.
+    `provenance` contains versions: with different versions the last digits may differ.
     """
 
     start: int
@@ -37,9 +37,9 @@ class Piece:
 
 
 def piece(study: Study, start: int, stop: int, engine: Engine | None = None) -> Piece:
-    """Compute the designs from `start` to before `stop` of a study's plan; `engine` is made here unless it is at hand.
+    """Compute the designs from `start` to before `stop` of a study's plan; `engine` is made here if absent.
 
-    A design that cannot be read, or lacks a value, keeps its place: NaN and the reason.
+    An invalid design, or one without a value, has NaN and the reason.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> found = piece(neck_study(), 0, 2)
@@ -54,7 +54,7 @@ def piece(study: Study, start: int, stop: int, engine: Engine | None = None) -> 
 
 
 def nominal(study: Study) -> Array:
-    """Responses (r,) of the design as it stands. Raises `DesignError` for measures that this stage does not have.
+    """Responses (r,) of the nominal design. Raises `DesignError` for measures that this stage does not have.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> nominal(neck_study()).round(0).tolist()
@@ -62,12 +62,12 @@ def nominal(study: Study) -> Array:
     """
     found = study.evaluate(require_valid(study.design))
     named = zip(study.columns, found, strict=True)
-    require(Finding(f"responses.{name}", value, "Ask for what this stage has") for name, value in named if isinstance(value, str))
+    require(Finding(f"responses.{name}", value, "Use measures of this stage") for name, value in named if isinstance(value, str))
     return np.array([float(np.real(value)) for value in found if not isinstance(value, str)])
 
 
 def _compute(study: Study, values: Array, engine: Engine) -> tuple[Array, Reasons]:
-    """Responses (n, r) and failures. What the engine does not answer for sure is read design by design."""
+    """Responses (n, r) and failures. Designs without a certain result of the engine are evaluated separately."""
     columns = tuple(study.columns)
     others = tuple(name for name in columns if name not in engine.modes)
     result = np.full((len(values), len(columns)), np.nan)
@@ -90,14 +90,14 @@ def _compute(study: Study, values: Array, engine: Engine) -> tuple[Array, Reason
 
 
 def _sound_rows(values: Array, failures: Reasons) -> Array:
-    """Rows of the designs that have not failed."""
+    """Rows of the designs without failures."""
     return np.array([row for row in range(len(values)) if row not in failures], dtype=int)
 
 
 def _bisect(values: Array, width: int, batch: Callable[[Array], Array | str], *, apart: bool = False) -> tuple[Array, Reasons]:
-    """What a batch gives (n, width), and failures; what fails as a batch is halved until culprits stand alone, or taken `apart` at once.
+    """Results of a batch (n, width), and failures; a failed batch is halved until failures are isolated, or divided at once if `apart`.
 
-    Designs that are read (`width` responses) are halved before they are too many: their matrices would fill the memory.
+    Large batches of full evaluations (`width` responses) are halved first, because of the memory of their matrices.
     """
     whole = width == 0 or len(values) <= _MOST
     found = batch(values) if whole else ""
@@ -112,13 +112,13 @@ def _bisect(values: Array, width: int, batch: Callable[[Array], Array | str], *,
 
 
 def _along_paths(study: Study, names: tuple[str, ...]) -> bool:
-    """Whether some are measures along paths: one after another in a batch too, and slowest where there is no equilibrium."""
+    """Whether some are measures along paths: sequential also in a batch, and slowest without an equilibrium."""
     asked = [study.columns[name] for name in names]
     return any(each.kind.along or each.path for each in asked)
 
 
 def _check(study: Study, values: Array) -> Array | str:
-    """Why a description of these designs cannot be read; nothing (n, 0) where it can. One alone is told without its place in a batch."""
+    """Reason why these designs cannot be evaluated; (n, 0) otherwise. A single design has no position in a batch."""
     try:
         require_valid(study.mechanism_for(values if len(values) > 1 else values[0]))
     except DesignError as error:
@@ -127,7 +127,7 @@ def _check(study: Study, values: Array) -> Array | str:
 
 
 def _batch(study: Study, values: Array, names: tuple[str, ...]) -> Array | str:
-    """Responses (n, r) of these designs by name, or why not."""
+    """Responses (n, r) of these designs by name, or the reason of a failure."""
     if not names or not len(values):
         return np.zeros((len(values), len(names)))
     try:

@@ -1,4 +1,4 @@
-"""A study run: all its designs computed and kept, interrupted at any moment and resumed without loss or repetition."""
+"""Run of a study: all its designs computed and stored; resumed after an interruption without loss or repetition."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ from flexstage.studies.sweeps.execution.store import (
 )
 
 PIECE = 256
-"""Designs computed and kept together."""
+"""Designs computed and stored together."""
 LARGE, _MANY = 2048, 64
-"""Designs together where each takes microseconds; so many pieces of the smaller size must a study have for it."""
+"""Designs in a piece if each takes microseconds; smallest number of smaller pieces in a study for this."""
 _COPIES = 4.0
-"""How many times over all numbers of the results are in memory at once, where they are read and looked through."""
+"""Copies of all numbers of the results in memory at the same time, while they are read."""
 
 Progress = Callable[[int, int], None]
-"""Told how many designs are there, and how many there will be."""
+"""Called with the number of computed designs, and of all designs."""
 
 
 @dataclass(frozen=True)
 class Run(CheckedFields):
-    """How a study is run: `workers` processes (absent: one a core), `resume` what is there."""
+    """Options of a run: `workers` processes (absent: one for each core), `resume` from existing results."""
 
     workers: int | None = None
     resume: bool = False
@@ -61,10 +61,10 @@ DEFAULT = Run()
 def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None) -> Results:
     """Compute all designs of a study into the results file at `path`.
 
-    Pieces (see `piece_size`) are written one by one and gathered into the file when the run ends. Results do not depend on
-    the number of workers or on the order of pieces; the same study gives the same file. An interruption keeps what is there. Raises
-    `DesignError` for a file that exists and is not to be resumed, belongs to another study, or is in use; for measures that the
-    design lacks; and for a disk that is full.
+    Pieces (see `piece_size`) are written one by one and combined in the file at the end of the run. Results do not depend on
+    the number of workers or on the order of pieces; equal studies give equal files. An interruption keeps the results so far. Raises
+    `DesignError` for an existing file without `resume`, a file of another study, or a file in use; for measures that the
+    design lacks; and for a full disk.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study
@@ -91,7 +91,7 @@ def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progre
 
 
 def piece_size(study: Study) -> int:
-    """How many designs are computed at once: more where the engine answers all that is asked of many.
+    """Number of designs computed at once: more if the engine computes all responses of many.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> piece_size(neck_study()), piece_size(neck_study(1_000_000))
@@ -102,7 +102,7 @@ def piece_size(study: Study) -> int:
 
 
 def require_memory(study: Study) -> None:
-    """Raise `DesignError` where the results of all designs would not fit into memory when they are read at the end.
+    """Raise `DesignError` if the results of all designs would not fit into memory at the end.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> require_memory(neck_study())
@@ -113,7 +113,7 @@ def require_memory(study: Study) -> None:
         "sweep.designs",
         f"the results of {designs:,} designs in {columns} columns",
         designs * each,
-        lambda there: f"Ask for at most {int(there / each):,} designs, or for fewer responses",
+        lambda there: f"Use at most {int(there / each):,} designs, or fewer responses",
     )
 
 
@@ -123,31 +123,31 @@ def _report_progress(progress: Progress | None, study: Study, count: int) -> Non
 
 
 def _require_ready(target: Path, study: Study, size: int, how: Run) -> None:
-    """Refuse what cannot be begun."""
+    """Refuse a run that cannot start."""
     require(name_findings(study))
     require_memory(study)
     if not target.parent.is_dir():
-        raise refuse(os.fspath(target.parent), "there is no such folder", "Create it, or name another")
+        raise refuse(os.fspath(target.parent), "folder not found", "Create it, or name another")
     there = target.exists() or pending_pieces(target)
     if there and not how.resume:
-        raise refuse(os.fspath(target), "results are there already", "Resume (--resume), or name another file")
+        raise refuse(os.fspath(target), "file exists already", "Resume (--resume), or name another file")
     if target.exists():
         require(differences(target, study, size))
     if how.workers is not None and how.workers < 1:
-        raise refuse("workers", f"found {how.workers}", "Give 1 or more")
+        raise refuse("workers", f"must be at least 1 (got {how.workers})", "Use 1 or more")
     require_room(target, study)
 
 
 def _pieces(study: Study, ranges: Iterable[tuple[int, int]], folder: Path, workers: int) -> Iterator[int]:
-    """Compute all ranges of designs into the folder, in processes of one engine; yields the first design of each once it is there."""
+    """Compute all ranges of designs into the folder, in processes of one engine; yields the first design of each completed range."""
     try:
         for (start, _), _ in results(partial(_keep_piece, study, engine_of(study), folder), ranges, workers) if ranges else ():
             yield start
     except CallError as failed:
         start, stop = failed.arguments
-        what, advice = ("processes died over them again and again", "Free memory and resume")
+        what, advice = ("processes crashed repeatedly", "Free memory and resume")
         if isinstance(failed.error, DesignError):
-            what, advice = " ".join(str(failed.error).split()), "Mend it and resume"
+            what, advice = " ".join(str(failed.error).split()), "Correct it and resume"
         elif failed.error is not None:
             raise failed.error from None
         raise refuse(f"designs {start} to {stop - 1}", what, advice) from None
@@ -159,7 +159,7 @@ def _keep_piece(study: Study, engine: Engine, folder: Path, _line: Line, start: 
 
 @contextmanager
 def _locked(folder: Path) -> Generator[None]:
-    """Hold the folder of pieces for this process; the system lets go of it however the process ends. At the end it goes."""
+    """Lock the folder of pieces for this process; the system releases it at the end of the process. Then the folder is removed."""
     lock = FileLock(folder / ".lock", blocking=False)
     try:
         folder.mkdir(exist_ok=True)
@@ -176,5 +176,5 @@ def _locked(folder: Path) -> Generator[None]:
         finally:
             remove_leftovers(folder)
             Path(lock.lock_file).unlink(missing_ok=True)
-            with contextlib.suppress(OSError):  # pieces that could not be gathered stay
+            with contextlib.suppress(OSError):  # pieces that could not be combined remain
                 folder.rmdir()

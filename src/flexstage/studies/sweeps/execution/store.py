@@ -1,8 +1,8 @@
-"""Results of studies on disk: pieces written one by one, gathered into one HDF5 file that describes itself.
+"""Results of studies on disk: pieces written one by one, combined in one self-describing HDF5 file.
 
-`results.h5` holds what has been gathered; `results.h5.pieces/` the pieces since. Whatever is renamed is whole, so that the reader, which
-opens both, finds every computed design exactly once at any moment. A file with the same designs has the same bytes, no matter how often
-the run was interrupted.
+`results.h5` contains the combined pieces; `results.h5.pieces/` the later ones. Only complete files are renamed, so that the reader of
+both finds every computed design exactly once at any time. Files with the same designs have the same bytes, regardless of
+interruptions.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ FORMAT = "flexstage results 1"
 _ATTEMPTS = 20
 _PIECES = ".pieces"
 _FRAME, _ENTRY = 100_000, 64
-"""What a results file takes at most besides its numbers and reasons [B]: its frame, the entry of a failure."""
+"""Size of a results file without numbers and reasons [B]: its frame, the entry of a failure."""
 
 _ABOUT = (
-    "Designs of a study, one a row of variables and responses, in SI by their attributes names, units and of (what they are; variables in "
-    "1 may be factors on what the design states). NaN: not computed yet (computed says which pieces are, of piece rows each), or "
-    "failed (1 in failed, reasons in failures). study is the study's file, facts what the numbers depend on, made what computed them. "
+    "Designs of a study, one in each row of variables and responses. Units are SI; attributes: names, units, and of (address or measure). "
+    "Variables in 1 may be factors on the design's values. NaN: not computed (mask computed, pieces of piece rows) or "
+    "failed (mask failed, reasons in failures). study: the study's file; facts: inputs of the numbers; made: versions. "
     "In Python: flexstage.studies.sweeps.execution.store.read_results, then to_xarray() or to_pandas()."
 )
 
 
 @dataclass(frozen=True)
 class Failure:
-    """A design, or copy, without values: its number, and why."""
+    """A design, or sample, without values: its number, and the reason."""
 
     design: int
     reason: str
@@ -52,8 +52,8 @@ class Failure:
 class Results:
     """Designs computed so far: `designs` (n,) their numbers, `variables` (n, d), `responses` (n, r) in SI, failures by design number.
 
-    `names` and `units` are those of the variables, then of the responses; `planned` designs in all; `facts` what they depend on; `text` the
-    study's file; `made` by which versions of what they were computed, one text each.
+    `names` and `units` are those of the variables, then of the responses. `planned` is the number of designs, `facts` are their inputs.
+    `text` is the study's file; `made` are the versions of the programs, one text each.
     """
 
     designs: Array
@@ -69,7 +69,7 @@ class Results:
 
     @property
     def complete(self) -> bool:
-        """Whether every planned design is there."""
+        """Whether every planned design is computed."""
         return len(self.designs) == self.planned
 
     @property
@@ -82,7 +82,7 @@ class Results:
         for names, values in zip(self.names, (self.variables, self.responses), strict=True):
             if name in names:
                 return values[:, names.index(name)]
-        raise refuse(name, "the results have no column of this name", f"They have {', '.join(sum(self.names, ()))}")
+        raise refuse(name, "unknown column", f"They have {', '.join(sum(self.names, ()))}")
 
     def to_xarray(self) -> Any:
         """The results as an xarray dataset over the design number, units in the attributes (extra `tables`)."""
@@ -100,7 +100,7 @@ class Results:
 
 
 def folder_of(path: Path) -> Path:
-    """Where the pieces of a results file wait to be gathered.
+    """The folder of pieces of a results file.
 
     >>> folder_of(Path("a/results.h5")).as_posix()
     'a/results.h5.pieces'
@@ -111,7 +111,7 @@ def folder_of(path: Path) -> Path:
 def write_piece(folder: Path, found: Piece) -> Path:
     """Write a piece into the folder: `<start>.npz`, the designs from `start` on.
 
-    Raises `DesignError` where the disk refuses.
+    Raises `DesignError` if the disk refuses.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as place:
@@ -142,11 +142,11 @@ def read_piece(path: Path) -> Piece:
     except FileNotFoundError:
         raise
     except (OSError, ValueError, KeyError, EOFError, BadZipFile):
-        raise refuse(os.fspath(path), "it is no piece of results, or damaged", "Take it away and resume: it is computed again") from None
+        raise refuse(os.fspath(path), "not a piece of results, or damaged", "Remove it and resume: it is computed again") from None
 
 
 def pending_pieces(path: Path) -> dict[int, Path]:
-    """Pieces that are not gathered yet, by their first design.
+    """Pieces not yet combined, by their first design.
 
     >>> pending_pieces(Path("nowhere/results.h5"))
     {}
@@ -167,9 +167,9 @@ def columns_of(study: Study) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], t
 
 
 def open_results(path: Path) -> Hdf:
-    """The results file, read by the process that reads all HDF5 files; nobody writes to one that is there, so that no lock is needed.
+    """The results file, read by the process for all HDF5 files; existing files are never written, so that no lock is needed.
 
-    Raises `FileNotFoundError` for a file that is not there, `DesignError` for one that is none.
+    Raises `FileNotFoundError` for a missing file, `DesignError` for an invalid one.
 
     >>> open_results(Path("nowhere/results.h5"))
     Traceback (most recent call last):
@@ -179,14 +179,14 @@ def open_results(path: Path) -> Hdf:
     path.stat()
     file = hdf(path)
     if file.attributes.get("format") != FORMAT:
-        raise refuse(os.fspath(path), "it holds no results of a study", f'Name another file: its format is to be "{FORMAT}"')
+        raise refuse(os.fspath(path), "it contains no results of a study", f'Use a file of the format "{FORMAT}"')
     require(_damage_findings(file))
     return file
 
 
 def _damage_findings(file: Hdf) -> Iterator[Finding]:
-    """What results have and this file has not, or not as it should."""
-    advice = "It was changed or is damaged: take it away, or name another file"
+    """Missing or invalid parts of a results file."""
+    advice = "It is damaged: remove it, or name another file"
     attributes = file.attributes
     wrong = [key for key in ("planned", "piece") if not _is_count(attributes.get(key))] + ["study"] * (
         not isinstance(attributes.get("study"), str)
@@ -199,14 +199,14 @@ def _damage_findings(file: Hdf) -> Iterator[Finding]:
     for name, shape in {**shapes, "computed": (-(-planned // size),), "failed": (planned,)}.items():
         found = file.arrays.get(name)
         if found is None or found.shape != shape or found.kind not in ("f", "u", "i", "b"):
-            yield Finding(f"{file.path}: {name}", f"shape {found.shape if found else 'none'} where {shape} is expected", advice)
+            yield Finding(f"{file.path}: {name}", f"wrong shape (got {found.shape if found else 'none'}, expected {shape})", advice)
     if "failures" not in file.arrays or dict(file.arrays["failures"].columns) != {"design": "i", "reason": "t"}:
-        yield Finding(f"{file.path}: failures", "it has no designs and reasons", advice)
+        yield Finding(f"{file.path}: failures", "designs and reasons missing", advice)
     if "facts" not in file.groups:
-        yield Finding(f"{file.path}: facts", "they are not there", advice)
+        yield Finding(f"{file.path}: facts", "missing", advice)
     for name in ("variables", "responses"):
         if len(_labels(file, name, "units")) != shapes[name][1]:
-            yield Finding(f"{file.path}: {name}", "it has not as many units as names", advice)
+            yield Finding(f"{file.path}: {name}", "number of units differs from names", advice)
 
 
 def _is_count(value: Attribute | None) -> bool:
@@ -215,29 +215,29 @@ def _is_count(value: Attribute | None) -> bool:
 
 @check_arguments
 def read_results(path: str | os.PathLike[str]) -> Results:
-    """Read results, complete or not, by their file or the folder of pieces beside it. Raises `DesignError` for files that are none.
+    """Read results, complete or not, from their file or the folder of pieces next to it. Raises `DesignError` for invalid files.
 
     >>> read_results("nowhere/results.h5")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/results.h5: there is no such file. Check the path.
+    flexstage.base.finding.DesignError: nowhere/results.h5: file not found. Check the path.
     """
     where = os.fspath(path)
     target = Path(where.rstrip("/").removesuffix(_PIECES))
     if not target.exists():
-        raise refuse(where, "there is no such file", "Check the path")
-    for _ in range(_ATTEMPTS):  # a piece that is gathered while we look is gone from the folder, and in the file the next time
+        raise refuse(where, "file not found", "Check the path")
+    for _ in range(_ATTEMPTS):  # a piece combined meanwhile is in the file at the next attempt
         pieces = list(pending_pieces(target).values())
         try:
             return _read(open_results(target), pieces)
         except FileNotFoundError:
             continue
-    raise refuse(where, "its pieces are gathered faster than they can be read", "Try again")
+    raise refuse(where, "its pieces change during reading", "Try again")
 
 
 @dataclass(frozen=True, eq=False)
 class _Stored:
-    """All planned designs, NaN where not computed; which pieces (k,) of `size` designs are `computed`; failures by design number."""
+    """All planned designs, NaN if not computed; mask (k,) of `computed` pieces of `size` designs; failures by design number."""
 
     size: int
     variables: Array
@@ -247,7 +247,7 @@ class _Stored:
     made: set[str]
 
     def add(self, pieces: Iterable[Piece]) -> None:
-        """Add the pieces that are not there yet."""
+        """Add the missing pieces."""
         for each in pieces:
             if not self.computed[each.start // self.size]:
                 rows = slice(each.start, each.start + len(each.variables))
@@ -292,9 +292,9 @@ def _read(file: Hdf, pieces: Iterable[Path]) -> Results:
 
 
 def gather(path: Path, study: Study, size: int) -> Array:
-    """Write the results file again with all pieces of `size` designs there are, and remove them; which pieces (k,) it holds now.
+    """Write the results file with all pieces of `size` designs, and remove them; returns the mask (k,) of its pieces.
 
-    Raises `DesignError` where the disk refuses; then file and pieces are as they were.
+    Raises `DesignError` if the disk refuses; then file and pieces are unchanged.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study
@@ -318,7 +318,7 @@ def gather(path: Path, study: Study, size: int) -> Array:
 
 
 def _write(file: Any, stored: _Stored, study: Study) -> None:
-    """The whole file: numbers with names and units, and what the study was."""
+    """The complete file: numbers with names and units, and the study."""
     import h5py
 
     names, units = columns_of(study)
@@ -343,7 +343,7 @@ def _write(file: Any, stored: _Stored, study: Study) -> None:
 
 
 def require_room(path: Path, study: Study) -> None:
-    """Raise `DesignError` where the disk has no room for a study's results: the file, and its pieces until they are gathered.
+    """Raise `DesignError` if the disk has no space for a study's results: the file, and its pieces until they are combined.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> require_room(Path("results.h5").absolute(), neck_study())
@@ -352,12 +352,12 @@ def require_room(path: Path, study: Study) -> None:
     there = path.stat().st_size if path.exists() else 0
     missing, free = 2 * whole - min(there, whole), shutil.disk_usage(path.parent).free
     if free < missing:
-        what = f"the results need {missing / 1e6:.4g} MB more while they are gathered, {free / 1e6:.4g} MB are free"
+        what = f"the results need {missing / 1e6:.4g} MB more while they are combined, {free / 1e6:.4g} MB are free"
         raise refuse(os.fspath(path.parent), what, "Free space and resume (--resume), or name a file elsewhere")
 
 
 def file_size(study: Study) -> int:
-    """Size of a study's results file [B] at most, reasons of failures aside.
+    """Largest size of a study's results file [B], without reasons of failures.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> file_size(neck_study(2_000_000)) - file_size(neck_study(1_000_000))
@@ -380,7 +380,7 @@ def _labels(file: Hdf, name: str, label: str) -> tuple[str, ...]:
 
 
 def differences(path: Path, study: Study, size: int) -> Iterator[Finding]:
-    """How the study that a results file belongs to differs from this one, in pieces of `size` designs.
+    """Differences between the study of a results file and this one, in pieces of `size` designs.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study
@@ -396,4 +396,4 @@ def differences(path: Path, study: Study, size: int) -> Iterator[Finding]:
     for key in dict.fromkeys((*before, *now)):
         if before.get(key) != now.get(key):
             what = f"{key} was {before.get(key, 'absent')} and is {now.get(key, 'absent')}"
-            yield Finding(os.fspath(path), what, "Resume with the study as it was, or name another file")
+            yield Finding(os.fspath(path), what, "Resume with the original study, or name another file")

@@ -22,14 +22,14 @@ _MOST_LINES = 400
 
 @dataclass(frozen=True)
 class Display:
-    """How values of a variable or a response are shown: in percent of what the design states, else in a unit."""
+    """Display form of a variable or a response: in percent of the design's value, else in a unit."""
 
     unit: str
     factor: float
     offset: float = 0.0
 
     def of(self, values: Any) -> Any:
-        """SI values as they are shown."""
+        """SI values in display units."""
         return (values - self.offset) * self.factor
 
     def label(self, name: str) -> str:
@@ -38,7 +38,7 @@ class Display:
 
 
 def display(of: Variable | Measure, values: Array) -> Display:
-    """How SI values of a variable or a response are shown: variables in the units of design files.
+    """Display form of SI values of a variable or a response: variables in the units of design files.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> display(Variable("t", ("parts.neck.thickness",), LENGTH, 1e-3, 2e-3), np.array([1e-3])).unit
@@ -54,7 +54,7 @@ def display(of: Variable | Measure, values: Array) -> Display:
 
 
 def effects_figure(study: Study, found: Effects) -> Any:
-    """Mean of each response over each variable, one panel each; all panels of a response have one scale, so that steep means strong."""
+    """Mean of each response over each variable, one panel each; all panels of a response have one scale, to compare slopes."""
     rows, columns = len(found.responses), len(found.variables)
     with style_context():
         figure = canvas(FULL, 0.55 + 1.25 * rows)
@@ -81,9 +81,9 @@ def _scale(values: Array) -> tuple[float, float]:
 
 
 def designs_figure(study: Study, results: Results) -> Any:
-    """Designs as lines over parallel axes, variables then responses, each from its least to its largest; coloured by the first response.
+    """Designs as lines over parallel axes, variables then responses, each from minimum to maximum; coloured by the first response.
 
-    Those that do not keep the study's limits are grey.
+    Infeasible ones are grey.
     """
     sound = np.flatnonzero(np.all(np.isfinite(results.responses), axis=1))
     chosen = sound[np.linspace(0, len(sound) - 1, min(len(sound), _MOST_LINES)).astype(int)] if len(sound) else sound

@@ -1,4 +1,4 @@
-"""Reports of studies of many designs: one HTML file each that stands alone."""
+"""Reports of studies of many designs: self-contained HTML files."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from flexstage.studies.sweeps.show.figures import designs_figure, effects_figure
 from flexstage.studies.sweeps.show.interaction_figures import strongest_figure
 from flexstage.studies.sweeps.show.tables import failure_table, limit_notes, pair_table, share_table, variable_table
 
-_STEEP = "All panels of a row have one scale: the steeper, the stronger. Means over designs, the other variables anywhere in their ranges."
-_STRONGEST = "The strongest pairs: where lines are not parallel, one variable decides what the other does. Above: share of variance."
+_STEEP = "All panels of a row have one scale. Means over designs, the other variables vary in their ranges."
+_STRONGEST = "The strongest pairs: lines that are not parallel show interaction. Above: share of variance."
 
 
 def sweep_report(sweep: Sweep) -> str:
-    """A sweep as a page of HTML: distributions first, what was varied, main effects, shares of variance, designs as lines."""
+    """A sweep as an HTML page: distributions first, variables, main effects, shares of variance, designs as lines."""
     study, results, found = sweep.study, sweep.results, sweep.effects
     effects = designs = None
     if found.used:
@@ -37,7 +37,7 @@ def sweep_report(sweep: Sweep) -> str:
         stage_section(data),
         section("Responses", [result_table(sweep.responses, notes=limit_notes(study, results)), designs]),
         caveat_section(study.design, loaded_findings(study)),
-        section("What was varied", [variable_table(study, results)]),
+        section("Variables", [variable_table(study, results)]),
         section("Effects", [share_table(found), effects]),
         section("Interactions", _interactions(study, found)),
         section("Designs without values", [failure_table(results)] if results.failures else []),
@@ -52,19 +52,19 @@ def study_head(study: Study, kind: str, said: Headline) -> Head:
 
 
 def _headline(study: Study, results: Results) -> Headline:
-    """How many designs there are, and how many keep all limits."""
+    """Number of designs, and of feasible ones."""
     count, failed = len(results.designs), len(results.failures)
     said = f"{count} designs of {len(study.variables)} variables" + (f", {failed} of them without values" if failed else "")
     if not study.limits or not count:
         return Headline(f"{said}.")
     kept = int(np.sum(study.feasible(results.responses)))
-    return Headline(f"{said}; {kept} keep all limits.", kept > 0)
+    return Headline(f"{said}; {kept} meet all limits.", kept > 0)
 
 
 def _parallel(study: Study, found: Effects) -> str:
-    """What the designs over parallel axes show."""
-    text = f"Each line is a design; colour by {found.responses[0]}, from dark where it is least to yellow where it is largest"
-    return f"{text}; grey ones do not keep the limits." if study.limits else f"{text}."
+    """Caption of the designs over parallel axes."""
+    text = f"Each line is a design; colour by {found.responses[0]}, from dark (minimum) to yellow (maximum)"
+    return f"{text}; grey: limits not met." if study.limits else f"{text}."
 
 
 def _interactions(study: Study, found: Effects) -> list[Block]:

@@ -21,7 +21,7 @@ _NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")
 
 
 def study_tables(sweep: Sweep) -> list[Table | None]:
-    """What was varied, how the responses are distributed, what does it, and designs that failed."""
+    """Variables, distributions of the responses, variance contributions, and failed designs."""
     study, results, found = sweep.study, sweep.results, sweep.effects
     tables: list[Table | None] = [
         variable_table(study, results),
@@ -33,7 +33,7 @@ def study_tables(sweep: Sweep) -> list[Table | None]:
 
 
 def variable_table(study: Study, results: Results) -> Table:
-    """Variables with their ranges, and how many designs there are."""
+    """Variables with their ranges, and the number of designs."""
     rows = [
         (
             Cell(each.name, Mark.STRONG),
@@ -49,7 +49,7 @@ def variable_table(study: Study, results: Results) -> Table:
 
 
 def limit_notes(study: Study, results: Results) -> list[str]:
-    """How many designs keep all limits; where none does, which are kept by none, or contradict one another."""
+    """Number of feasible designs; without any, the limits that no design meets, or that contradict one another."""
     kept = study.feasible(results.responses)
     if not study.limits or not len(kept):
         return []
@@ -58,17 +58,17 @@ def limit_notes(study: Study, results: Results) -> list[str]:
     alone = {f"{each.key} {each.text}": study.feasible(results.responses, (each,)) for each in study.limits}
     never = [text for text, met in alone.items() if not np.any(met)]
     if never:
-        return [f"No design meets {' nor '.join(never)}: widen the ranges, or ask for less."]
+        return [f"No design meets {' nor '.join(never)}: widen the ranges, or reduce the requirements."]
     pairs = [pair for pair in combinations(alone, 2) if not np.any(alone[pair[0]] & alone[pair[1]])]
     told = "; ".join(f"{first} and {second}" for first, second in pairs)
     return [f"No design meets all limits at once{f': no design meets both {told}' if told else ''}."]
 
 
 def share_table(found: Effects) -> Table:
-    """First-order and, where known, total indices."""
+    """First-order and, if known, total indices."""
     columns: list[Column | str] = ["variable"]
     for name in found.responses:
-        columns += [Column(name, "alone")] + ([] if found.total is None else [Column(name, "in all")])
+        columns += [Column(name, "first order")] + ([] if found.total is None else [Column(name, "total")])
     rows = []
     for row, variable in enumerate(found.variables):
         cells: list[Cell | str] = [Cell(variable, Mark.STRONG)]
@@ -76,19 +76,21 @@ def share_table(found: Effects) -> Table:
             cells.append(share_cell(float(found.first[row, column])))
             cells += [] if found.total is None else [share_cell(float(found.total[row, column]))]
         rows.append(cells)
-    note = "Alone: share of the response's variance by the variable alone"
-    note += "; in all: with its interactions." if found.total is not None else "; what is left is interaction."
-    return make_table("What does it", columns, rows, notes=[note, f"By {found.method}, {found.used} designs.", *_error_note(found, 0)])
+    note = "First order: share of the response's variance by the variable alone"
+    note += "; total: with its interactions." if found.total is not None else "; the residual is interaction."
+    return make_table(
+        "Variance contributions", columns, rows, notes=[note, f"By {found.method}, {found.used} designs.", *_error_note(found, 0)]
+    )
 
 
 def _error_note(found: Effects, order: int) -> list[str]:
-    """How well indices are known."""
+    """Standard errors of indices."""
     told = [f"{name} {100.0 * error:.1g} %" for name, error in zip(found.responses, found.errors[order], strict=True) if np.isfinite(error)]
     return [f"Standard errors up to: {', '.join(told)}."] if told else []
 
 
 def pair_table(found: Effects) -> Table:
-    """Pairs of variables that explain a hundredth of some response's variance or more beyond each alone, the strongest first."""
+    """Pairs of variables that explain at least a hundredth of a response's variance beyond each alone, the strongest first."""
     known = np.nan_to_num(found.pairs).max(axis=2)
     ranked = sorted(combinations(range(len(found.variables)), 2), key=lambda pair: -known[pair])
     shown_pairs = [pair for pair in ranked if known[pair] >= _LEAST][:_MOST_PAIRS]
@@ -100,7 +102,7 @@ def pair_table(found: Effects) -> Table:
         for first, second in shown_pairs
     ]
     less = "No pair" if not rows else "No other pair"
-    notes = ["Share of variance that only both together explain.", f"{less} explains 1 % of anything." if len(rows) < _MOST_PAIRS else ""]
+    notes = ["Share of variance explained only by both together.", f"{less} explains 1 % of a response." if len(rows) < _MOST_PAIRS else ""]
     notes += _error_note(found, 1)
     return make_table(
         "Interactions", ["variables", *(Column(name) for name in found.responses)], rows, notes=[note for note in notes if note]
@@ -108,7 +110,7 @@ def pair_table(found: Effects) -> Table:
 
 
 def share_cell(value: float, form: str = "{:.1f} %") -> Cell:
-    """A share of a variance in percent, with a bar as long.
+    """A share of a variance in percent, with a bar of that length.
 
     >>> share_cell(0.25).text, share_cell(float("nan")).text
     ('25.0 %', '-')
@@ -127,6 +129,6 @@ def failure_table(results: Results) -> Table:
     ranked = sorted(reasons.values(), key=lambda designs: -len(designs))
     rows = [(number(len(designs)), str(designs[0]), results.failures[designs[0]]) for designs in ranked[:_MOST_FAILURES]]
     rest = len(ranked) - _MOST_FAILURES
-    notes = ["Reasons that differ in numbers only are told once, as the first design has them; the results file holds all."]
+    notes = ["Reasons that differ only in numbers are listed once; the results file contains all."]
     notes += [f"{rest} further reasons are in the results file."] if rest > 0 else []
     return make_table("Designs without values", [Column("designs"), Column("first"), "reason"], rows, notes=notes)

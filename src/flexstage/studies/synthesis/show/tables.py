@@ -47,19 +47,13 @@ def _answer_table(found: Answers) -> Table:
         counts = [("failed", str(len(found.failed))), ("impossible", str(len(found.impossible)))]
         return make_table(f'No stage keeps the specification "{spec.name}"', ["pairs", Column("number")], counts)
     rows = [(str(number), *_answer_cells(each)) for number, each in enumerate(found.answers, 1)]
-    columns = [
-        "",
-        "architecture",
-        "actuator",
-        *map(Column, (f"{key}, {way}d", "size", "efficiency")),
-        "active requirements",
-        "warnings",
-        "verified by",
-    ]
+    numbers = map(Column, (f"{key}, {way}d", "elastic bodies", "size", "efficiency"))
+    columns = ["", "architecture", "actuator", *numbers, "active requirements", "warnings"]
     notes = [
         "Efficiency: stroke energy that the first frequency needs for the payload alone, over that of the actuators; at most 100 %.",
         "Warnings: number of those that flexstage check prints.",
-        "Bodies are rigid and displacements small in the search. Check answers with flexstage check, verify and stroke.",
+        "Elastic bodies: the required frequency with the flexibility of bodies, estimated from their outlines.",
+        "Displacements are small in the search. Check answers with flexstage verify and stroke.",
     ]
     return make_table(f'Stages for "{spec.name}"', columns, rows, notes=notes)
 
@@ -67,17 +61,10 @@ def _answer_table(found: Answers) -> Table:
 def _answer_cells(answer: Answer) -> tuple[str | Cell, ...]:
     size = " x ".join(f"{1e3 * answer.values[f'envelope.{axis}']:.0f}" for axis in "xyz")
     used = "-" if answer.efficiency is None else f"{100.0 * answer.efficiency:.0f} %"
-    goal = format_value(answer.goal, answer.unit, _DIGITS)
-    return (
-        Cell(answer.architecture, Mark.STRONG),
-        answer.actuator,
-        goal,
-        f"{size} mm",
-        used,
-        ", ".join(answer.active),
-        str(len(answer.warnings)),
-        answer.status,
-    )
+    elastic = next((value for key, value in answer.elastic.items() if key in ("frequency.1", "frequency.unwanted")), None)
+    goals = (format_value(answer.goal, answer.unit, _DIGITS), "-" if elastic is None else format_value(elastic, "Hz", _DIGITS))
+    active, warnings = ", ".join(answer.active), str(len(answer.warnings))
+    return Cell(answer.architecture, Mark.STRONG), answer.actuator, *goals, f"{size} mm", used, active, warnings
 
 
 def _violation(pair: FailedPair) -> str:

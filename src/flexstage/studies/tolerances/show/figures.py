@@ -1,4 +1,4 @@
-"""Distributions of responses over the copies of a tolerance study, with their limits."""
+"""Distributions of responses over the samples of a tolerance study, with their limits."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FEWEST = 12
 
 
 def distributions_figure(found: Toleranced) -> Any:
-    """A histogram of each response, the design as drawn and the limits on it; what misses a limit is red."""
+    """A histogram of each response with the nominal design and its limits; violations are red."""
     names = list(found.study.measures)
     rows = -(-len(names) // _ACROSS)
     with style_context():
@@ -73,7 +73,7 @@ def _misses(line: Requirement, value: float) -> bool:
 
 
 def _limit(ax: Any, limit: float, edges: Array) -> None:
-    """A limit that is near enough to be seen; else an arrow to where it is."""
+    """A limit, or an arrow towards a distant one."""
     low, high = edges[0], edges[-1]
     room = 0.6 * (high - low)
     if low - room <= limit <= high + room:

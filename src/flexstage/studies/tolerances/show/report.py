@@ -1,4 +1,4 @@
-"""Reports of tolerance studies: one HTML file each that stands alone."""
+"""Reports of tolerance studies: self-contained HTML files."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from flexstage.studies.tolerances.run import Toleranced
 from flexstage.studies.tolerances.show.figures import distributions_figure
 from flexstage.studies.tolerances.show.tables import allowance_table, crosstalk_table, scatter_table, share_table, spread_table, yield_table
 
-_LIMITS = "Copies by value; black: the design as drawn; red: the limits, and copies beyond them."
+_LIMITS = "Samples by value; black: the nominal design; red: the limits, and samples beyond them."
 
 
 def tolerance_report(found: Toleranced) -> str:
-    """A tolerance study as a page of HTML: yields first, what scatters, distributions, contributions, allowances, crosstalk."""
+    """A tolerance study as an HTML page: yields first, scatter, distributions, contributions, allowable tolerances, crosstalk."""
     study, said = found.study, found.summary
     drawn = Picture(to_svg(distributions_figure(found), "distributions", "histograms of the responses"), _LIMITS)
     data = stage_data(study.design)
@@ -27,21 +27,21 @@ def tolerance_report(found: Toleranced) -> str:
         stage_section(data),
         section("Yield", [yield_table(found)]),
         caveat_section(study.design, loaded_findings(study)),
-        section("What scatters", [scatter_table(found)]),
+        section("Scatter", [scatter_table(found)]),
         section("Responses", [spread_table(found), drawn if study.measures else None]),
-        section("What does it", [share_table(found)]),
-        section("What is allowed", [allowance_table(found)] if said.lines else []),
+        section("Variance contributions", [share_table(found)]),
+        section("Allowable tolerances", [allowance_table(found)] if said.lines else []),
         section("Crosstalk", [crosstalk_table(found, each) for each in said.crosstalk]),
-        section("Copies without values", [failure_table(found.results)] if found.results.failures else []),
+        section("Failed samples", [failure_table(found.results)] if found.results.failures else []),
     ]
     return page(study_head(study, "Tolerances", _headline(found)), sections, {"stage": data})
 
 
 def _headline(found: Toleranced) -> Headline:
-    """The yield of all lines together, and the line that the fewest copies keep."""
+    """The total yield, and the requirement with the lowest yield."""
     kept = found.summary.together
     if kept is None:
-        return Headline(f"{found.summary.copies} copies; no line says what a good one is.")
-    said = f"{number(100.0 * kept.share, 4)} % of {kept.copies} copies keep every line"
+        return Headline(f"{found.summary.copies} samples, without a specification.")
+    said = f"{number(100.0 * kept.share, 4)} % of {kept.copies} samples meet all requirements"
     worst = min(found.summary.lines, key=lambda line: line.kept.share)
-    return Headline(f"{said}; the fewest, {number(100.0 * worst.kept.share, 4)} %, keep {worst.column}.", kept.kept == kept.copies)
+    return Headline(f"{said}; lowest yield {number(100.0 * worst.kept.share, 4)} %, for {worst.column}.", kept.kept == kept.copies)

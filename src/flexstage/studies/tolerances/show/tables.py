@@ -19,14 +19,14 @@ from flexstage.studies.tolerances.summary import Crosstalk
 _FAR = 10.0
 _FINE = 1e3
 _COLUMNS = (
-    "alone: the others as stated; equal shares: all at once, each with the same share of the room; all alike: all at once, in the "
-    "proportions stated."
+    "alone: the others unchanged; equal shares: all at once, each with the same share of the margin; common factor: all at once, in "
+    "the specified proportions."
 )
-_NO_YIELD = "There is no yield: neither the design's [requirements] nor the study's [limits] state what a good stage is."
+_NO_YIELD = "No yield: neither the design's [requirements] nor the study's [limits] define a specification."
 
 
 def tolerance_tables(found: Toleranced) -> list[Table | None]:
-    """What scatters, what the specification says of it, how responses are distributed, what does it, what is allowed, crosstalk."""
+    """Scatter, yield, distributions of responses, variance contributions, allowable tolerances, crosstalk."""
     tables: list[Table | None] = [scatter_table(found), yield_table(found), spread_table(found), share_table(found)]
     if found.summary.lines:
         tables.append(allowance_table(found))
@@ -35,16 +35,16 @@ def tolerance_tables(found: Toleranced) -> list[Table | None]:
 
 
 def scatter_table(found: Toleranced) -> Table:
-    """What scatters, how far, and in how many numbers."""
+    """Deviations, and the numbers they apply to."""
     rows = [
         (Cell(each.name, Mark.STRONG), ", ".join(each.source), distribution_text(each, each.distribution), _reach_text(each))
         for each in found.study.scatters
     ]
     plan = found.study.plan
-    copies = f"{found.summary.copies} copies of {found.study.design.name}, {plan.sampling.value}, seed {plan.seed}"
+    copies = f"{found.summary.copies} samples of {found.study.design.name}, {plan.sampling.value}, seed {plan.seed}"
     alone = getattr(plan, "alone", 0)
-    notes = [f"{copies}." + (f" {alone} more for each line, which then scatters alone." if alone else "")]
-    return make_table("What scatters", ["", "number", "deviation", "in"], rows, notes=notes)
+    notes = [f"{copies}." + (f" {alone} more for each entry alone." if alone else "")]
+    return make_table("Scatter", ["", "number", "deviation", "in"], rows, notes=notes)
 
 
 def _reach_text(scatter: Scatter) -> str:
@@ -56,7 +56,7 @@ def _reach_text(scatter: Scatter) -> str:
 
 
 def distribution_text(scatter: Scatter, distribution: Distribution) -> str:
-    """A distribution in words: `5 um (sigma), within 10 um`.
+    """A distribution as text: `5 um (sigma), within 10 um`.
 
     >>> from flexstage.studies.tolerances.example import leaf_study
     >>> [distribution_text(each, each.distribution) for each in leaf_study().scatters]
@@ -77,13 +77,13 @@ def _size(scatter: Scatter, value: float) -> str:
 
 
 def yield_table(found: Toleranced) -> Table | None:
-    """Each line of the specification, its nominal value and its yield; or that there is none."""
+    """Each requirement, its nominal value and its yield; or the absence of a specification."""
     together, failed = found.summary.together, found.summary.failed
     if together is None:
         return make_table("Yield", [""], [(_NO_YIELD,)])
     interval = f"95 % interval {_percent(together.low)} to {_percent(together.high)} %"
-    notes = [f"All together: {_percent(together.share)} % ({interval})."]
-    notes += [f"{failed} of {found.summary.copies} copies have no values and count as missing every line."] if failed else []
+    notes = [f"All requirements: {_percent(together.share)} % ({interval})."]
+    notes += [f"{failed} of {found.summary.copies} samples failed and count as violations."] if failed else []
     return result_table(found.summary.lines, notes=notes)
 
 
@@ -108,13 +108,13 @@ def spread_table(found: Toleranced) -> Table:
         if not spread.trusted[column]:
             cells[-1] = "-"
         rows.append((Cell(name, Mark.STRONG), "" if form.unit == "1" else form.unit, *cells))
-    heads = ["as drawn", "mean", "deviation", "1 %", "5 %", "median", "95 %", "99 %", "linear"]
-    note = "linear: the deviation by exact derivatives, sqrt(sum (dy/dx s)^2); - where several equal things compete, or it bends."
+    heads = ["nominal", "mean", "deviation", "1 %", "5 %", "median", "95 %", "99 %", "linear"]
+    note = "linear: the deviation by exact derivatives, sqrt(sum (dy/dx s)^2); - for a nonlinear response, or several equal values."
     return make_table("Responses", ["response", "unit", *(Column(head) for head in heads)], rows, notes=[note])
 
 
 def share_table(found: Toleranced) -> Table:
-    """Which scatter each response's variance is from."""
+    """Variance contributions of the entries to each response."""
     spread, rows, sampled = found.summary.spread, [], False
     for column, name in enumerate(found.study.measures):
         trusted = bool(spread.trusted[column])
@@ -122,12 +122,14 @@ def share_table(found: Toleranced) -> Table:
         shares = (spread.by_slope if trusted else spread.by_sample)[:, column]
         rows.append((Cell(name, Mark.STRONG), *(share_cell(float(value), "{:.1f}" if trusted else "~{:.1f}") for value in shares)))
     heads: list[Column | str] = ["response", *(Column(each.name, "%") for each in found.study.scatters)]
-    about = "~: from copies in which it scatters alone, over the sum of all such variances."
-    return make_table("What does it", heads, rows, notes=["Shares of the variance, by exact derivatives.", *([about] if sampled else [])])
+    about = "~: from samples of the entry alone, over the sum of all such variances."
+    return make_table(
+        "Variance contributions", heads, rows, notes=["Shares of the variance, by exact derivatives.", *([about] if sampled else [])]
+    )
 
 
 def allowance_table(found: Toleranced) -> Table:
-    """How far each entry may deviate."""
+    """Allowable deviation of each entry."""
     allowed = found.allowance
     rows = [
         (
@@ -140,8 +142,8 @@ def allowance_table(found: Toleranced) -> Table:
         )
         for index, each in enumerate(found.study.scatters)
     ]
-    heads = ["", Column("stated"), Column("alone"), "decided by", Column("equal shares"), Column("all alike")]
-    return make_table("What is allowed", heads, rows, notes=_allowed_notes(allowed))
+    heads = ["", Column("specified"), Column("alone"), "decided by", Column("equal shares"), Column("common factor")]
+    return make_table("Allowable tolerances", heads, rows, notes=_allowed_notes(allowed))
 
 
 def _scaled_size(scatter: Scatter, factor: float) -> Cell:
@@ -152,19 +154,19 @@ def _scaled_size(scatter: Scatter, factor: float) -> Cell:
 
 
 def _allowed_notes(allowed: Allowance) -> list[str]:
-    notes = [f"So that each line keeps {100.0 * allowed.wanted:g} %, to first order. {_COLUMNS}"]
+    notes = [f"For a yield of {100.0 * allowed.wanted:g} % of each requirement, to first order. {_COLUMNS}"]
     if allowed.together == 0.0:
-        return [*notes, f"{allowed.binding} is missed as drawn: no tolerance mends that."]
+        return [*notes, f"the nominal design violates {allowed.binding}: no tolerance corrects that."]
     if allowed.then is not None and allowed.together <= _FAR:
-        then = f"the sample's copies, their changes scaled, keep all lines to {_percent(allowed.then.share)} %"
-        notes.append(f"All alike: {number(allowed.together, 3)} times what is stated, decided by {allowed.binding}; then {then}.")
+        then = f"the samples with scaled changes have a yield of {_percent(allowed.then.share)} %"
+        notes.append(f"Common factor: {number(allowed.together, 3)}, decided by {allowed.binding}; {then}.")
     return notes
 
 
 def crosstalk_table(found: Toleranced, crosstalk: Crosstalk) -> Table:
     """Deviations of the pose per command, and the worst."""
     opened = crosstalk.kind == OPEN
-    title = "Crosstalk, commanded by the nominal R_a" if opened else "Crosstalk, kept by gauges through the nominal R_s^-1"
+    title = "Crosstalk, commanded by the nominal R_a" if opened else "Crosstalk, regulated by gauges with the nominal R_s^-1"
     heads = [Column("", numeric=False), *(Column(name, "urad" if name.startswith("r") else "um") for name in crosstalk.coordinates)]
     rows = [
         [Cell(f"{row} [{'nrad' if row.startswith('r') else 'nm'}]", Mark.STRONG), *(_entry(value) for value in values)]
@@ -172,8 +174,8 @@ def crosstalk_table(found: Toleranced, crosstalk: Crosstalk) -> Table:
     ]
     reference = ", ".join(number(round(1e3 * float(value), 6) + 0.0, 6) for value in _reference(found))
     where = f"At {crosstalk.point}, ({reference}) mm"
-    note = f"{where}: deviation over the copies, row unit per unit of command; on the diagonal of the gain."
-    how = "Lost motion of the drawn stage made up for, strokes by the nominal stacks' volts" if opened else "The loop is ideal"
+    note = f"{where}: deviation over the samples, row unit per unit of command; on the diagonal of the gain."
+    how = "Nominal lost motion corrected, strokes from the nominal stacks' voltages" if opened else "The loop is ideal"
     return make_table(title, heads, rows, notes=[note, f"{_worst(crosstalk)} {how}."])
 
 
@@ -187,7 +189,7 @@ def _entry(value: float) -> Cell:
 
 
 def _worst(crosstalk: Crosstalk) -> str:
-    """The worst copies' motion along axes that were not commanded, translations and rotations apart."""
+    """The worst samples' motion along axes without a command, translations and rotations separately."""
     parts = []
     for rows, unit in ((slice(0, 3), "nm"), (slice(3, 6), "nrad")):
         for kind, per in (("", "um"), ("r", "urad")):
@@ -196,4 +198,4 @@ def _worst(crosstalk: Crosstalk) -> str:
             values = crosstalk.worst[rows][:, columns][off] if columns else np.zeros(0)
             if values.size and np.isfinite(values).all():
                 parts.append(f"{number(_FINE * float(values.max()), 3)} {unit}/{per}")
-    return f"Worst of all copies off the diagonal: {', '.join(parts)}." if parts else ""
+    return f"Worst of all samples off the diagonal: {', '.join(parts)}." if parts else ""

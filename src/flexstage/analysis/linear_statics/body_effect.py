@@ -1,0 +1,85 @@
+"""Effect of the flexibility of bodies on stiffness along the ideal motions and on the first frequencies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.base.finding import Finding, name_first
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.flexible_bodies import body_flexibilities, with_flexible_bodies
+from flexstage.models.linear.eigen import lowest_modes
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.spatial.frame import COMPONENTS
+
+SIGNIFICANT = 0.05
+"""Relative error of a stiffness or frequency above which rigid bodies are doubtful."""
+_FREQUENCIES = 6
+
+
+@dataclass(frozen=True)
+class BodyEffect:
+    """A `quantity` with `rigid` and with `flexible` bodies, in SI; the `body`, or all equal ones, that changes it most."""
+
+    quantity: str
+    rigid: float
+    flexible: float
+    body: str
+
+    @property
+    def loss(self) -> float:
+        """Relative error of rigid bodies."""
+        return self.rigid / self.flexible - 1.0
+
+
+def body_effects(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None = None) -> tuple[BodyEffect, ...]:
+    """Compare a lumped model of one design with rigid and with flexible bodies.
+
+    Quantities are the stiffness of the platform along each ideal motion of `kinematics`, strokes fixed, and the first six natural
+    frequencies. Empty where no body has an estimate, for batches and for stages that are kept sparse.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> from flexstage.models.lumped import lumped
+    >>> stage = parallelogram()
+    >>> all(each.loss > 0.0 for each in body_effects(stage, lumped(stage)))
+    True
+    """
+    if model.is_sparse or model.stiffness_matrix.ndim > 2:
+        return ()
+    found = body_flexibilities(mechanism).found
+    if not found:
+        return ()
+    rigid, flexible = (_quantities(each, kinematics) for each in (model, with_flexible_bodies(model, mechanism, found)))
+    groups = [[each for each in found if each.group == number] for number in {each.group: None for each in found}]
+    alone = {
+        name_first([each.body for each in group]): _quantities(with_flexible_bodies(model, mechanism, group), kinematics)
+        for group in groups
+    }
+    return tuple(
+        BodyEffect(name, value, flexible[name], min(alone, key=lambda body, name=name: alone[body][name])) for name, value in rigid.items()
+    )
+
+
+def _quantities(model: LinearModel, kinematics: Kinematics | None) -> dict[str, float]:
+    """Stiffness along the ideal motions and the first frequencies, by name."""
+    result: dict[str, float] = {}
+    rows = [place for place, each in enumerate(model.outputs) if each.name in {f"{PLATFORM}.{name}" for name in COMPONENTS}]
+    if kinematics is not None and len(rows) == len(COMPONENTS):
+        compliance = model.output[rows] @ np.linalg.solve(model.stiffness_matrix, model.output[rows].T)
+        for name, motion in zip(kinematics.coordinates, kinematics.motion.T, strict=True):
+            direction = motion / motion[COMPONENTS.index(name)]
+            result[f"the stiffness along {name}"] = float(1.0 / (direction @ compliance @ direction))
+    frequencies = np.sqrt(lowest_modes(model).values[:_FREQUENCIES]) / (2.0 * np.pi)
+    return result | {f"frequency {number}": float(value) for number, value in enumerate(frequencies, 1)}
+
+
+def body_findings(effects: Sequence[BodyEffect]) -> Iterator[Finding]:
+    """One warning for each body that changes quantities by more than `SIGNIFICANT`; it names the two that change most."""
+    large = sorted((each for each in effects if abs(each.loss) > SIGNIFICANT), key=lambda each: -abs(each.loss))
+    for body in dict.fromkeys(each.body for each in large):
+        worst = [each for each in large if each.body == body][:2]
+        values = " and ".join(f"{each.quantity} by {100.0 * (each.flexible / each.rigid - 1.0):.0f} %" for each in worst)
+        yield Finding(body, f"it is taken as rigid; its flexibility changes {values}", "Make it stiffer, or compare: flexstage verify")

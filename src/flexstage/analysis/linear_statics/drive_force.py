@@ -1,0 +1,115 @@
+"""Drive force: the force per displacement of force-driven stages by flexure, compared with the ideal guide."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from flexstage.analysis.workspace.force_workspace import ForceWorkspace
+from flexstage.base.finding import refuse
+from flexstage.base.labelled import Matrix
+from flexstage.base.notebook import Result
+from flexstage.base.number import Array
+from flexstage.base.record import VIEW, Layout
+from flexstage.models.linear.eigen import sign_weights
+from flexstage.models.linear.elimination import null_space
+from flexstage.models.linear.kinematics import Kinematics
+from flexstage.models.linear.model import LinearModel
+from flexstage.models.linear.static import displacement, input_motion
+from flexstage.parts.freedom import ALL
+from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
+
+
+class DriveForce(Result):
+    """Force per displacement along each coordinate, compared with the ideal guide.
+
+    The ideal guide has the same stiffness in the intended freedoms of its flexures, and is rigid in the others. `force` (coordinates x
+    elastic, ideal) is the generalised force of the actuators per displacement. `shares` (links x coordinates) are the parts of the elastic
+    displacement, which add up to 1. `excess` (links x coordinates) are the parts of the relative excess of the force.
+    """
+
+    TABLE: ClassVar[Layout] = Layout(
+        "Drive force per displacement, compared with the ideal guide",
+        "table",
+        head="along",
+        notes=("Ideal guide: the same stiffness in the intended freedoms of the flexures, rigid in the others. Negative: softer than it.",),
+    )
+
+    force: Matrix
+    shares: Matrix
+    excess: Matrix
+    provenance: str
+
+    @property
+    def total(self) -> Array:
+        """Force over that of the ideal guide, less 1 (f,)."""
+        return np.sum(self.excess.values, axis=-2)
+
+    @property
+    def table(self) -> Annotated[Matrix, VIEW]:
+        """Rows are the coordinates, columns the force, that of the ideal guide, and the excess."""
+        values = np.concatenate([self.force.values, self.total[..., None]], axis=-1)
+        units = tuple((*row, "1") for row in self.force.unit)
+        return Matrix(values, self.force.rows, ("force", "ideal guide", "excess"), units)
+
+
+def drive_force(kinematics: Kinematics, model: LinearModel, workspace: ForceWorkspace) -> DriveForce:
+    """Compare the elastic stage with its ideal guide under the inputs that move the platform along each coordinate.
+
+    By reciprocity x_j = sum over the links of g_j^T k g_u: g_j are their deformations under a unit load of the platform along j, g_u those
+    under the inputs u. With the locked freedoms of the ideal joints prevented, the same sum is the displacement of the ideal guide. One
+    design.
+
+    >>> import flexstage as fs
+    >>> stage = fs.case("voice-coil-stage")
+    >>> ideal, elastic = fs.ideal(stage), fs.lumped(stage)
+    >>> found = drive_force(ideal, elastic, fs.force_workspace(stage, ideal, elastic))
+    >>> bool(abs(found.total[0]) < 0.01), round(float(found.shares.values.sum()), 9)
+    (True, 1.0)
+    """
+    if model.is_sparse or model.designs:
+        raise refuse("drive force", "the stage is too large, or a batch of designs", "Analyse one design of fewer bodies")
+    names, inputs = workspace.coordinates, workspace.per_motion
+    loads = np.swapaxes(model.output[model.output_index(tuple(f"{workspace.point}.{name}" for name in names))], -1, -2)
+    driven = model.input_matrix[:, model.input_index(inputs.rows)] @ inputs.values
+    basis = _ideal_motions(kinematics, model)
+    inner = basis.T @ model.stiffness_matrix @ basis
+    guided = [basis @ np.linalg.solve(inner, basis.T @ each) for each in (loads, driven)]
+    elastic = displacement(model, loads), input_motion(model, model.input_index(inputs.rows), inputs.values)
+    shares, ideal = _mutual_energy(model, *elastic), _mutual_energy(model, *guided)
+    thrusts = [inputs.rows.index(name) for name in kinematics.thrusts]
+    rows = [kinematics.coordinates.index(name) for name in names]
+    force = np.diagonal(kinematics.thrust[rows] @ inputs.values[thrusts])
+    reach = np.sum(ideal, axis=0)
+    axes = [COMPONENTS.index(name) for name in names]
+    units = tuple((f"{WRENCH_UNITS[axis]}/{TWIST_UNITS[axis]}",) * 2 for axis in axes)
+    links = tuple(model.stiffness)
+    return DriveForce(
+        force=Matrix(np.stack([force, force / reach], axis=-1), names, ("elastic", "ideal"), units),
+        shares=Matrix(shares, links, names, "1"),
+        excess=Matrix(ideal - shares, links, names, "1"),
+        provenance=f"{kinematics.provenance}; {model.provenance}",
+    )
+
+
+def _ideal_motions(kinematics: Kinematics, model: LinearModel) -> Array:
+    """Motions (n, m) of the coordinates without deformation in the locked freedoms of the ideal joints."""
+    locked = [
+        model.stiffness[link].operator[[axis.index for axis in ALL if axis not in free]]
+        for link, free in kinematics.free.items()
+        if link in model.stiffness
+    ]
+    scale = 1.0 / sign_weights(model.coordinates)
+    rows = np.concatenate([np.zeros((0, len(scale))), *locked]) * scale
+    sizes = np.linalg.norm(rows, axis=1, keepdims=True)
+    return scale[:, None] * null_space((rows / np.where(sizes > 0.0, sizes, 1.0))[np.any(rows, axis=1)])
+
+
+def _mutual_energy(model: LinearModel, loaded: Array, driven: Array) -> Array:
+    """g_j^T k g_u (links, f) of each link and coordinate."""
+    rows: Mapping[str, Array] = {
+        name: np.sum((item.operator @ loaded) * (item.law @ (item.operator @ driven)), axis=0) for name, item in model.stiffness.items()
+    }
+    return np.stack(list(rows.values()))

@@ -1,0 +1,62 @@
+"""The report of the answers to a specification: a self-contained HTML file."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flexstage.base.version import __version__
+from flexstage.show.figures.export import to_svg
+from flexstage.show.figures.style import FULL, SERIES, Margins, canvas, panels, style_context
+from flexstage.show.page import Abreast, Head, Headline, Picture, page, section
+from flexstage.show.scene.pictures import stage_picture
+from flexstage.show.viewer.data import still_data
+from flexstage.studies.synthesis.search import Answer, Answers
+from flexstage.studies.synthesis.show.tables import answer_tables
+
+_BOUND = "Frequency and width of the answers. Lines: highest frequency of any mechanism with these actuators and this payload."
+
+
+def answer_report(found: Answers) -> str:
+    """Write the answers as an HTML page: tables, frequencies below their bounds, a picture of each stage.
+
+    >>> from flexstage.studies.synthesis.example import scanner
+    >>> "No stage keeps" in answer_report(Answers(scanner(), (), (), ()))
+    True
+    """
+    tables = list(answer_tables(found))
+    bounded = [each for each in found.answers if each.efficiency]
+    caption = "frequency and width of the answers"
+    picture = Picture(to_svg(bound_figure(bounded), "bound", caption), _BOUND) if bounded else None
+    stages = [_picture(each, number) for number, each in enumerate(found.answers, 1)]
+    count = len(found.answers)
+    said = Headline(f"{count} stage{'' if count == 1 else 's'} keep{'s' if count == 1 else ''} the specification.", count > 0)
+    sections = [
+        section("Answers", [tables[0], picture]),
+        section("Stages", [Abreast(tuple(stages[place : place + 2])) for place in range(0, count, 2)]),
+        section("Excluded pairs", tables[1:]),
+    ]
+    head = Head(found.specification.name, "Answers to a specification", (("flexstage", __version__),), said)
+    return page(head, [each for each in sections if each is not None])
+
+
+def bound_figure(answers: list[Answer]) -> Any:
+    """Draw the first frequency of answers by their width, each with its bound, (f / bound)^2 being the efficiency."""
+    with style_context():
+        figure = canvas(FULL, 2.9)
+        ax = panels(figure, 1, 1, Margins(left=0.75, bottom=0.5, right=0.2))[0, 0]
+        for number, each in enumerate(answers):
+            color, width = SERIES[number % len(SERIES)], 1e3 * each.values["envelope.x"]
+            ax.plot(width, each.values["frequency.1"], "o", color=color, label=f"{each.architecture}, {each.actuator}")
+            if each.efficiency:
+                bound = each.values["frequency.1"] / each.efficiency**0.5
+                ax.axhline(bound, color=color, linewidth=0.8, linestyle="--")
+        ax.set_ylim(bottom=0.0)
+        ax.set_xlabel("width [mm]")
+        ax.set_ylabel("first natural frequency [Hz]")
+        ax.legend()
+    return figure
+
+
+def _picture(answer: Answer, number: int) -> Picture:
+    caption = f"{number}: {answer.architecture} with {answer.actuator}."
+    return Picture(to_svg(stage_picture(still_data(answer.stage), width=4.4), f"answer{number}", caption), caption)
