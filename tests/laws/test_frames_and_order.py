@@ -48,7 +48,7 @@ def close(found: Array, expected: Array, tolerance: float = 1e-7) -> None:
 def test_results_turn_with_a_mounted_stage(name: str) -> None:
     stage = loaded(name)
     there, six = turned(stage), spatial_rotation(TURN)
-    assert not fs.check(there)
+    assert not [each for each in fs.check(there) if each.severity.value == "error"]
     one, other = fs.lumped(stage), fs.lumped(there)
     compliance = fs.statics(one).compliance.values
     size = np.sqrt(np.max(np.diag(compliance).reshape(2, 3), axis=1)).repeat(3)

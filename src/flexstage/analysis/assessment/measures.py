@@ -567,22 +567,25 @@ def _least_factor(bench: Bench, load_cases: Iterable[cases.LoadCase]) -> float:
 
 
 @partial(MeasureKind, "frequency.unwanted", FREQUENCY)
-@_each_design
-def unwanted_frequency(bench: Bench, asked: Measure) -> float:
+def unwanted_frequency(bench: Bench, asked: Measure) -> Array:
     """Lowest natural frequency with the required motions of the platform held.
 
-    The null space N of the rows C of these motions gives the constrained stage, N'KN and N'MN . By interlacing it is not above
-    the n + 1st frequency of the free stage, n the number of held motions.
+    The null space N of the rows C of these motions gives the constrained stage, N'KN and N'MN. By interlacing it is not above
+    the n + 1st frequency of the free stage, n the number of held motions. Rayleigh's quotient of the real mode, so that derivatives by
+    complex step are exact.
     """
     axes = [axis for axis, value in bench.command.items() if value]
     if not axes:
         raise refuse(asked.key, "no stroke is required, so that no motion is held", 'Add for example "stroke.x" = "at least 50 um"')
     model = bench.model
-    rows = model.output[..., model.output_index(tuple(f"{PLATFORM}.{axis}" for axis in axes)), :]
-    free = scipy.linalg.null_space(np.real(rows))
-    matrices = (free.T @ np.real(each) @ free for each in (model.stiffness_matrix, model.inertia_matrix))
-    lowest = scipy.linalg.eigh(*matrices, eigvals_only=True, subset_by_index=(0, 0))[0]
-    return float(np.sqrt(max(lowest, 0.0)) / (2.0 * np.pi))
+    rows = np.real(model.output[..., model.output_index(tuple(f"{PLATFORM}.{axis}" for axis in axes)), :])
+    free = scipy.linalg.null_space(rows.reshape(-1, *rows.shape[-2:])[0])
+    stiffness, mass = (free.T @ each @ free for each in (model.stiffness_matrix, model.inertia_matrix))
+    inverse = np.linalg.inv(np.linalg.cholesky(np.real(mass)))
+    lowest = np.linalg.eigh(inverse @ np.real(stiffness) @ np.swapaxes(inverse, -1, -2))[1][..., :, 0]
+    mode = np.einsum("...ji,...j->...i", inverse, lowest)
+    square = np.einsum("...i,...ij,...j->...", mode, stiffness, mode) / np.einsum("...i,...ij,...j->...", mode, mass, mode)
+    return np.sqrt(square) / (2.0 * np.pi)
 
 
 @partial(MeasureKind, "numbers.<number>", RATIO)

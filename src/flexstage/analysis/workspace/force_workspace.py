@@ -31,6 +31,8 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, Frame, twist_tra
 
 _ROUNDING, _NONE = 1e-12, 1e-9
 
+_CONVERGED = 1e-14
+"""Relative change of the motion, and of its derivative, at which the iteration ends."""
 _STRESS_STEPS = 60
 _YIELD = "yield stress"
 _LIMIT = 'Add e.g. peak_current = "2 A" to the coil, or maximum = "20 N" to the force'
@@ -283,7 +285,9 @@ def _yielding(sized: Mapping[str, PlacedLink], dead: Array, per: Array) -> Array
         motion = 1.0 / np.where(use == 0.0, 1e-30, use)
         for _ in range(_STRESS_STEPS):
             total = dead + sign * motion[..., None] * per
-            motion = motion / stress_use(sized, total.reshape(*total.shape[:-1], len(sized), len(FORCES)))
+            last, motion = motion, motion / stress_use(sized, total.reshape(*total.shape[:-1], len(sized), len(FORCES)))
+            if all(np.allclose(part(motion), part(last), rtol=_CONVERGED, atol=0.0, equal_nan=True) for part in (np.real, np.imag)):
+                break
         ways.append(motion)
     return np.minimum(*ways)
 

@@ -33,6 +33,9 @@ def control_and_modes(given: ResolvedSetup, gains: Array) -> tuple[ResolvedSetup
     (1, 18, True)
     """
     asked, known = given.setup.controller, list[Tuning]()
+    if asked.goal is None and not np.all(given.plant.frequencies > 0.0):  # a motion without stiffness: optimisation needs stability
+        asked = replace(asked, quick=True)
+        given = replace(given, setup=replace(given.setup, controller=asked))
     if asked.search_goal is not None:  # optimisation is slow: start with the modes of the plain tuning
         plain = replace(given, setup=replace(given.setup, controller=replace(asked, goal=None, quick=True)))
         with suppress(DesignError), part(0.0, 0.2):
