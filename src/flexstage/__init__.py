@@ -31,6 +31,7 @@ HOMES = {
     "parts.amplified": "Amplified SteppingDrive",
     "parts.force_actuator": "ForceActuator",
     "parts.voice_coil": "VoiceCoil CoilSide Supply",
+    "parts.rotary_coil": "RotaryCoil",
     "parts.cross_hinge": "CrossHinge",
     "parts.cartwheel": "Cartwheel",
     "parts.folded_leaf": "FoldedLeaf",

@@ -244,6 +244,9 @@ from flexstage.parts.voice_coil import (
     Supply as Supply,
     VoiceCoil as VoiceCoil,
 )
+from flexstage.parts.rotary_coil import (
+    RotaryCoil as RotaryCoil,
+)
 from flexstage.parts.amplified import (
     Amplified as Amplified,
     SteppingDrive as SteppingDrive,

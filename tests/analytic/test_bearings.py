@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flexstage as fs
+from flexstage.apps.cli import run
 from flexstage.control.study.study import loop_study
 from flexstage.models.linear.port import ports
 from flexstage.models.linear.state_space import state_space
@@ -143,3 +144,15 @@ def test_mass_along_the_bearing_is_that_of_all_that_moves():
     found = fs.mass_matrix(slide(film()), fs.lumped(slide(film())))
     assert found.reduced is not None
     assert found.reduced.values[0, 0] == pytest.approx(MASS + COIL, rel=1e-9)
+
+
+def test_the_error_budget_without_stiffness_is_that_of_a_closed_loop(tmp_path, capfd):
+    """It names the controller, and its noise is that of the same loop."""
+    path = tmp_path / "slide.toml"
+    path.write_text(fs.dumps(slide(film())))
+    assert run(["budget", str(path)]) == 0
+    shown = capfd.readouterr().out
+    assert "No stiffness along the drive" in shown
+    assert "PID in platform coordinates" in shown
+    assert "Positioning noise" in shown
+    assert run(["budget", str(path), "--input-asd", "motor=1 uA/Hz^0.5"]) == 2

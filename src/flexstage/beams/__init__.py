@@ -29,6 +29,7 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
+from flexstage.parts.rotary_coil import RotaryCoil
 from flexstage.parts.shear_piezo import ShearPiezo
 from flexstage.parts.spring import Spring
 from flexstage.parts.voice_coil import VoiceCoil
@@ -44,6 +45,6 @@ _HINGES = {
 }
 _STATED = {ComplianceMatrix: MATRIX, Spring: SPRING, Contact: CONTACT}
 _STROKES = {Piezo: PIEZO, ShearPiezo: SHEAR_PIEZO, Amplified: AMPLIFIED, SteppingDrive: STEPPER}
-_OWN = {**_HINGES, **_STATED, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL}
+_OWN = {**_HINGES, **_STATED, **_STROKES, ForceActuator: FORCE_ACTUATOR, VoiceCoil: VOICE_COIL, RotaryCoil: VOICE_COIL}
 LAWS: Register[PartLaw] = Register("flexstage.laws", {part.kind: law for part, law in _OWN.items()})
 """Part laws of beam theory by kind."""

@@ -72,6 +72,9 @@ class Link(Description):
 
     A part with ports (a superelement) joins a body at each port, by name; several ports may join one body. The link frame is then the frame
     of the part's axes. With two ports, `free` are the degrees of freedom of the second port's body against the first's, about its origin.
+
+    `circuit` names the input of a force actuator. Those of one circuit are in series on one amplifier and share the input; a `-` before
+    the name reverses the polarity (push-pull).
     """
 
     joins: Joins
@@ -82,6 +85,7 @@ class Link(Description):
     free: tuple[Freedom, ...] | None = None
     start: Annotated[Vector, LENGTH] | None = field(default=None, metadata={KEY: "from"})
     end: Annotated[Vector, LENGTH] | None = field(default=None, metadata={KEY: "to"})
+    circuit: str | None = None
 
     @property
     def centre(self) -> Vector:

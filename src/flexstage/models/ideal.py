@@ -463,10 +463,10 @@ def _reading(graph: _Graph, name: str) -> Array:
 def _elongations(graph: _Graph) -> dict[str, Array]:
     """Work (..., 1, N) of every force actuator per unit of its input and of the body motions, w^T times its deformation."""
     assembly, places = graph.assembly, {name: 6 * number for number, name in enumerate(graph.assembly.links)}
-    return {
-        name: assembly.actuator(name).wrench[..., None, :] @ graph.strain[..., places[link] : places[link] + 6, :]
-        for name, link in assembly.thrusts.items()
-    }
+    found: dict[str, Array] = dict.fromkeys(assembly.thrusts, np.zeros(1))
+    for link, (name, wrench) in assembly.pushes.items():
+        found[name] = found[name] + wrench[..., None, :] @ graph.strain[..., places[link] : places[link] + 6, :]
+    return found
 
 
 def _thrust(graph: _Graph, bodies: Array) -> Array:

@@ -18,6 +18,7 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.reinforced_leaf import ReinforcedLeaf
 from flexstage.parts.rod import Rod
+from flexstage.parts.rotary_coil import RotaryCoil
 from flexstage.parts.shape import Elastic
 from flexstage.parts.shear_piezo import ShearPiezo
 from flexstage.parts.spring import Spring
@@ -28,7 +29,7 @@ from flexstage.parts.voice_coil import VoiceCoil
 
 _HINGES = (Notch, Neck, Leaf, ReinforcedLeaf, Rod, Cruciform)
 _COMPOUNDS = (CrossHinge, Cartwheel, FoldedLeaf)
-_ACTUATORS = (Piezo, ShearPiezo, Amplified, SteppingDrive, ForceActuator, VoiceCoil)
+_ACTUATORS = (Piezo, ShearPiezo, Amplified, SteppingDrive, ForceActuator, VoiceCoil, RotaryCoil)
 _GAUGES = (Gauge, Tilt, Encoder, StrainGauge)
 PARTS: Register[type[Elastic]] = Register(
     "flexstage.parts",

@@ -62,13 +62,17 @@ class ForceLimit:
 
 
 class ThrustActuator(Actuator):
-    """Actuator with a force along x, positive pushing its faces apart."""
+    """Actuator with a force along x, positive pushing its faces apart, or a torque about x.
 
+    `axis` is the place of its force or torque in its `wrench`.
+    """
+
+    axis: ClassVar[int] = 0
     travel: Number | None = None
 
     @property
     def thrust(self) -> Number:
-        """Force along x per unit of input: N/N or N/A."""
+        """Force along x or torque about x per unit of input: N/N, N/A or N m/A."""
         raise NotImplementedError
 
     @property
@@ -79,6 +83,10 @@ class ThrustActuator(Actuator):
     def slew(self, limit: Number) -> Number | None:  # noqa: ARG002  (kinds that know one need it)
         """Mean slew rate of the input from zero to a `limit` [1/s]; None: no known limit."""
         return None
+
+    def in_series(self, count: int) -> ThrustActuator:  # noqa: ARG002  (coils need it)
+        """As many of them in one circuit, as their amplifier sees them; force or torque is that of one."""
+        return self
 
     def loss(self, rms: Number) -> Number | None:  # noqa: ARG002  (kinds that know it need it)
         """Dissipated power [W] for an rms input; None: unknown."""
@@ -100,8 +108,8 @@ class ThrustActuator(Actuator):
 
     @property
     def wrench(self) -> Array:
-        """Thrust along x."""
-        return np.asarray(self.thrust)[..., None] * np.eye(6)[0]
+        """Thrust along x, or torque about x."""
+        return np.asarray(self.thrust)[..., None] * np.eye(6)[self.axis]
 
     @property
     def limits(self) -> Iterator[ForceLimit]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.base.number import Array, Number
+from flexstage.base.number import Number, magnitude
 from flexstage.base.storage.digest import DOCUMENT_ONLY
 from flexstage.base.units.quantity import (
     CURRENT,
@@ -35,13 +35,7 @@ from flexstage.parts.material import Material
 from flexstage.parts.shape import Order
 from flexstage.parts.stated import Stated, point_masses
 
-_DUTY = Bound(low=0.0, high=1.0, open_low=True)
-_AXIAL: Array = np.diag(np.eye(6)[0])
-
-
-def _axial(value: Number) -> Array:
-    """A 6x6 with a single entry, along x."""
-    return np.asarray(value)[..., None, None] * _AXIAL
+DUTY = Bound(low=0.0, high=1.0, open_low=True)
 
 
 class Supply(Enum):
@@ -58,61 +52,48 @@ class CoilSide(Enum):
     SECOND = "second"
 
 
-@dataclass(frozen=True, eq=False)
-class VoiceCoil(ThrustActuator):
-    """Voice coil along x: force = `force_constant` x current between two bodies, positive pushing them apart.
+class Coil(ThrustActuator):
+    """Coil in the field of a magnet, driven by a current: limits, heat and damping, along or about x."""
 
-    `mass` is of the coil, on the body named by `coil`, `magnet_mass` of the magnet, on the other body. Both are at the link's centre,
-    without rotary inertia. `stiffness` is of the magnets along x (negative: unstable about the middle), `damping` of the coil (eddy
-    currents of its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the whole range of motion along x of
-    constant `force_constant`, half to either side. `temperature_rise` is the coil's limit, through `thermal_resistance` to its
-    surroundings; `duty` is the duty cycle of the current in short use. The input is the static current: V/R for a voltage drive.
-
-    Not modelled: change of R with temperature, saturation, and the current lag L/R under a voltage drive, significant above R / (2 pi L).
-    """
-
-    kind: ClassVar[str] = "voice_coil"
     input = CURRENT
-    force_constant: Annotated[Number, FORCE_CONSTANT, POSITIVE]
-    peak_current: Annotated[Number, CURRENT, POSITIVE] | None = None
-    continuous_current: Annotated[Number, CURRENT, POSITIVE] | None = None
-    voltage: Annotated[Number, VOLTAGE, POSITIVE] | None = None
-    maximum_force: Annotated[Number, FORCE, POSITIVE] | None = None
-    resistance: Annotated[Number, RESISTANCE, POSITIVE] | None = None
-    inductance: Annotated[Number, INDUCTANCE, POSITIVE] | None = None
-    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
-    magnet_mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
-    coil: CoilSide = CoilSide.SECOND
-    drive: Supply = Supply.CURRENT
-    stiffness: Annotated[Number, STIFFNESS] = 0.0
-    damping: Annotated[Number, VISCOUS_DAMPING, NOT_NEGATIVE] = 0.0
-    travel: Annotated[Number, DISPLACEMENT, POSITIVE] | None = None
-    thermal_resistance: Annotated[Number, THERMAL_RESISTANCE, POSITIVE] | None = None
-    temperature_rise: Annotated[Number, TEMPERATURE, POSITIVE] | None = None
-    duty: Annotated[Number, RATIO, _DUTY] = 1.0
-    source: str = field(default="", metadata=DOCUMENT_ONLY)
+    peak_current: Number | None
+    continuous_current: Number | None
+    voltage: Number | None
+    resistance: Number | None
+    inductance: Number | None
+    mass: Number
+    magnet_mass: Number
+    coil: CoilSide
+    drive: Supply
+    stiffness: Number
+    damping: Number
+    thermal_resistance: Number | None
+    temperature_rise: Number | None
+    duty: Number
 
     @property
-    def thrust(self) -> Number:
-        """Force constant [N/A]."""
-        return self.force_constant
+    def maximum(self) -> Number | None:
+        """Largest force [N] or torque [N m]."""
+        raise NotImplementedError
 
     @property
     def viscous_damping(self) -> Number:
-        """Damping along x, with the back-EMF term k_f^2 / R for a voltage drive [N s/m].
+        """Damping along or about x, with the back-EMF term k_f^2 / R for a voltage drive [N s/m, N m s/rad].
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, damping=1.0, drive=Supply.VOLTAGE).viscous_damping
         21.0
         """
         if self.drive is Supply.CURRENT or self.resistance is None:
             return self.damping
-        return self.damping + self.force_constant**2 / self.resistance
+        return self.damping + self.thrust**2 / self.resistance
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Magnets' stiffness and damping along x, masses of both sides."""
+        """Magnets' stiffness and damping along or about x, masses of both sides."""
         sides = (self.mass, self.magnet_mass)
         mass = point_masses(*(sides if self.coil is CoilSide.FIRST else sides[::-1]))
-        return Stated(_axial(self.stiffness), mass, _axial(self.viscous_damping))
+        own = np.diag(np.eye(6)[self.axis])
+        stiffness, damping = (np.asarray(value)[..., None, None] * own for value in (self.stiffness, self.viscous_damping))
+        return Stated(stiffness, mass, damping)
 
     @property
     def limits(self) -> Iterator[ForceLimit]:
@@ -125,8 +106,9 @@ class VoiceCoil(ThrustActuator):
             yield ForceLimit("heat", self.heat_current, self.heat_current * rested, clips=False)
         if self.voltage is not None and self.resistance is not None:
             yield ForceLimit("voltage", self.voltage / self.resistance, self.voltage / self.resistance)
-        if self.maximum_force is not None:
-            yield ForceLimit("maximum force", self.maximum_force / self.force_constant, self.maximum_force / self.force_constant)
+        if self.maximum is not None:
+            most = self.maximum / magnitude(self.thrust)
+            yield ForceLimit(f"maximum {'torque' if self.axis else 'force'}", most, most)
 
     @property
     def cutoff(self) -> Number | None:
@@ -148,6 +130,17 @@ class VoiceCoil(ThrustActuator):
         if self.voltage is None or self.inductance is None:
             return None
         return (self.voltage - 0.5 * (self.resistance or 0.0) * limit) / self.inductance
+
+    def in_series(self, count: int) -> Self:
+        """Identical coils in series: resistance, inductance and heat add up.
+
+        >>> pair = VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0, temperature_rise=80.0).in_series(2)
+        >>> pair.loss(1.0), pair.heat_current
+        (10.0, 2.0)
+        """
+        total = {name: None if (own := getattr(self, name)) is None else count * own for name in ("resistance", "inductance")}
+        thermal = None if self.thermal_resistance is None else self.thermal_resistance / count
+        return replace(self, **total, thermal_resistance=thermal)  # type: ignore[type-var]
 
     def loss(self, rms: Number) -> Number | None:
         """i^2 R [W]; None without a resistance."""
@@ -185,3 +178,47 @@ class VoiceCoil(ThrustActuator):
             if asked and self.resistance is None:
                 what = "resistance missing, required for the current of a voltage"
                 yield Finding(name, what, 'Add e.g. resistance = "5 ohm"')
+
+
+@dataclass(frozen=True, eq=False)
+class VoiceCoil(Coil):
+    """Voice coil along x: force = `force_constant` x current between two bodies, positive pushing them apart.
+
+    `mass` is of the coil, on the body named by `coil`, `magnet_mass` of the magnet, on the other body. Both are at the link's centre,
+    without rotary inertia. `stiffness` is of the magnets along x (negative: unstable about the middle), `damping` of the coil (eddy
+    currents of its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the whole range of motion along x of
+    constant `force_constant`, half to either side. `temperature_rise` is the coil's limit, through `thermal_resistance` to its
+    surroundings; `duty` is the duty cycle of the current in short use. The input is the static current: V/R for a voltage drive.
+
+    Not modelled: change of R with temperature, saturation, and the current lag L/R under a voltage drive, significant above R / (2 pi L).
+    """
+
+    kind: ClassVar[str] = "voice_coil"
+    force_constant: Annotated[Number, FORCE_CONSTANT, POSITIVE]
+    peak_current: Annotated[Number, CURRENT, POSITIVE] | None = None
+    continuous_current: Annotated[Number, CURRENT, POSITIVE] | None = None
+    voltage: Annotated[Number, VOLTAGE, POSITIVE] | None = None
+    maximum_force: Annotated[Number, FORCE, POSITIVE] | None = None
+    resistance: Annotated[Number, RESISTANCE, POSITIVE] | None = None
+    inductance: Annotated[Number, INDUCTANCE, POSITIVE] | None = None
+    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    magnet_mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    coil: CoilSide = CoilSide.SECOND
+    drive: Supply = Supply.CURRENT
+    stiffness: Annotated[Number, STIFFNESS] = 0.0
+    damping: Annotated[Number, VISCOUS_DAMPING, NOT_NEGATIVE] = 0.0
+    travel: Annotated[Number, DISPLACEMENT, POSITIVE] | None = None
+    thermal_resistance: Annotated[Number, THERMAL_RESISTANCE, POSITIVE] | None = None
+    temperature_rise: Annotated[Number, TEMPERATURE, POSITIVE] | None = None
+    duty: Annotated[Number, RATIO, DUTY] = 1.0
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def thrust(self) -> Number:
+        """Force constant [N/A]."""
+        return self.force_constant
+
+    @property
+    def maximum(self) -> Number | None:
+        """Largest force [N]."""
+        return self.maximum_force

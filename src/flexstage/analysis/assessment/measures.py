@@ -45,7 +45,7 @@ from flexstage.beams.mass import mass as link_mass
 from flexstage.mechanism.design import designs, step_size
 from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.parts.condensation import condense
-from flexstage.parts.voice_coil import VoiceCoil
+from flexstage.parts.voice_coil import Coil
 from flexstage.spatial.frame import COMPONENTS, transport
 
 if TYPE_CHECKING:
@@ -304,10 +304,10 @@ def heating(bench: Bench, asked: Measure) -> Array:
     return currents**2 * _stated(coils, "resistance") * _stated(coils, "thermal_resistance")
 
 
-def _held(bench: Bench, asked: Measure) -> tuple[Array, dict[str, VoiceCoil]]:
+def _held(bench: Bench, asked: Measure) -> tuple[Array, dict[str, Coil]]:
     """Currents (..., c) of all coils that hold the required stroke along an axis, and the coils."""
     found = bench.force_workspace(PLATFORM)
-    coils = {name: part for name in bench.assembly.thrusts if isinstance(part := bench.assembly.actuator(name), VoiceCoil)}
+    coils = {name: part for name in bench.assembly.thrusts if isinstance(part := bench.assembly.actuator(name), Coil)}
     if not coils or asked.name not in found.coordinates:
         raise refuse(asked.key, "no coil moves the stage along this axis", f"Use one of {', '.join(found.coordinates)}")
     if asked.name not in bench.command:
@@ -317,7 +317,7 @@ def _held(bench: Bench, asked: Measure) -> tuple[Array, dict[str, VoiceCoil]]:
     return magnitude(found.per_motion.values[..., rows, found.coordinates.index(asked.name)] * bench.command[asked.name]), coils
 
 
-def _stated(coils: dict[str, VoiceCoil], field: str) -> Array:
+def _stated(coils: dict[str, Coil], field: str) -> Array:
     """A number (..., c) of every coil; refuses missing ones."""
     values = {name: getattr(coil, field) for name, coil in coils.items()}
     missing = [name for name, value in values.items() if value is None]

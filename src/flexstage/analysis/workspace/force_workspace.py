@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 from typing import Annotated, ClassVar
 
@@ -26,7 +26,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import displacement, input_motion, part_deformation, static_gain
 from flexstage.parts.actuator import ThrustActuator
 from flexstage.parts.profile import single
-from flexstage.parts.voice_coil import VoiceCoil
+from flexstage.parts.voice_coil import Coil
 from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, Frame, twist_transform
 
 _ROUNDING, _NONE = 1e-12, 1e-9
@@ -226,17 +226,20 @@ def _without_rounding(slope: Array) -> Array:
     return np.where(known, slope, slope - np.real(slope))
 
 
-def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterator[tuple[str, Array]]:
+def _travel(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterable[tuple[str, Array]]:
     """Limit from half the magnetic travel of every coil."""
     columns = model.input_index(inputs)
     moved = input_motion(model, columns, per_motion)
-    for name, link in assembly.thrusts.items():
+    found: dict[str, Array] = {}
+    for link, (name, _) in assembly.pushes.items():
         part = assembly.actuator(name)
         if isinstance(part, ThrustActuator) and part.travel is not None:
             imposed = model.imposed.get(link)
-            opened = (model.stiffness[link].operator @ moved)[..., 0, :]
-            opened = opened if imposed is None else opened - (imposed[..., columns] @ per_motion)[..., 0, :]
-            yield f"{name} travel", _over(0.5 * np.asarray(part.travel)[..., None], opened)
+            opened = (model.stiffness[link].operator @ moved)[..., part.axis, :]
+            opened = opened if imposed is None else opened - (imposed[..., columns] @ per_motion)[..., part.axis, :]
+            most = _over(0.5 * np.asarray(part.travel)[..., None], opened)
+            found[name] = np.minimum(found.get(name, np.inf), most)
+    return ((f"{name} travel", most) for name, most in found.items())
 
 
 def _stops(assembly: Assembly, model: LinearModel, inputs: tuple[str, ...], per_motion: Array) -> Iterator[tuple[str, Array]]:
@@ -296,11 +299,11 @@ def _bounds(names: tuple[str, ...], causes: _Causes, units: tuple[str, ...]) -> 
 
 def _needs(assembly: Assembly, inputs: tuple[str, ...], names: tuple[str, ...], held: Array) -> dict[str, Matrix]:
     """Current, voltage, power and temperature rise of every coil for inputs (..., n, f)."""
-    coils = [name for name in inputs if isinstance(assembly.actuator(name), VoiceCoil)]
+    coils = [name for name in inputs if isinstance(assembly.actuator(name), Coil)]
     found: dict[str, list[Array]] = {"current": [], "voltage": [], "power": [], "rise": []}
     for name in coils:
         current, part = magnitude(held[..., inputs.index(name), :]), assembly.actuator(name)
-        assert isinstance(part, VoiceCoil)  # noqa: S101  coils are
+        assert isinstance(part, Coil)  # noqa: S101  coils are
         resistance, thermal = (np.nan if value is None else value for value in (part.resistance, part.thermal_resistance))
         resistance = np.asarray(resistance)[..., None]
         found["current"].append(current)

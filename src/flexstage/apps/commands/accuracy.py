@@ -15,6 +15,7 @@ from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace import workspace as study
 from flexstage.analysis.workspace.force_workspace import force_workspace
 from flexstage.analysis.workspace.small import SecondOrder, second_order
+from flexstage.base.finding import refuse
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import TEMPERATURE
 from flexstage.base.units.unit import parse
@@ -167,9 +168,11 @@ def budget(
 
     With --input-asd: noise of the actuators and floor vibration.
     """
+    stands = footing(mechanism, Place())
+    if stands.links.floating is not None:
+        return _closed_loop(mechanism, input_asd)
     asked = motions(command or ()) or required_command(mechanism) or _reached(mechanism)
     warmth = None if temperature is None else parse(temperature, TEMPERATURE, where="--temperature")
-    stands = footing(mechanism, Place())
     noise = spectra(stands.links, input_asd) if input_asd else None
     found = budgeting.budget(mechanism, asked, at=point, temperature=warmth, noise=noise, band=band_limits(band))
     small = second_order(mechanism, ideal(mechanism), asked)
@@ -188,3 +191,17 @@ def _reached(mechanism: Mechanism) -> dict[str, float]:
         return dict(study.all_strokes(mechanism))
     reach = force_workspace(mechanism, kinematics, elastic_model(mechanism, Model.LUMPED))
     return {name: float(held) for name, held in zip(reach.coordinates, reach.held, strict=True) if np.isfinite(held)}
+
+
+def _closed_loop(mechanism: Mechanism, densities: list[str] | None) -> CommandResult:
+    """Positioning noise of the default loop, of a stage without stiffness along its drive."""
+    from flexstage.control.show.tables import controller_text, noise_table  # loops take a second to load
+    from flexstage.control.study.setup import ControllerSetup, LoopSetup
+    from flexstage.control.study.study import loop_study
+
+    if densities:
+        what = "the drive direction has no stiffness, so that the budget is of a closed loop"
+        raise refuse("--input-asd", what, "State floor and amplifier noise in the set-up of flexstage loop")
+    found = loop_study(mechanism, LoopSetup(controller=ControllerSetup(quick=True)))
+    text = f"No stiffness along the drive: noise in closed loop, with the controller of flexstage loop --quick ({controller_text(found)})."
+    return CommandResult(mechanism, lambda: found.noise, lambda: [text, noise_table(found)], model=Model.LUMPED)

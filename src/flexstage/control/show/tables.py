@@ -64,7 +64,7 @@ def loop_table(found: LoopStudy) -> Table:
     modes = f"{count_modes(len(plant.frequencies))} up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as a static term"
     rows = [
         ("stability", Cell("stable" if found.stability.stable else "unstable", Mark.PASS if found.stability.stable else Mark.FAIL)),
-        ("controller", _controller(found)),
+        ("controller", controller_text(found)),
         ("coordinates", ", ".join(plant.coordinates.names)),
         ("clock", f"{number(found.settled.rate, 5)} Hz, outputs {delay} after the samples, zero-order hold"),
         ("plant", f"{found.model_name}, {modes}"),
@@ -103,7 +103,8 @@ def count_modes(count: int) -> str:
     return f"{count} mode" if count == 1 else f"{count} modes"
 
 
-def _controller(found: LoopStudy) -> str:
+def controller_text(found: LoopStudy) -> str:
+    """Describe the controller: its kind, coordinates and notch frequencies."""
     asked = found.setup.controller
     if asked.law is ControllerKind.NONE:
         return "none: open loop"

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexstage.base.finding import Finding, require
-from flexstage.base.units.quantity import CURRENT, DISPLACEMENT, FORCE, FREQUENCY, NOISE_DENSITY, TIME, VOLTAGE
+from flexstage.base.units.quantity import CURRENT, DISPLACEMENT, FORCE, FREQUENCY, MOMENT, NOISE_DENSITY, TIME, VOLTAGE
 from flexstage.experiment.formats.write import write
 from flexstage.experiment.records.record import report_reading
 from flexstage.experiment.virtual_rig.inputs import InputQuantity, InputSignal
@@ -115,10 +115,12 @@ def _drive(values: Values, drive_rms: str | None, band: tuple[str, str] | None, 
     amount = (
         None
         if drive_rms is None
-        else first_that_parses(drive_rms, {"stroke": DISPLACEMENT, "voltage": VOLTAGE, "current": CURRENT, "force": FORCE})
+        else first_that_parses(
+            drive_rms, {"stroke": DISPLACEMENT, "voltage": VOLTAGE, "current": CURRENT, "force": FORCE, "torque": MOMENT}
+        )
     )
     if drive_rms is not None and amount is None:
-        what = f'no displacement, voltage, current or force (got "{drive_rms}")'
+        what = f'no displacement, voltage, current, force or torque (got "{drive_rms}")'
         values.findings.append(Finding("--drive-rms", what, 'Use e.g. "1 um", "5 V" or "0.1 A"'))
     ends = None if band is None else [values.value("--band", text, FREQUENCY) for text in band]
     return NoiseDrive(

@@ -100,7 +100,7 @@ def plan_findings(plan: Plan) -> Iterator[Finding]:
 
 def _stack_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterator[Finding]:
     requested = {*setup.drive.amounts, setup.input_quantity} - {None}
-    if requested & {InputQuantity.CURRENT, InputQuantity.FORCE}:
+    if requested - {InputQuantity.STROKE, InputQuantity.VOLTAGE}:
         yield Finding(name, "the input of its stack is a stroke or a voltage", 'Use these, for example --drive-rms "1 um"')
     if np.isnan(driven.factor(InputQuantity.VOLTAGE)) and (InputQuantity.VOLTAGE in requested or setup.amplifier.current is not None):
         yield Finding(name, "its stack states no range of voltage", "State voltage_low and voltage_high, or use strokes")

@@ -14,9 +14,17 @@ class InputQuantity(Enum):
     """Current of a coil in A."""
     FORCE = "force"
     """Force in N."""
+    TORQUE = "torque"
+    """Torque in N m."""
 
 
-RECORDED_UNITS = {InputQuantity.STROKE: "um", InputQuantity.VOLTAGE: "V", InputQuantity.CURRENT: "A", InputQuantity.FORCE: "N"}
+RECORDED_UNITS = {
+    InputQuantity.STROKE: "um",
+    InputQuantity.VOLTAGE: "V",
+    InputQuantity.CURRENT: "A",
+    InputQuantity.FORCE: "N",
+    InputQuantity.TORQUE: "N m",
+}
 """Unit of the recorded inputs by quantity."""
 OWN_QUANTITIES = {"m": InputQuantity.STROKE, "A": InputQuantity.CURRENT, "N": InputQuantity.FORCE}
 """Quantity of an actuator's input by its SI unit."""

@@ -171,7 +171,7 @@ def _driven_input(part: Actuator, limits: StrokeLimits, name: str) -> DrivenInpu
         low=-high,
         high=high,
         full=held if np.isfinite(held) else np.nan,
-        factors={InputQuantity.FORCE: float(np.real(part.thrust))},
+        factors={InputQuantity.TORQUE if part.axis else InputQuantity.FORCE: float(np.real(part.thrust))},
         sustained=held,
         lag=np.inf if part.cutoff is None else float(np.real(part.cutoff)),
     )
@@ -191,7 +191,7 @@ def volts_per_metre(piezo: ChargedActuator) -> float:
 
 def _commanded_rms(setup: RigSetup, driven: DrivenInput) -> float:
     for quantity, value in setup.drive.amounts.items():
-        return value / driven.factor(quantity)
+        return value / abs(driven.factor(quantity))
     return _DEFAULT_SHARE * driven.full
 
 

@@ -6,7 +6,18 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.base.units.quantity import CURRENT, DISPLACEMENT, FORCE, FREQUENCY, NOISE_DENSITY, NOT_NEGATIVE, POSITIVE, TIME, VOLTAGE
+from flexstage.base.units.quantity import (
+    CURRENT,
+    DISPLACEMENT,
+    FORCE,
+    FREQUENCY,
+    MOMENT,
+    NOISE_DENSITY,
+    NOT_NEGATIVE,
+    POSITIVE,
+    TIME,
+    VOLTAGE,
+)
 from flexstage.experiment.virtual_rig.inputs import InputQuantity, InputSignal
 from flexstage.parts.amplifier import Amplifier
 
@@ -15,8 +26,8 @@ from flexstage.parts.amplifier import Amplifier
 class NoiseDrive(CheckedFields):
     """Independent Gaussian noise drive of the actuators.
 
-    `stroke` is the rms of the commanded free stroke [m], `voltage` the rms of the command [V], `current` [A] or `force` [N] the rms of a
-    force actuator's input. Default: 1 % of each full stroke, or of the largest sustained input of a force actuator. The density is constant
+    `stroke` is the rms of the commanded free stroke [m], `voltage` the rms of the command [V], `current` [A], `force` [N] or `torque` [N m]
+    the rms of a force actuator's input. Default: 1 % of each full stroke, or of the largest sustained input of a force actuator. The density is constant
     within `band` (low, high) [Hz], and decays to zero from `low` to `low`/2 and from `high` to 1.25 `high` (default: 0 to 0.4 times the
     sampling rate). `actuators` names the driven and recorded ones (default: all).
     """
@@ -25,6 +36,7 @@ class NoiseDrive(CheckedFields):
     voltage: Annotated[float, VOLTAGE, POSITIVE] | None = None
     current: Annotated[float, CURRENT, POSITIVE] | None = None
     force: Annotated[float, FORCE, POSITIVE] | None = None
+    torque: Annotated[float, MOMENT, POSITIVE] | None = None
     band: tuple[Annotated[float, FREQUENCY, NOT_NEGATIVE], Annotated[float, FREQUENCY, POSITIVE]] | None = None
     actuators: tuple[str, ...] | None = None
 

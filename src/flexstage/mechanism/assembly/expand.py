@@ -42,7 +42,7 @@ from flexstage.mechanism.mechanism import (
     posed,
 )
 from flexstage.mechanism.references import references
-from flexstage.parts.actuator import Actuator
+from flexstage.parts.actuator import Actuator, ThrustActuator
 from flexstage.parts.body import Body, PlacedSolid, owner_of, pierce
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.compound import FIRST, SECOND, Composition, Compound
@@ -167,6 +167,8 @@ class PlacedSuperelement:
 class Assembly:
     """Expanded stage: all moving bodies, links and gauges by name. `actuators` maps input names to link names.
 
+    `circuits` maps the links of actuators to their input and their sign in it; `actuators` has the first link of each input.
+
     `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in `superelements` instead of `links`:
     they join any number of bodies. Bodies `of` another one are not listed: their solids belong to their owner, or to `ground`, the outlines
     of the ground.
@@ -180,6 +182,7 @@ class Assembly:
     ground: Mapping[str, PlacedSolid]
     superelements: Mapping[str, PlacedSuperelement] = field(default_factory=lambda: Table({}))
     stops: Mapping[str, PlacedStop] = field(default_factory=lambda: Table({}))
+    circuits: Mapping[str, tuple[str, float]] = field(default_factory=lambda: Table({}))
 
     @property
     def welded(self) -> Assembly:
@@ -188,8 +191,10 @@ class Assembly:
         return replace(self, links={**self.links, **welds}, superelements=Table({})) if self.superelements else self
 
     def actuator(self, name: str) -> Actuator:
-        """Part of an input, by the input's name."""
-        return actuator_of(self.links[self.actuators[name]].part)
+        """Part of an input, by the input's name; of a circuit its parts in series."""
+        part = actuator_of(self.links[self.actuators[name]].part)
+        count = sum(owner == name for owner, _ in self.circuits.values())
+        return part.in_series(count) if count > 1 and isinstance(part, ThrustActuator) else part
 
     @cached_property
     def strokes(self) -> Mapping[str, str]:
@@ -198,8 +203,14 @@ class Assembly:
 
     @cached_property
     def thrusts(self) -> Mapping[str, str]:
-        """Input name to link name of the force actuators."""
+        """Input name to link name of the force actuators, of a circuit the first."""
         return {name: link for name, link in self.actuators.items() if not self.actuator(name).takes_stroke}
+
+    @cached_property
+    def pushes(self) -> Mapping[str, tuple[str, Array]]:
+        """Input name and wrench per unit of input (..., 6) by link of every force actuator, those of circuits with their polarity."""
+        known = {link: each for link, each in self.circuits.items() if each[0] in self.thrusts}
+        return {link: (name, sign * actuator_of(self.links[link].part).wrench) for link, (name, sign) in known.items()}
 
 
 def copy_frames(pattern: Pattern, count: int) -> tuple[Frame, ...]:
@@ -315,7 +326,10 @@ def _assembly(key: Same) -> Assembly:
     resting = lent.get(GROUND, ())
     _ = [item.own for item in resting]  # their mass is unused, but an unknown one is refused
     ground = _placed_solids(resting)
-    drives = _actuators(links, {copy for copy, _, _ in placed})
+    circuits = _circuits(links, {copy for copy, _, _ in placed})
+    drives: dict[str, str] = {}
+    for link, (name, _) in circuits.items():
+        drives.setdefault(name, link)
     return Assembly(
         bodies,
         links,
@@ -325,6 +339,7 @@ def _assembly(key: Same) -> Assembly:
         ground,
         elements,
         {name: place_stop(stop, frame.right_handed) for name, stop, frame in patterned(mechanism.stops)},
+        circuits,
     )
 
 
@@ -670,11 +685,13 @@ def _mass(drawn: tuple[_DrawnBody, ...], materials: Mapping[str, Material]) -> M
     return combine(masses) if masses else None
 
 
-def _actuators(links: Mapping[str, PlacedLink], copies: Collection[str]) -> dict[str, str]:
-    """Name an input after its unit instance if that has a single actuator, else after the link."""
+def _circuits(links: Mapping[str, PlacedLink], copies: Collection[str]) -> dict[str, tuple[str, float]]:
+    """Input and sign of every actuator: its circuit, else its unit's copy where that has one actuator only, else its link."""
     drives = [name for name, link in links.items() if is_actuator(link.part)]
     owners = [name.rpartition("/")[0] for name in drives]
-    return {(owner if owner in copies and owners.count(owner) == 1 else name): name for owner, name in zip(owners, drives, strict=True)}
+    own = ((owner if owner in copies and owners.count(owner) == 1 else name) for owner, name in zip(owners, drives, strict=True))
+    named = {name: links[name].link.circuit or usual for name, usual in zip(drives, own, strict=True)}
+    return {name: (text.removeprefix("-"), -1.0 if text.startswith("-") else 1.0) for name, text in named.items()}
 
 
 def _gauges(mechanism: Mechanism, links: Mapping[str, PlacedLink]) -> dict[str, PlacedGauge]:

@@ -13,7 +13,9 @@ from flexstage.mechanism.assembly.pattern import copy_names
 from flexstage.mechanism.assembly.sight import gauge_findings
 from flexstage.mechanism.grammar.grammar import RESERVED
 from flexstage.mechanism.mechanism import EVERYWHERE, GROUND, NAMED, NOT_GROWING, PLATFORM, Link, Mechanism, Unit, every_body, posed
+from flexstage.parts.actuator import ThrustActuator
 from flexstage.parts.body import Body, owner_of
+from flexstage.parts.part import inner
 
 MOST_COPIES = 360
 _LONGEST = 60
@@ -37,6 +39,7 @@ def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
     yield from _loops(mechanism)
     for where, link, bodies in _links(mechanism):
         yield from _link(where, link, bodies)
+    yield from _circuits(mechanism)
 
 
 def copy_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -173,6 +176,23 @@ def _link(where: str, link: Link, bodies: dict[str, Body]) -> Iterator[Finding]:
     if len(owners) == 1:
         both = "both ends" if len(link.bodies) == 2 else "all ports"
         yield Finding(f"{where}.joins", f'{both} join "{owners.pop()}"', "Use two different bodies")
+
+
+def _circuits(mechanism: Mechanism) -> Iterator[Finding]:
+    """A circuit joins force actuators of one part, and has a legal name."""
+    parts: dict[str, str] = {}
+    for where, link, _ in _links(mechanism):
+        part = mechanism.parts.get(link.part)
+        name = link.circuit and link.circuit.removeprefix("-")
+        if not name or part is None:
+            continue
+        if not re.fullmatch(r"\w[\w-]*", name):
+            yield Finding(f"{where}.circuit", f'"{link.circuit}" is no legal name', 'Write for example "pair" or "-pair"')
+        if not isinstance(inner(part), ThrustActuator):
+            yield Finding(f"{where}.circuit", f'its part "{link.part}" exerts no force', "Leave it out, or use a voice coil")
+        elif parts.setdefault(name, link.part) != link.part:
+            what = f'its part is "{link.part}", that of another link of this circuit "{parts[name]}"'
+            yield Finding(f"{where}.circuit", what, "Use one part for all links of a circuit")
 
 
 def _links_of_copies(mechanism: Mechanism) -> Iterator[str]:

@@ -183,4 +183,4 @@ def exerted_wrenches(assembly: Assembly) -> dict[str, Array]:
     """
     inputs = np.eye(len(input_channels(assembly)))
     numbers = {name: number for number, name in enumerate(assembly.actuators)}
-    return {link: assembly.actuator(name).wrench[..., None] * inputs[numbers[name]] for name, link in assembly.thrusts.items()}
+    return {link: wrench[..., None] * inputs[numbers[name]] for link, (name, wrench) in assembly.pushes.items()}

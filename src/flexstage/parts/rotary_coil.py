@@ -1,0 +1,93 @@
+"""Rotary voice coils: torque motors of limited angle, whose torque is proportional to the current."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from flexstage.base.finding import Finding
+from flexstage.base.number import Number
+from flexstage.base.storage.digest import DOCUMENT_ONLY
+from flexstage.base.units.quantity import (
+    ANGLE,
+    CURRENT,
+    INDUCTANCE,
+    MASS,
+    MOMENT,
+    NOT_NEGATIVE,
+    POSITIVE,
+    RATIO,
+    RESISTANCE,
+    ROTATIONAL_DAMPING,
+    ROTATIONAL_STIFFNESS,
+    TEMPERATURE,
+    THERMAL_RESISTANCE,
+    TORQUE_CONSTANT,
+    VOLTAGE,
+)
+from flexstage.parts.voice_coil import DUTY, Coil, CoilSide, Supply
+
+
+@dataclass(frozen=True, eq=False)
+class RotaryCoil(Coil):
+    """A coil that drives a rotation about x: torque = `torque_constant` x current on the second body, the opposite on the first.
+
+    Positive turns the second body in the positive sense about x; a negative `torque_constant` turns it the other way. `stiffness` and
+    `damping` are the magnets' and the coil's own about x, `angular_travel` the whole angle for which the torque constant holds. All other
+    numbers are as for a `VoiceCoil`; masses count as points, so that moments of inertia are those of the bodies.
+    """
+
+    kind: ClassVar[str] = "rotary_coil"
+    axis: ClassVar[int] = 3
+    torque_constant: Annotated[Number, TORQUE_CONSTANT]
+    peak_current: Annotated[Number, CURRENT, POSITIVE] | None = None
+    continuous_current: Annotated[Number, CURRENT, POSITIVE] | None = None
+    voltage: Annotated[Number, VOLTAGE, POSITIVE] | None = None
+    maximum_torque: Annotated[Number, MOMENT, POSITIVE] | None = None
+    resistance: Annotated[Number, RESISTANCE, POSITIVE] | None = None
+    inductance: Annotated[Number, INDUCTANCE, POSITIVE] | None = None
+    mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    magnet_mass: Annotated[Number, MASS, NOT_NEGATIVE] = 0.0
+    coil: CoilSide = CoilSide.SECOND
+    drive: Supply = Supply.CURRENT
+    stiffness: Annotated[Number, ROTATIONAL_STIFFNESS] = 0.0
+    damping: Annotated[Number, ROTATIONAL_DAMPING, NOT_NEGATIVE] = 0.0
+    angular_travel: Annotated[Number, ANGLE, POSITIVE] | None = None
+    thermal_resistance: Annotated[Number, THERMAL_RESISTANCE, POSITIVE] | None = None
+    temperature_rise: Annotated[Number, TEMPERATURE, POSITIVE] | None = None
+    duty: Annotated[Number, RATIO, DUTY] = 1.0
+    source: str = field(default="", metadata=DOCUMENT_ONLY)
+
+    @property
+    def thrust(self) -> Number:
+        """The torque constant [N m/A]."""
+        return self.torque_constant
+
+    @property
+    def travel(self) -> Number | None:  # type: ignore[override]
+        """Its angular travel [rad]."""
+        return self.angular_travel
+
+    @property
+    def maximum(self) -> Number | None:
+        """Its largest torque [N m]."""
+        return self.maximum_torque
+
+    @property
+    def mirrored(self) -> RotaryCoil:
+        """Turning the other way: a torque is an axial vector.
+
+        >>> RotaryCoil(torque_constant=0.2).mirrored.torque_constant
+        -0.2
+        """
+        return replace(self, torque_constant=-self.torque_constant)
+
+    @property
+    def faults(self) -> Iterator[Finding]:
+        """Its torque constant is not zero."""
+        yield from super().faults
+        if not np.all(self.torque_constant):
+            yield Finding("torque_constant", "it is zero", 'Give for example "0.2 N m/A"')
