@@ -61,12 +61,12 @@ def nyquist_figure(found: Curves, highest: float, points: Array) -> Any:
         figure = canvas(FULL, 3.6)
         axes = panels(figure, 1, 1, Margins(left=0.62, top=0.32))[0, 0]
         for circle, drawn in ((turn, {"color": MUTED, "linestyle": ":"}), (turn / highest - 1.0, {"color": SERIES[3], "linestyle": "--"})):
-            axes.plot(circle.real, circle.imag, linewidth=0.8, **drawn)
+            axes.plot(np.real(circle), np.imag(circle), linewidth=0.8, **drawn)
         for index, name in enumerate(found.names):
             near = np.where(np.abs(found.loops[:, index]) < _NEAR, found.loops[:, index], np.nan)
-            axes.plot(near.real, near.imag, linewidth=1.1, label=name, **look(index))
+            axes.plot(np.real(near), np.imag(near), linewidth=1.1, label=name, **look(index))
         axes.plot(-1.0, 0.0, "+", color=INK, markersize=7.0)
-        axes.plot(points.real, points.imag, "o", color=INK, markersize=3.0, markerfacecolor=PAPER, markeredgewidth=0.7, zorder=5)
+        axes.plot(np.real(points), np.imag(points), "o", color=INK, markersize=3.0, markerfacecolor=PAPER, markeredgewidth=0.7, zorder=5)
         axes.set_aspect("equal", adjustable="box")
         axes.set(xlim=(-2.6, 1.4), ylim=(-1.5, 1.5), xlabel="Re L", ylabel="Im L")
         legend_above(axes)
