@@ -8,6 +8,9 @@ Targets: numpy at least 3 times faster than real time, C at least 50 times, C eq
 
 Then a step of the controller for hardware (`--hardware`) of the shipped stage: PI with notches (target: under 1 us) and LQG in modal form,
 in both precisions, with what they add and multiply and the memory they take.
+
+`benchmarks/loop.py --defaults [CASE ...]` compares plain and default tuning of the shipped cases instead (target: 12 s on the shipped
+stage, 20 s on any).
 """
 
 from __future__ import annotations
@@ -30,18 +33,25 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from flexstage.analysis.linear_statics.lost_motion import lost_motion
+from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
+from flexstage.cases.registry import CASES, case
 from flexstage.control.controllers.decentralised import Decentralised
 from flexstage.control.export.code.hardware import FLAGS, hardware_code
 from flexstage.control.export.code.precision import Precision
 from flexstage.control.export.compiler import find_compiler
+from flexstage.control.robustness.stability_margins import bandwidths, shifted_peaks
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.simulation.run import simulate
 from flexstage.control.study.choices import ControllerKind
 from flexstage.control.study.control import make_controller
 from flexstage.control.study.resolve import resolve
-from flexstage.control.study.runs import driven_machine
+from flexstage.control.study.retained import control_and_modes
+from flexstage.control.study.runs import driven_machine, runs
 from flexstage.control.study.setup import ControllerSetup, LoopSetup
+from flexstage.control.study.study import pose_gains
+from flexstage.control.systems.closed import loop as wired
 from tests.elsewhere.compiled_loop import simulate_compiled
 from tests.elsewhere.independent_loop import Stepped
 from tests.elsewhere.loops import PLATFORM, RATE, full_loop, way
@@ -82,7 +92,7 @@ void many(long count)
 
 def hardware(kind: ControllerKind, precision: Precision) -> None:
     """What a step of a controller for hardware costs."""
-    given = resolve(double_triangle(), LoopSetup(controller=ControllerSetup(kind=kind)))
+    given = resolve(double_triangle(), LoopSetup(controller=ControllerSetup(kind=kind, quick=True)))
     control = make_controller(given, given.plant.coordinates.strokes)
     machine = driven_machine(given, control)
     law = control.made_of if isinstance(control.made_of, Decentralised) else None
@@ -104,6 +114,30 @@ def hardware(kind: ControllerKind, precision: Precision) -> None:
     print(f"{told:40} {1e6 * spent:8.3f} us a step, {made.flops} additions and multiplications, {memory}{verdict}")
 
 
+def defaults(names: list[str]) -> None:
+    """Plain and default tuning: slowest crossover, Ms nominal and with all modes 2, 5 and 10 % off, slowest settling, processor seconds."""
+    print(f"{'case':26} {'tuning':8} {'crossover':>11} {'Ms':>6} {'2 %':>6} {'5 %':>6} {'10 %':>6} {'settling':>11} {'tuning':>8}")
+    for name in names:
+        for quick in (True, False):
+            try:
+                given = resolve(case(name), LoopSetup(controller=ControllerSetup(quick=quick)))
+                gains = pose_gains(given, None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model))
+                start = time.process_time()
+                given, control, _ = control_and_modes(given, gains)
+            except DesignError as error:
+                print(f"{name:26} no loop: {error.findings[0].what}")
+                break
+            spent, closed = time.process_time() - start, wired(given.plant, control.system)
+            peaks = " ".join(f"{each.peak:6.2f}" for each in shifted_peaks(closed))
+            settling = max(run.step.settling for run in runs(given, control, closed) if run.step is not None)
+            limit = 12.0 if name == "double-triangle" else 20.0
+            far = f"{np.min(bandwidths(closed).rejection):8.1f} Hz"
+            missed = "   MISSED" if spent > limit else ""
+            print(
+                f"{name:26} {'plain' if quick else 'default':8} {far} {peaks} {1e3 * settling:8.1f} ms {spent:6.1f} s{missed}", flush=True
+            )
+
+
 def by_control(reference: np.ndarray) -> tuple[np.ndarray, float]:
     import control
 
@@ -117,6 +151,9 @@ def by_control(reference: np.ndarray) -> tuple[np.ndarray, float]:
 
 
 def main() -> None:
+    if "--defaults" in sys.argv:
+        defaults(sys.argv[sys.argv.index("--defaults") + 1 :] or list(CASES))
+        return
     given = full_loop(motions=PLATFORM)
     reference, _ = way(given, round(SECONDS * RATE))
     found, spent = timed(lambda: simulate(given, reference))

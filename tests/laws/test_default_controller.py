@@ -9,9 +9,19 @@ import pytest
 
 from flexstage.cases.registry import case
 from flexstage.control.controllers.decentralised import Decentralised, loop_systems
+from flexstage.control.robustness.stability_margins import shifted_peaks
+from flexstage.control.study.control import Control
+from flexstage.control.study.resolve import ResolvedSetup, resolve
+from flexstage.control.study.retained import control_and_modes
 from flexstage.control.study.setup import ControllerSetup, LoopSetup
 from flexstage.control.study.study import LoopStudy, loop_study
+from flexstage.control.systems.closed import loop
+from flexstage.control.tuning.outcome import outcome
+from flexstage.control.tuning.search import field
 from flexstage.control.tuning.view import view
+from flexstage.control.tuning.weigh import merit
+from flexstage.mechanism.mechanism import Mechanism
+from tests.laws.test_retained_modes import random_stage
 
 SINGLE = ("parallelogram", "voice-coil-stage")
 STAGES = (*SINGLE, "tip-tilt")
@@ -102,3 +112,45 @@ def test_strokes_are_corrected_for_lost_motion() -> None:
         stage = found.settled.plant
         still = view(stage, made_of(found).loops, 0.0).systems[0].transfer(np.array([1e-6]))[0]
         np.testing.assert_allclose(still @ found.controller.gains, np.eye(len(stage.coordinates.names)), atol=2e-3)
+
+
+QUICK = {name: case(name) for name in SINGLE}
+FULL = {"xy-stage": case("xy-stage"), **{f"random {seed}": random_stage(seed) for seed in (3, 24)}}
+
+
+def tuned(stage: Mechanism, *, quick: bool) -> tuple[ResolvedSetup, Control]:
+    given = resolve(stage, LoopSetup(controller=ControllerSetup(quick=quick)))
+    return control_and_modes(given, given.plant.coordinates.strokes)[:2]
+
+
+def worst_peaks(given: ResolvedSetup, control: Control) -> list[float]:
+    """Exact peak sensitivity with all modes off by up to 2 %, and by up to 10 %."""
+    closed = loop(given.plant, control.system)
+    return [max(each.peak for each in shifted_peaks(closed, shifts)) for shifts in ((0.0, 0.01, 0.02), (0.05, 0.07, 0.1))]
+
+
+@pytest.mark.parametrize(
+    "stage",
+    [
+        *(pytest.param(stage, id=name) for name, stage in QUICK.items()),
+        *(pytest.param(stage, id=name, marks=pytest.mark.full) for name, stage in FULL.items()),
+    ],
+)
+def test_the_default_is_robust_to_shifted_modes_and_no_worse_than_the_plain_controller(stage) -> None:
+    """By exact peaks, at shifts of its own; worse in what a balance is about, of plain controllers as robust as it."""
+    given, found = tuned(stage, quick=False)
+    near, far = worst_peaks(given, found)
+    assert near <= 2.01
+    assert np.isfinite(far)
+    plain = tuned(stage, quick=True)[1]
+    if np.isfinite(worst_peaks(given, plain)[1]):
+        spec = found.tuning.spec
+        offsets = (0.0, -0.02, 0.02, -0.05, 0.05, -0.1, 0.1)
+        within = field(view(given.plant, made_of_loops(found), spec.spread, offsets), spec)
+        merits = [merit(spec, outcome(within, each.system)) for each in (found, plain)]
+        assert merits[0] >= merits[1] - 1e-3
+
+
+def made_of_loops(control: Control):
+    assert isinstance(control.made_of, Decentralised)
+    return control.made_of.loops

@@ -21,7 +21,7 @@ from flexstage.cases.registry import case
 from flexstage.control.plant_models.coordinates import coordinates
 from flexstage.control.plant_models.reduction import reduce_modes, resonances
 from flexstage.control.show.playing import response_motions
-from flexstage.control.show.sections import margin_spots, time_section
+from flexstage.control.show.sections import margin_points, margin_spots, time_section
 from flexstage.control.show.tables import margin_tables, noise_table, static_error_tables, time_tables
 from flexstage.control.simulation.result import Excursion, other_motions
 from flexstage.control.study.choices import Axis, Compensation, ControllerKind, StackKind
@@ -86,10 +86,12 @@ def test_margins_are_marked_where_the_open_loop_has_them() -> None:
     found = _calm()
     spots = tuple(margin_spots(found))
     assert found.curves is not None
-    assert {each.text.split(" margin")[0] for each in spots} == {"x: gain", "x: phase"}
+    assert {each.text.split(" margin")[0] for each in spots} == {"x: gain", "x: phase", "x: delay"}
     for spot in spots:
         opened = 1.0 / found.curves.response.transfer(np.array([spot.x]))[0, 0, 0] - 1.0
         assert spot.y == pytest.approx(abs(opened), rel=1e-6)
+    for point in margin_points(found):  # of gain on the negative real axis, of phase and delay on the unit circle
+        assert min(abs(point.imag) + (point.real > 0.0), abs(abs(point) - 1.0)) < 1e-4
     table = margin_tables(found)[1]
     assert table is not None
     told = dict(zip(*table.texts(), strict=True))

@@ -201,6 +201,16 @@ def test_what_cannot_be_had_at_once_is_said(monkeypatch):
         found(settling=2e-4, spread=0.0)
 
 
+def test_an_interruption_names_the_best_controller_so_far(monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("flexstage.control.tuning.find.search", interrupted)
+    monkeypatch.setattr("flexstage.control.tuning.find.advance", interrupted)
+    with pytest.raises(KeyboardInterrupt, match=r"The best controller so far: PI.*: all gains pass 1 at"):
+        found(overshoot=0.21)
+
+
 def shipped(controller: ControllerSetup) -> tuple[ResolvedSetup, np.ndarray]:
     floor = VibrationSetup(criterion=Criterion.VC_D)
     given = resolve(double_triangle(), LoopSetup(floor=Floor(floor, floor, floor), controller=controller))

@@ -6,10 +6,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from flexstage.base.number import Array
 from flexstage.control.plant_models.electronics import Amplifier, Sensor
 from flexstage.control.show.figures.diagram import Block as Box
 from flexstage.control.show.figures.diagram import Diagram, loop_diagram
-from flexstage.control.show.figures.frequency import measured_figure, open_loop_figure, pole_figure, sensitivity_figure
+from flexstage.control.show.figures.frequency import (
+    measured_figure,
+    nyquist_figure,
+    open_loop_figure,
+    pole_figure,
+    sensitivity_figure,
+)
 from flexstage.control.show.figures.hysteresis import hysteresis_figure
 from flexstage.control.show.figures.noise import noise_share_figure, noise_spectrum_figure
 from flexstage.control.show.figures.time import error_figure, lesson_figure, path_figure, step_figure
@@ -152,16 +159,21 @@ def frequency_section(found: LoopStudy) -> Section | None:
     peak = found.controller.tuning.spec.sensitivity if found.controller.tuning is not None else SENSITIVITY
     pair = sensitivity_figure(seen, peak)
     sensitivities = to_svg(pair, "sensitivities", "Sensitivity and complementary sensitivity over frequency")
+    circles = to_svg(nyquist_figure(seen, peak, margin_points(found)), "nyquist", "Nyquist plot of the open loops")
     poles = to_svg(pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles), "poles", "Poles of the closed loop")
     caption = (
-        "Each loop opened alone at the pose, the others closed; dotted: modes of the stage; circles: margins, of gain where the phase is "
-        "−180°, of phase where the gain is 1. Every second curve is dashed."
+        "Bode plot. Each loop opened alone at the pose, the others closed; dotted: modes of the stage; circles: margins, of gain where the "
+        "phase is −180°, of phase and delay where the gain is 1. Every second curve is dashed."
     )
     return section(
         "Over frequency",
         [
             *margin_tables(found),
             Picture(loops, caption, reading=reading(opened, spots)),
+            Picture(
+                circles,
+                "Nyquist plot of the same loops near −1; dotted: gain 1; dashed: the highest Ms allowed; circles: the margins.",
+            ),
             Picture(
                 sensitivities,
                 "Sensitivity S: remaining share of a disturbance; T: tracking. Dashed: specified maximum peak of S.",
@@ -198,6 +210,23 @@ def margin_spots(found: LoopStudy) -> Iterator[Spot]:
         if np.isfinite(each.phase.value):
             turn = number(float(np.rad2deg(each.phase.value)), 3)
             yield Spot(each.phase.frequency, f"{each.channel}: phase margin {turn}° at {number(each.phase.frequency)} Hz", 1.0)
+        if np.isfinite(each.delay.value) and np.isfinite(each.delay.frequency):
+            later = number(1e3 * each.delay.value, 3)
+            yield Spot(each.delay.frequency, f"{each.channel}: delay margin {later} ms at {number(each.delay.frequency)} Hz", 1.0)
+
+
+def margin_points(found: LoopStudy) -> Array:
+    """Open loops (m,) at the frequencies of their gain, phase and delay margins."""
+    if found.margins is None or found.curves is None:
+        return np.zeros(0, complex)
+    edges = [
+        (edge.frequency, index)
+        for index, each in enumerate(found.margins.channels)
+        for edge in (each.gain_low, each.gain_high, each.phase, each.delay)
+        if 0.0 < edge.frequency < np.inf
+    ]
+    places, loops = (np.array(each) for each in zip(*edges, strict=True)) if edges else (np.zeros(0), np.zeros(0, int))
+    return 1.0 / found.curves.response.sweep(places)[np.arange(len(places)), loops, loops] - 1.0
 
 
 def time_section(found: LoopStudy) -> Section | None:

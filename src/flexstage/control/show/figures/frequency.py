@@ -17,6 +17,8 @@ _POINTS = 260
 _TURN = 360.0
 _FLOOR, _CEILING = 1e-4, 1e3
 _LEAST = 1e-300
+_NEAR = 4.0
+"""Largest loop gain of a Nyquist plot."""
 
 
 def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) -> Any:
@@ -42,6 +44,32 @@ def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) ->
         plain_ticks(lower.xaxis, upper.yaxis)
         lower.set(xlabel="frequency [Hz]", ylabel="phase [°]", xlim=_span(found.frequencies, loops))
         legend_above(upper)
+    return figure
+
+
+def nyquist_figure(found: Curves, highest: float, points: Array) -> Any:
+    """Nyquist plot of the open loops near -1: unit circle, circle where abs(S) is the `highest` Ms allowed, `points` (m,) at the margins.
+
+    >>> from flexstage.control.example import integral_loop
+    >>> from flexstage.control.systems.closed import LoopBreak
+    >>> from flexstage.control.systems.curves import curves
+    >>> len(nyquist_figure(curves(integral_loop(), LoopBreak.POSE), 2.0, np.array([-0.5 + 0.0j])).axes)
+    1
+    """
+    turn = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
+    with style_context():
+        figure = canvas(FULL, 3.6)
+        axes = panels(figure, 1, 1, Margins(left=0.62, top=0.32))[0, 0]
+        for circle, drawn in ((turn, {"color": MUTED, "linestyle": ":"}), (turn / highest - 1.0, {"color": SERIES[3], "linestyle": "--"})):
+            axes.plot(np.real(circle), np.imag(circle), linewidth=0.8, **drawn)
+        for index, name in enumerate(found.names):
+            near = np.where(np.abs(found.loops[:, index]) < _NEAR, found.loops[:, index], np.nan)
+            axes.plot(np.real(near), np.imag(near), linewidth=1.1, label=name, **look(index))
+        axes.plot(-1.0, 0.0, "+", color=INK, markersize=7.0)
+        axes.plot(np.real(points), np.imag(points), "o", color=INK, markersize=3.0, markerfacecolor=PAPER, markeredgewidth=0.7, zorder=5)
+        axes.set_aspect("equal", adjustable="box")
+        axes.set(xlim=(-2.6, 1.4), ylim=(-1.5, 1.5), xlabel="Re L", ylabel="Im L")
+        legend_above(axes)
     return figure
 
 
