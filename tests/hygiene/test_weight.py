@@ -8,22 +8,22 @@ from tests.hygiene.source import expect_none
 from tools.weight import weigh, weights
 
 CEILINGS = {
-    "base": 27_200,
+    "base": 27_600,
     "spatial": 3_900,
-    "parts": 37_600,
-    "beams": 25_500,
-    "mechanism": 54_900,
+    "parts": 38_100,
+    "beams": 25_900,
+    "mechanism": 55_300,
     "cases": 1_200,
-    "models": 90_800,
-    "analysis": 66_500,
-    "show": 62_800,
+    "models": 97_900,
+    "analysis": 70_300,
+    "show": 63_600,
     "solid": 75_600,
-    "experiment": 97_600,
-    "control": 151_800,
-    "studies": 58_400,
-    "apps": 34_400,
+    "experiment": 98_800,
+    "control": 153_900,
+    "studies": 59_200,
+    "apps": 35_500,
     ".": 400,
-    "all": 787_900,
+    "all": 806_700,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
