@@ -42,6 +42,7 @@ MOTIONS = {
     "guide": 'motion.z = "15 um"',
     "folded": 'motion.y = "0.5 mm"',
     "carriages": 'motion = { x = "20 um", y = "20 um" }',
+    "travel": 'motion = { x = "2 mm", y = "2 mm" }',
     "tilt": 'motion = { rx = "1 mrad", ry = "1 mrad" }',
     "hexapod": "motion = " + '{ x = "30 um", y = "30 um", z = "60 um", rx = "300 urad", ry = "300 urad", rz = "100 urad" }',
 }

@@ -126,7 +126,7 @@ def test_whole_numbers_are_numbers_wherever_they_are_given():
     """Also in tables by name: a file then holds them as lengths, weights and temperatures."""
     platform = replace(STAGE.bodies["platform"], points={"tip": (0, 0, 3)})
     stage = replace(STAGE, bodies={**STAGE.bodies, "platform": platform}, temperatures={"all": 2})
-    assert not fs.check(stage)
+    assert "error" not in {each.severity.value for each in fs.check(stage)}
     assert fs.loads(fs.dumps(stage)) == stage
 
 
@@ -139,7 +139,7 @@ def test_rounding_of_written_digits_makes_no_thin_bar_impossible(digits):
         written = [float(f"{sign * moments[place]:.{digits}g}") for sign, place in zip((1, 1, 1, -1, -1, -1), PLACES, strict=True)]
         bar = replace(STAGE.bodies["platform"], solids={}, mass=0.06, centre=(0.0, 0.0, 0.0), inertia=fs.Inertia(*written))
         stage = replace(STAGE, bodies={**STAGE.bodies, "platform": bar})
-        assert not fs.check(stage)
+        assert "error" not in {each.severity.value for each in fs.check(stage)}
         assert np.all(fs.modes(fs.lumped(stage)).frequencies > 0.0)
 
 

@@ -20,6 +20,7 @@ from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.workspace.load import load_share
 from flexstage.analysis.workspace.strength import hinge_stress
 from flexstage.analysis.workspace.stroke import single_axis, stroke_limits
+from flexstage.base.units.unit import quantity_of_unit
 from flexstage.cases.registry import CASES, case
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
@@ -50,6 +51,8 @@ def test_every_key_of_every_case_is_read(name):
     for key in known_keys(mechanism):
         for form, kind in MEASURES.all.items():
             units = [kind.quantity.si, *([kind.about.si] if kind.about else [])]
+            if key.startswith("numbers."):
+                units = [quantity_of_unit(mechanism.numbers[key.partition(".")[2]].unit).si]
             if key.startswith(form.partition("<")[0]):
                 found = [item for unit in units if (item := readable(mechanism, key, f"at most 3 {unit}" if unit != "1" else "at most 3"))]
                 if found and found[0].kind is kind:

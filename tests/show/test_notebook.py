@@ -76,7 +76,7 @@ def test_check_returns_the_errors_or_the_warnings_of_the_command() -> None:
     broken, thick = replace(STAGE, materials={}), replace(STAGE, parts={**STAGE.parts, "leaf": leaf}, formulas={})
     assert {each.severity.value for each in fs.check(broken)} == {"error"}
     assert "parts.leaf.thickness" in {each.where for each in fs.check(thick) if each.severity.value == "warning"}
-    assert fs.check(STAGE) == ()
+    assert "error" not in {each.severity.value for each in fs.check(STAGE)}
 
 
 def test_a_stage_shows_its_picture() -> None:

@@ -141,7 +141,7 @@ def test_verdicts_come_first_and_failures_before_the_rest() -> None:
 def test_the_page_begins_with_what_it_comes_to_and_ends_with_what_it_was_made_from() -> None:
     page = reported("double-triangle")
     titles = re.findall(r"<h2>([^<]+)</h2>", page)
-    assert titles[:3] == ["The stage", "Requirements", "Summary"]
+    assert [each for each in titles if each != "Warnings"][:3] == ["The stage", "Requirements", "Summary"]
     assert titles[-1] == "Made from"
     assert page.index('class="headline pass">All 8 requirements are met') < page.index("<svg ") < page.index("<table")
     assert page.index(digest(case("double-triangle"), physics=True)[:16]) > page.rindex("</table>")

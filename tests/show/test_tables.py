@@ -46,7 +46,7 @@ TITLES = {
     "kinematics": "Actuator mapping R_a",
     "statics": "Stiffness at platform",
     "mass": "Mass at platform, whole stage",
-    "deflection": "Dead load, platform",
+    "deflection": "Permanent load, platform",
     "units": "Isolated units",
     "lost_motion": "Lost motion",
     "modes": "Modes",
@@ -198,7 +198,7 @@ def test_rounding_noise_of_the_linear_map_is_shown_as_nothing(name: str, moved: 
     table = result_table(found)
     rows = {row[0]: row[1:] for row in table.texts()[1:]}
     assert [axis for axis in rows if rows[axis] != ["0", *"-" * len(found.actuators)]] == moved
-    assert any("0 stands for rounding noise" in text for text in table.notes) == (len(moved) < 6)
+    assert any("0: rounding noise" in text for text in table.notes) == (len(moved) < 6)
 
 
 def test_only_a_stated_opening_is_spoken_of() -> None:
@@ -339,4 +339,4 @@ def test_responses_that_are_only_rounding_are_0():
     rows = {row[0]: row[1:] for row in table.texts()[1:]}
     assert rows["platform.z, B"] == ["0", "0", "-", "-"]
     assert "0" not in rows["platform.y, B"]
-    assert any("0 stands for rounding noise" in note for note in table.notes)
+    assert any("0: rounding noise" in note for note in table.notes)

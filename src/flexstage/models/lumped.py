@@ -403,7 +403,7 @@ def _driven_motions(stage: _Stage, inertia: Mapping[str, Contribution], basis: A
     full = loose if basis is None else basis @ loose
     wrenches = exerted_wrenches(stage.assembly)
     mass = _transpose(full) @ _momentum(inertia, full)
-    laws = max(item.law.ndim for item in stage.strains.values())
+    laws = max((item.law.ndim for item in stage.strains.values()), default=2)
     thrusts = sum((_transpose(stage.strains[name].operator[..., :6, :]) @ wrench for name, wrench in wrenches.items()), np.zeros((1, 1)))
     work = np.real(first_design(_transpose(full) @ thrusts, 2)) if wrenches else np.zeros((1, 1))
     sizes = np.linalg.norm(work, axis=0)
