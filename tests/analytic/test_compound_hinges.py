@@ -249,7 +249,7 @@ def test_what_a_compound_cannot_be_is_told():
     sideless = replace(stage(CROSS).links["pivot"], bends=None)
     assert "is not axisymmetric" in str(check(replace(stage(CROSS), links={"pivot": sideless}))[0])
     crowded = replace(stage(CROSS), parts={"hinge": replace(CROSS, spacing=4 * mm)})
-    assert "which is not at most the spacing, 4 mm" in str(check(crowded)[0])
+    assert "parts.hinge.width: must be at most the spacing, 4 mm (got 5 mm). Increase the spacing" in str(check(crowded)[0])
     with pytest.raises(DesignError, match=r"parts\.hinge: it consists of several hinges"):
         calibrate(dumps(stage(CROSS)))
 

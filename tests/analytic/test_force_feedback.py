@@ -342,9 +342,12 @@ def test_damping_that_is_not_reached_is_said():
 
 BAD = {
     "no actuator has a stack in its leg": ("voice-coil-stage", DampingSetup()),
-    "the stage has no strain gauge of this name": ("parallelogram", DampingSetup(gauges=("Q",))),
+    r"damping\.gauges Q: unknown strain gauge\. None is defined": ("parallelogram", DampingSetup(gauges=("Q",))),
     "both a damping ratio and a gain are given": ("parallelogram", DampingSetup(ratio=0.3, gain=100.0)),
-    "damping.rate: 25000 Hz is 2.5 times the rate of the loop": ("parallelogram", DampingSetup(rate=25e3)),
+    r"damping\.rate: rate must be a multiple of the loop's 10000 Hz \(got 25000 Hz, ratio 2\.5\)\. Use 20000 Hz": (
+        "parallelogram",
+        DampingSetup(rate=25e3),
+    ),
 }
 
 

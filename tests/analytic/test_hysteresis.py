@@ -249,7 +249,7 @@ def test_bad_step_records_are_refused_with_numbers():
     assert "the voltage changes from 1.98 s to 198 s" in refused_creep(times, times, strokes)
     assert "too short after the step (got 0.48 s" in refused_creep(*(each[:75] for each in (times, volts, strokes)))
     assert "scatters by" in refused_creep(times, volts, strokes + 1e-5 * np.sin(times))
-    assert "must be finite" in refused_creep(times, volts, np.where(times > 3.0, np.nan, strokes))
+    assert "a sample is not finite" in refused_creep(times, volts, np.where(times > 3.0, np.nan, strokes))
     assert "do not ascend" in refused_creep(times[::-1], volts[::-1], strokes)
     assert "times (10000,)" in refused_creep(times, volts[1:], strokes)
 

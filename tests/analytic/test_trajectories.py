@@ -163,7 +163,7 @@ def test_what_the_strokes_do_not_reach_is_refused_with_numbers():
     times = np.linspace(0.0, 1.0, 1001)
     asked = reference(Sine({"x": 2e-6}, 1.0), ("x", "rz"), times)
     (found,) = reach_findings(asked, times, room)
-    assert re.search(r"at 0\.084 s; at 0\.25 s x = 2 um takes 2 of the stroke\. Scale the trajectory to 0\.5 ", str(found))
+    assert re.search(r"from 0\.084 s; at 0\.25 s x = 2 um takes 2 of the stroke\. Scale the trajectory to 0\.5 ", str(found))
     assert not reach_findings(0.5 * asked, times, room)
 
 
@@ -187,7 +187,7 @@ def test_speed_is_compared_with_the_amplifiers():
         ("time [V], x [um]\n0, 0\n1, 2\n", 'time: its unit is "V"'),
         ("time [s], speed [um]\n0, 0\n1, 2\n", "no column is a coordinate"),
         ("x [um], y [um]\n0, 0\n1, 2\n", 'wrong first column (got "x"'),
-        ("time [s], x [um]\n0, 0\n1, 2\n1, 3\n", "time 1 s of row 3 does not come after 1 s"),
+        ("time [s], x [um]\n0, 0\n1, 2\n1, 3\n", "times must increase (got 1 s in row 3 after 1 s). Sort the rows"),
         ("time [s], x [um]\n0, 0\n1, \n2, 3\n", "x: row 2 is not finite"),
     ],
 )

@@ -99,8 +99,8 @@ def test_bad_input_ends_with_findings(recorded: Command, tmp_path: Path) -> None
     assert "dead.csv: stroke: all samples equal 0: the channel is dead" in ended_badly(recorded, "dead.csv")
     assert "there is no channel w" in ended_badly(recorded, "stack.csv", "--stroke", "w")
     exchanged = ended_badly(recorded, "stack.csv", "--volts", "y", "--stroke", "u")
-    assert "y is in um, which is not volts" in exchanged
-    assert "u is in V, which is not a length" in exchanged
+    assert "y is in um (expected volts)" in exchanged
+    assert "u is in V (expected a length)" in exchanged
     assert "file not found" in ended_badly(recorded, "none.csv")
     assert "no range (got 1000 V to 0 V" in ended_badly(recorded, "stack.csv", "--limits", "1000 V", "0 V")
     assert "step.uff: record: too short after the step" not in ended_badly(recorded, "stack.csv", "--step", "stack.csv")

@@ -151,9 +151,9 @@ def test_noise_gives_no_mode_and_says_so(flexstage: Command, tmp_path: Path) -> 
     write(tmp_path / "noise.csv", in_memory(channels, 512.0, np.random.default_rng(2).standard_normal((8192, 3))))
     ended = flexstage("identify", "noise.csv", "--report", "noise.html")
     assert ended.code == 0
-    assert "no mode stands out of the noise" in ended.err
+    assert "no mode exceeds the noise" in ended.err
     assert "No mode was found" in ended.out
-    assert "no mode stands out of the noise" in (tmp_path / "noise.html").read_text()
+    assert "no mode exceeds the noise" in (tmp_path / "noise.html").read_text()
 
 
 def changed(column: str, change: Callable[[np.ndarray], Any]) -> Callable[[Record], Record]:

@@ -27,7 +27,7 @@ from flexstage.show.command import output
 from tests.apps.command import Command, design_in
 
 BAD_TARGETS = {
-    ("--report", "nowhere/report.html"): "no folder nowhere",
+    ("--report", "nowhere/report.html"): "nowhere/report.html cannot be written: folder nowhere not found",
     ("--json", "folder"): "it is a folder",
     ("--mat", "stage.toml"): "read by this command",
     ("--report", "stage.toml"): "read by this command",

@@ -110,12 +110,13 @@ def test_another_version_than_the_design_asks_for_is_refused(work, tmp_path):
 
 
 def test_without_the_package_the_kind_is_refused_with_what_to_do(without):
-    assert "known where that package is installed" in without
+    assert 'parts.leaf.kind: unknown kind (got "taper")' in without
+    assert "Install the package of the kind, if another package provides it." in without
 
 
 def test_without_the_package_its_controller_and_amplifier_are_refused_by_kind(without):
-    assert 'amplifier.kind: found "switching"' in without
-    assert 'controller.kind: found "integrators"' in without
+    assert 'amplifier.kind: unknown kind (got "switching")' in without
+    assert 'controller.kind: unknown value (got "integrators")' in without
 
 
 def test_check_analyse_and_schema_know_it(work, known):

@@ -147,7 +147,7 @@ async def test_a_mistake_is_told_at_its_line_and_the_last_design_stays(page, stu
     await page.until(lambda page: not page.state.sound)
     (problem,) = page.state.problems
     assert (problem.where, problem.line, problem.column) == (THICKNESS, line, 1)
-    assert "not greater than 0 mm" in problem.what
+    assert problem.what == "must be greater than 0 mm (got -1 mm)"
     assert page.state.amounts == found.amounts
     assert page.told[say.Figures].modes == before.modes
     await page.ask(say.Edit, text=TEXT.replace("[parts.leaf]", "[parts.leaf"), revision=page.state.revision)
@@ -225,7 +225,11 @@ async def test_a_stage_that_its_load_buckles_is_an_error_though_its_text_is_soun
 
 @on_page
 async def test_a_wrong_unit_is_refused_in_the_words_of_the_checks(page, studio):
-    for text, words in (("3 kg", "a mass, where a length is expected"), ("0.4", "unit missing"), ("-1 mm", "not greater than 0 mm")):
+    for text, words in (
+        ("3 kg", 'must be a length (got "3 kg", a mass)'),
+        ("0.4", "unit missing"),
+        ("-1 mm", "must be greater than 0 mm (got -1 mm)"),
+    ):
         said = await page.ask(say.Set, address=THICKNESS, text=text)
         assert isinstance(said, say.Refusal)
         assert words in said.problems[0].what
@@ -545,7 +549,7 @@ def test_a_path_of_the_design_is_brought_as_it_is_stated():
     found = travelled(text, "", 1, say.Travel(7, "platform.z", "", "9 mm", 50, (), "out"), lambda _: None)
     curves = {each["name"]: np.frombuffer(base64.b64decode(each["values"]), "<f4") for each in found.motions[0]["course"]["curves"]}
     assert curves["platform.x"].tolist() == [-1.0, 0.0, 1.0]
-    with pytest.raises(DesignError, match="no such path"):
+    with pytest.raises(DesignError, match=r"paths\.back: unknown path\. Use out"):
         travelled(text, "", 1, say.Travel(7, "platform.z", "", "9 mm", 50, (), "back"), lambda _: None)
 
 

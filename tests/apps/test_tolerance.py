@@ -70,10 +70,10 @@ def test_without_a_specification_there_is_no_yield(study_file, tmp_path, flexsta
         ("hinges", "hinge", "Use hinges"),
         ("units.rotation.z", "units.rotaton.z", "Use rotation"),
         ("300 urad", "-1 urad", "must be greater than 0"),
-        ("copies = 40", "copies = 1", "Give a whole number of 2 or more"),
+        ("copies = 40", "copies = 1", "tolerance.copies: must be 2 or more (got 1). Use e.g. 2."),
         ("seed = 2", 'sampling = "grid"', 'unknown value (got "grid")'),
         ("seed = 2", 'point = "edge"', 'unknown point "edge"'),
-        ("seed = 2", 'yield = "101 %"', "which is not greater than 0.5 and less than 1"),
+        ("seed = 2", 'yield = "101 %"', "must be greater than 0.5 and less than 1 (got 1.01)"),
         ("[scatter]", "[scater]", "scater: unknown key"),
     ],
 )

@@ -345,7 +345,7 @@ def test_the_same_loop_gives_the_same_library(tmp_path, monkeypatch):
 def test_without_a_compiler_it_is_said_and_the_text_still_comes(tmp_path, monkeypatch):
     given = full_loop(current=0.03)  # no other test has compiled it
     monkeypatch.setenv("CC", "no-such-compiler")
-    with pytest.raises(DesignError, match=r"compiler: a functional mock-up unit needs a compiler of C.*CC = no-such-compiler.*Install one"):
+    with pytest.raises(DesignError, match=r"compiler: a functional mock-up unit needs a C compiler.*CC = no-such-compiler.*Install one"):
         write_fmu(tmp_path / "controller.fmu", controller_code(given))
     with pytest.raises(DesignError, match="the compiled simulation needs a C compiler"):
         simulate_compiled(given, np.zeros((2, 6)))
@@ -359,7 +359,7 @@ def test_without_a_compiler_it_is_said_and_the_text_still_comes(tmp_path, monkey
     [
         (write_controller, "controller.txt", r"does not end in \.c\. Call it controller\.c"),
         (write_controller, "2 axes.c", r'"2 axes" is a reserved function name\. Call it stage_2_axes\.c'),
-        (write_controller, "Math.c", r"its header Math\.h would stand before a system's.*Call it stage_Math\.c"),
+        (write_controller, "Math.c", r"its header Math\.h would replace a system header.*Call it stage_Math\.c"),
         (lambda path, given: write_fmu(path, controller_code(given)), "controller.zip", r"does not end in \.fmu"),
         (lambda path, _: write_plant(path, integral_loop().plant), "plant.m", r"does not end in \.mat"),
     ],

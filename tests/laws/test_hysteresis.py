@@ -160,16 +160,16 @@ def test_every_reason_is_told():
         (lambda: PrandtlIshlinskii([1.0], [1.0]), "first threshold of axis 0 must be 0 (got 1)"),
         (lambda: PrandtlIshlinskii([0.0, 2.0, 2.0], [1.0, 1.0, 1.0]), "thresholds of axis 0 must ascend (got 2 after 2)"),
         (lambda: PrandtlIshlinskii([0.0, 2.0], [1.0]), "got thresholds (1, 2), weights (1, 1)"),
-        (lambda: PrandtlIshlinskii([0.0], [np.nan]), "must be finite"),
+        (lambda: PrandtlIshlinskii([0.0], [np.nan]), "a threshold or a weight is not finite"),
         (
             lambda: PrandtlIshlinskii([0.0], [1.0], Envelope(np.tile([0.0, 1.0], (2, 1)), np.tile([0.0, 1.0], (2, 1)))),
             "wrong number of axes (got 2, expected 1",
         ),
         (lambda: Envelope([0.0, 0.0], [0.0, 1.0]), "got knot 1 of axis 0 at 0 after 0"),
         (lambda: Envelope([0.0], [0.0]), "at least two"),
-        (lambda: Envelope([0.0, np.inf], [0.0, 1.0]), "must be finite"),
+        (lambda: Envelope([0.0, np.inf], [0.0, 1.0]), "a knot or a value is not finite"),
         (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.zeros((3, 2))), "(3, 2) for 1 axes"),
-        (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.array([np.nan])), "must be finite"),
+        (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.array([np.nan])), "an input is not finite"),
     ],
 )
 def test_models_that_are_none_are_refused(make, words):

@@ -250,7 +250,7 @@ def test_modes_of_a_large_stage_are_its_lowest_and_say_so():
     with patch.object(lumpeds, "LARGE", count + 1):
         every = modes(lumpeds.lumped(stage))
     assert found.partial
-    assert "960 freedoms" in found.provenance
+    assert "of 960 degrees of freedom" in found.provenance
     np.testing.assert_allclose(found.frequencies, every.frequencies[: len(found.frequencies)], rtol=1e-6)
 
 

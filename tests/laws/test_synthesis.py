@@ -230,7 +230,7 @@ BAD = {
     '"PSt 1000/10/150 VS18"': ('"PSt 1000/10/155"', 'unknown actuator "PSt 1000/10/155"'),
     "requirements.frequency": (
         'goals = { maximise = "frequency", minimise = "envelope.x" }\nrequirements.frequency',
-        "there are two goals",
+        "it has two goals",
     ),
     'name = "scanner"': ('name = "scanner"\ncatalogue = "nowhere.toml"', "file not found"),
     "specification 1": ("study 1", "a study file, expected a specification file"),

@@ -260,7 +260,8 @@ def test_headlines_say_in_words_where_theory_and_finite_elements_differ(
     coarse = replace(row, figure="coarse", theory=1.1, fea_error=0.75)
     assert departures((better, row, coarse)) == (f"figure: {words}" if words else "")
     found = Verification(parallelogram(), (better, row, coarse), {}, None, None, {})
-    assert found.headline.endswith(f"{words}." if words else "for 2 of 3 figures.")
+    suffices = f"Theory suffices for {0 if words else 2} of 3 figures of the stage."
+    assert found.headline == (f"Figure: {words}. {suffices}" if words else suffices)
     assert verdict((better, row, coarse)).startswith(f"Figure: {words}. " if words else "Lumped theory")
 
 

@@ -176,7 +176,7 @@ def test_too_few_gauges_are_told(record: Record) -> None:
 
 def test_names_that_are_none_of_the_stage(record: Record) -> None:
     renamed = replace(record, channels=tuple(Channel(f"probe {each.name}", each.unit, each.role) for each in record.channels))
-    with pytest.raises(DesignError, match="no output of this name"):
+    with pytest.raises(DesignError, match=r"probe S1: unknown output, like all others of the record\. Use S1, S2, S3, S4, S5 or S6"):
         compare(STAGE, identified(renamed))
 
 
@@ -228,7 +228,7 @@ def test_noise_alone_is_compared_with_nothing() -> None:
     noise = np.random.default_rng(5).standard_normal(silent.values.shape)
     found = compare(STAGE, identified(in_memory(silent.channels, silent.rate, noise)))
     assert all(row.experiment is None for row in found.modes)
-    assert any("no mode stands out" in text for text in found.data_warnings)
+    assert any("no mode exceeds the noise" in text for text in found.data_warnings)
     assert any("not found in the experiment: 1 (tilt" in text for text in found.data_warnings)
 
 

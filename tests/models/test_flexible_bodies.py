@@ -185,7 +185,11 @@ def test_loose_outlines_are_named_and_not_estimated(at: tuple[float, float, floa
 
 
 def test_bodies_without_outlines_are_listed_by_default() -> None:
-    (told,) = (each for each in defaults(case("three-rrr")) if "taken as rigid" in each.what)
+    (told,) = (each for each in defaults(case("three-rrr")) if "rigid by default" in each.what)
+    assert (told.what, told.advice) == (
+        "rigid by default, flexibility unknown: it has no outlines",
+        "Compare with flexstage verify",
+    )
     assert told.where.split(", ") == [f"L{number}/{body}" for number in (1, 2, 3) for body in ("base", "head")]
 
 

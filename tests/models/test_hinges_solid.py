@@ -75,7 +75,7 @@ def test_not_even_the_coarsest_fits():
 @pytest.mark.parametrize(
     ("part", "text"),
     [
-        (Joint(), "part: must be a Shaped (got a Joint)"),
+        (Joint(), r"part: must be a Shaped \(got a Joint\)"),
         (Notch("m", np.array([1.0, 2.0]) * MM, 3.0 * MM, Circular(2.0 * MM)), "thickness: is a batch of 2"),
         (Notch("m", 1.0 * MM, 3.0 * MM, Circular(np.array([2.0, 3.0]) * MM)), "radius: is a batch of 2"),
         (Neck("m", 1.0 * MM, Filleted(4.0 * MM, 3.0 * MM)), "do not fit into its length of 0.004 m"),

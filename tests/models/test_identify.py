@@ -108,7 +108,7 @@ def test_pure_noise_gives_no_mode_and_says_so():
     for seed in range(SEEDS if FULL else 1):
         found = identify(_noise(seed))
         assert len(found.frequencies) == 0
-        assert "no mode stands out of the noise" in found.data_warnings[0]
+        assert "no mode exceeds the noise" in found.data_warnings[0]
 
 
 def test_six_single_actuator_records_give_the_modes_of_all_at_once():
@@ -189,7 +189,10 @@ def test_records_that_do_not_fit_together_are_refused():
     other = replace(made.select([channel.name for channel in made.channels if channel.name != "y6"]), rate=1000.0)
     with pytest.raises(DesignError) as caught:
         identify([made, other])
-    assert [finding.advice for finding in caught.value.findings] == ["Sample all alike", "Name outputs alike in all records"]
+    assert [finding.advice for finding in caught.value.findings] == [
+        "Sample all at the same rate",
+        "Use the same output names in all records",
+    ]
 
 
 def test_a_record_without_inputs_is_refused():

@@ -97,7 +97,7 @@ def test_nothing_that_moves_shows_no_mode() -> None:
 
     found = identify(changed(record(truth(), 1, seconds=20.0), stop))
     assert len(found.frequencies) == 0
-    assert "no mode stands out of the noise" in found.data_warnings[0]
+    assert "no mode exceeds the noise" in found.data_warnings[0]
 
 
 @pytest.mark.parametrize("resolution", [None, 0.0])
@@ -145,7 +145,7 @@ def test_short_records_miss_modes_and_say_so(seconds: float) -> None:
     for seed in range(SEEDS):
         found = identify(record(truth(seed=1000 + seed), seed, seconds=seconds))
         if len(found.frequencies) < 6:
-            assert any("may be missing" in each or "There are too few lines" in each for each in found.data_warnings)
+            assert any("may be missing" in each or "Too few lines" in each for each in found.data_warnings)
             assert any(f"lasts {seconds:g} s" in each for each in found.data_warnings)
 
 
@@ -165,10 +165,10 @@ def test_records_as_long_as_advised_show_all_modes(seed: int) -> None:
 def test_a_band_that_cannot_be_searched_is_told() -> None:
     made = record(truth(), 0, seconds=4.0)
     low, high = (
-        next(each for each in identify(made, Search(band=band)).data_warnings if "are asked for" in each)
+        next(each for each in identify(made, Search(band=band)).data_warnings if "are requested" in each)
         for band in ((20, 300), (130, 1e3))
     )
-    assert re.search(r"from 20 to 300 Hz are asked for; from 1\d\d.* to 300 Hz they could be looked for. Record longer", low)
+    assert re.search(r"from 20 to 300 Hz are requested; from 1\d\d.* to 300 Hz they could be looked for. Record longer", low)
     assert "from 130 to 860.2 Hz they could be looked for. Record faster" in high
 
 
@@ -179,7 +179,7 @@ def test_what_noise_hides_is_told_in_numbers() -> None:
     )
     assert "narrower than the 1.2 Hz between lines" in identify(alone).data_warnings[0]
     assert "though inputs explain" not in identify(alone).data_warnings[0]
-    assert "no mode can be told, though inputs explain 39.5%" in identify(record(truth(), 0, seconds=1.0)).data_warnings[0]
+    assert "no mode can be identified, though inputs explain 39.5%" in identify(record(truth(), 0, seconds=1.0)).data_warnings[0]
 
 
 @pytest.mark.parametrize("steps", [np.round, np.floor])

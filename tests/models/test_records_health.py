@@ -90,8 +90,8 @@ def delayed(values: np.ndarray) -> None:
 PLANTED = {
     zero: (FaultTolerance.DEAD, "S2", "it is zero throughout"),
     constant: (FaultTolerance.DEAD, "S2", "it is constant at 2.5 um"),
-    pulled: (FaultTolerance.DEAD, "S2", "it stands still from 2.92969 s to 4 s, 2192 of 8192 samples"),
-    faint: (FaultTolerance.DEAD, "S2", "its rms is 1.51e-06 um, that of the others of its kind 1.51 um"),
+    pulled: (FaultTolerance.DEAD, "S2", "it is frozen from 2.92969 s to 4 s, 2192 of 8192 samples"),
+    faint: (FaultTolerance.DEAD, "S2", "its rms is 1.51e-06 um (others of its kind: 1.51 um)"),
     nothing_but_nan: (FaultTolerance.DEAD, "S2", "8092 of 8192 samples are not numbers, the first at 0.0488281 s"),
     clipped: (FaultTolerance.CLIPPED, "S2", "it is clipped: "),
     clipped_below: (FaultTolerance.CLIPPED, "S2", "least value, -4 um"),
@@ -284,7 +284,7 @@ def test_a_drive_that_rests_is_no_hammer() -> None:
 def test_a_frequency_that_stands_twice_is_told_by_its_lines() -> None:
     frequencies = np.array([1.0, 2.0, 2.0, 3.0])
     twice = Responses(frequencies, CHANNELS[3:4], CHANNELS[:1], np.ones((4, 1, 1), complex))
-    assert [fault.finding.what for fault in responses_findings(twice)] == ["its frequencies do not rise: 2 Hz stands twice, lines 2 and 3"]
+    assert [fault.finding.what for fault in responses_findings(twice)] == ["its frequencies do not rise: 2 Hz occurs twice, lines 2 and 3"]
 
 
 def test_statistics_do_not_depend_on_blocks() -> None:

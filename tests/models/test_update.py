@@ -19,7 +19,7 @@ from flexstage.experiment.updating.free import Prior, free
 from flexstage.experiment.updating.gains import _extrapolate_to_zero, measured_gains
 from flexstage.experiment.updating.rows import ModeRow, follow_modes, frequency_slopes, gain_slopes, start_design, static_gains
 from flexstage.experiment.updating.text import updated_text
-from flexstage.experiment.updating.update import Told, Updated, update
+from flexstage.experiment.updating.update import Identifiability, Updated, update
 from flexstage.experiment.virtual_rig.inputs import InputQuantity
 from flexstage.experiment.virtual_rig.rig import rig
 from flexstage.experiment.virtual_rig.setup import RigSetup, Sensing
@@ -69,14 +69,14 @@ def test_a_neck_is_found_in_a_record_of_the_virtual_rig() -> None:
     test = rig(built, lumped(built), RigSetup(seconds=12.0, seed=5, sensing=Sensing(density=5e-9)))
     found = update(STAGE, identification(usable_measurement([test])).found, [NECK])
     assert found.changes[0] == pytest.approx(0.05, abs=0.005)
-    assert found.told == (Told.WELL,)
+    assert found.identifiability == (Identifiability.WELL,)
 
 
 def test_lever_and_front_hinge_are_not_identifiable_from_frequencies_and_say_so() -> None:
     built = changed(lever=1.05, front=0.96)
     found = update(STAGE, made(built), [LEVER, FRONT])
     front = found.addresses.index(FRONT)
-    assert found.told[front] is Told.NOT
+    assert found.identifiability[front] is Identifiability.NOT
     assert found.verdicts[front] == f"not identifiable from frequencies; only together with {LEVER}"
     assert np.all(np.abs(errors(found, built)) < 1.96 * found.deviations)
     assert found.correlations.values[0, 1] < -0.9
@@ -91,8 +91,8 @@ def test_from_static_gains_they_are() -> None:
     built = changed(lever=1.05, front=0.96)
     found = update(STAGE, made(built), [LEVER, FRONT], Prior(gain_error=1e-3))
     lever, front = (found.addresses.index(name) for name in (LEVER, FRONT))
-    assert found.told[lever] is Told.WELL
-    assert found.told[front] is not Told.NOT
+    assert found.identifiability[lever] is Identifiability.WELL
+    assert found.identifiability[front] is not Identifiability.NOT
     assert np.all(np.abs(errors(found, built)) < 1.96 * found.deviations)
     assert found.deviations[lever] < 0.015
     assert found.freedoms == 4 + 36
@@ -161,7 +161,7 @@ def test_three_copies_are_told_together_only() -> None:
     """The mean of a repeated pair, a symmetric function, moves alike with all three copies."""
     names = [f"B{number}/front.thickness" for number in (1, 2, 3)]
     found = update(STAGE, made(changed(neck=1.02), noise=EXACT), names)
-    assert found.told == (Told.NOT,) * 3
+    assert found.identifiability == (Identifiability.NOT,) * 3
     assert np.ptp(found.changes) < 1e-6
     assert found.singular[0] > 5.0
     assert found.singular[1] < 1e-3
@@ -226,13 +226,13 @@ def test_the_new_file_keeps_comments_and_says_where_values_are_from() -> None:
         (("horizontal/frnt.thickness",), Prior(), "Use front"),
         (("parts.neck",), Prior(), "not a single number"),
         (("platform.mass",), Prior(), "the body's mass follows from its solids"),
-        (("horizontal/front.at.y",), Prior(), "it is 0"),
+        (("horizontal/front.at.y",), Prior(), "horizontal/front.at.y: zero has no relative uncertainty"),
         (("neck.thickness", NECK), Prior(), "named twice"),
         (("steel.yield_stress",), Prior(), "has no effect on the frequencies compared"),
         (("steel.yield_stress",), Prior(gain_error=1e-3), "has no effect on the frequencies and gains compared"),
         ((NECK,), Prior(prior=0.0), "0 is none"),
         ((NECK,), Prior(priors={"steel.density": 0.1}), "not among the free numbers"),
-        ((NECK, "neck.width", "steel.density", "steel.young", LEVER), Prior(), "4 data"),
+        ((NECK, "neck.width", "steel.density", "steel.young", LEVER), Prior(), r"too few data \(got 4: .* for 5 free numbers"),
     ],
 )
 def test_bad_questions_are_refused(names: Sequence[str], known: Prior, said: str) -> None:
@@ -246,7 +246,7 @@ def test_tests_that_do_not_fit_are_refused() -> None:
     with pytest.raises(DesignError, match="unknown output"):
         update(STAGE, replace(experiment, outputs=other), [NECK])
     none = replace(experiment, frequencies=np.zeros(0), shapes=np.zeros((6, 0)), frequency_deviations=np.zeros(0))
-    with pytest.raises(DesignError, match="none of the 0 modes"):
+    with pytest.raises(DesignError, match="none of the 0 identified modes matches a platform mode"):
         update(STAGE, replace(none, damping=np.zeros(0), damping_deviations=np.zeros(0)), [NECK])
 
 
@@ -322,7 +322,7 @@ def test_nothing_is_said_of_numbers_where_theory_and_test_contradict_each_other(
     test = replace(plain, inputs=renamed, responses=replace(plain.responses, inputs=renamed))
     found = update(STAGE, test, [NECK], Prior(gain_error=0.02))
     assert found.chi_square > 1e3
-    assert found.told == (Told.WITHHELD,)
+    assert found.identifiability == (Identifiability.WITHHELD,)
     assert found.verdicts[0].startswith("withheld: chi-square ")
     assert f"{found.parameters[0].address}: {found.verdicts[0]}." in found.notes
     assert any("look exchanged" in each for each in found.data_warnings)

@@ -164,7 +164,7 @@ def test_tags_follow_the_value() -> None:
         ("leg/front.at.w", ["Use x, y or z"]),
         ("leg/front.joins", ["cannot be overridden"]),
         ("leg/front", ["cannot be overridden"]),
-        ("bodies.platform.inertia.xx", ["not given"]),
+        ("bodies.platform.inertia.xx", ['"xx"', "its parent is not specified", "Specify the parent first"]),
         ("tags.parts.neck.thickness", ["no values"]),
         ("", ["unknown name"]),
     ],

@@ -167,7 +167,7 @@ def test_two_solids_are_too_many(tmp_path: Path) -> None:
     path = tmp_path / "two.step"
     boxes = [occ.Box(occ.Pnt(x, 0, 0), occ.Pnt(x + 1, 1, 1)) for x in (0, 5)]
     occ.Compound(boxes).WriteStep(str(path))
-    with pytest.raises(DesignError, match="it holds 2 solids"):
+    with pytest.raises(DesignError, match=r'it contains 2 solids: #1, #2\. Select one: solid = "#1"'):
         measure(path)
 
 

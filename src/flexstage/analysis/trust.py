@@ -10,7 +10,7 @@ class Trust(Enum):
 
     DEPENDENT = "not independent"
     EITHER = "they agree"
-    UNCLEAR = "FEA too coarse to tell"
+    UNCLEAR = "FEA mesh too coarse"
     THEORY = "theory suffices"
     CALIBRATED = "calibrated theory"
     FEA = "FEA"

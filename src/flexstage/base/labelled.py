@@ -11,7 +11,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 
 NOISE = 1e-9
-NOISE_RULE = "0 stands for rounding noise: below 1e-9 of the geometric mean of the largest entries (SI) in the row and the column."
+NOISE_RULE = "0: rounding noise, below 1e-9 of the geometric mean of the largest entries (SI) in the row and the column."
 """Rule for rounding noise as 0, for table notes."""
 
 

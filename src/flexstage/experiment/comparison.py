@@ -242,9 +242,9 @@ def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...
     """Find the outputs common to record and model; raises `DesignError` without any."""
     known = {channel.name for channel in model.outputs}
     found = tuple(channel.name for channel in experiment.outputs if channel.name in known)
-    gauges = [name for name in known if "." not in name]
+    gauges = [channel.name for channel in model.outputs if "." not in channel.name]
     require(
-        Finding(channel.name, "unknown output, nor of any other of the record", suggest_nearest(channel.name, gauges))
+        Finding(channel.name, "unknown output, like all others of the record", suggest_nearest(channel.name, gauges))
         for channel in experiment.outputs
         if not found
     )

@@ -348,7 +348,7 @@ class _Outline:
 
     @property
     def key(self) -> Array:
-        """Numbers that tell it from others."""
+        """Numbers that distinguish it from others."""
         shape = int(digest(self.solid, physics=True)[:12], 16)
         return np.array([shape, *self.rotation.ravel(), *self.place, self.first, self.shear, self.density])
 

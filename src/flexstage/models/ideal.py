@@ -291,7 +291,7 @@ def _graph(mechanism: Mechanism) -> _Graph:
     order = layout(assembly)
     operators = [deformation(assembly, order, link) for link in assembly.links.values()]
     if not operators:
-        raise refuse("links", "there are none", "Join bodies by links, for example the platform and the ground")
+        raise refuse("links", "none specified", "Join bodies by links, for example the platform and the ground")
     batch = np.broadcast_shapes(*{operator.shape[:-2] for operator in operators})
     strain = np.concatenate([np.broadcast_to(operator, (*batch, *operator.shape[-2:])) for operator in operators], axis=-2)
     length = _length(assembly)

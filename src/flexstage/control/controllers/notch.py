@@ -90,7 +90,7 @@ def notch_findings(notches: Iterable[Notch], frequencies: Iterable[float]) -> li
             continue
         below = [mode for mode in modes if mode < each.frequency]
         above = [mode for mode in modes if mode > each.frequency]
-        side = f"above the highest, {below[-1]:g} Hz" if below else "there are none"
+        side = f"above the highest, {below[-1]:g} Hz" if below else "the stage has none"
         if above:
             side = f"between those at {below[-1]:g} Hz and {above[0]:g} Hz" if below else f"below the lowest, {above[0]:g} Hz"
         advice = "Move it to the mode that limits the loop, or omit it"

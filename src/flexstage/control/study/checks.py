@@ -106,7 +106,7 @@ def _controller(found: ControllerSetup) -> Iterator[Finding]:
     if found.law not in (ControllerKind.PI, ControllerKind.PID) and gains:
         yield Finding(f"controller.{gains[0]}", f"a controller of kind {found.law.value} does not have it", "Leave it out, or take kind pi")
     elif tuned and gains:
-        what = f"{tuned[0]} asks for tuning, and {', '.join(gains)} is given" if len(gains) == 1 else _contradiction(tuned, gains)
+        what = f"{tuned[0]} requests tuning, and {', '.join(gains)} is given" if len(gains) == 1 else _contradiction(tuned, gains)
         yield Finding("controller", what, "Specify either the requirements or the gains")
     yield from _goal(found)
     yield from _loops(found)
@@ -167,7 +167,7 @@ def _loops(found: ControllerSetup) -> Iterator[Finding]:
     if found.loops and not found.stated and found.law in (ControllerKind.PI, ControllerKind.PID):
         yield Finding("controller.loops", "loops are stated without gains", "Give proportional or integral, or leave loops out")
     if found.prefilter is not None and not found.stated:
-        yield Finding("controller.prefilter", "there are no gains that it belongs to", "State the gains, or leave it out")
+        yield Finding("controller.prefilter", "it has no gains", "State the gains, or leave it out")
 
 
 def _contradiction(tuned: list[str], gains: list[str]) -> str:

@@ -267,7 +267,7 @@ def _append(parts: tuple[System, ...]) -> System:
     steps = {part.step for part in parts}
     if len(steps) != 1:
         shown = ", ".join(sorted("continuous" if step is None else f"{step:g} s" for step in steps))
-        require([Finding("systems", f"their steps differ: {shown}", "Sample them alike")])
+        require([Finding("systems", f"their steps differ: {shown}", "Use the same step in all")])
     return System(
         *block_matrices(parts),
         inputs=tuple(channel for part in parts for channel in part.inputs),

@@ -234,7 +234,7 @@ def _missed(within: Field, found: Outcome, far: float) -> Iterator[Finding]:
     wanted = [name for name, value in stated.items() if value]
     if far > _UNMET and wanted:
         reached = ", ".join(f"{name} {each:.4g} Hz" for name, each in zip(within.seen.loops.names, found.rejection[0], strict=True))
-        kept = f"{' and '.join(wanted)} with an overshoot of at most {100.0 * spec.overshoot:g} % conflict"
+        kept = f"{', '.join(wanted)} and an overshoot of at most {100.0 * spec.overshoot:g} % conflict"
         what = f"{kept}: the nearest design misses by {100.0 * far:.2g} %, with rejection up to {reached}"
         yield Finding("controller.goal", what, "Relax one of them, allow a higher peak of S, or sample faster")
 

@@ -78,12 +78,12 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
         yield Finding("controller.goal.rejection", what, "Ask for less, or sample faster")
     elif spec.rejection is not None and 2.0 * np.pi * spec.rejection * delay > 1.0:
         turn = f"a delay of {1e3 * delay:g} ms turns by {360.0 * spec.rejection * delay:.0f} deg"
-        what = f"up to {spec.rejection:g} Hz {turn}: no loop that rejects so far bears it"
+        what = f"up to {spec.rejection:g} Hz {turn}: no loop with this rejection remains stable with it"
         least, most = 0.5 / (np.pi * delay), 0.5e3 / (np.pi * spec.rejection)
         yield Finding("controller.goal", what, f"Ask for less than {least:.4g} Hz, or {most:.4g} ms")
     if spec.settling is not None and delay > 0.5 * spec.settling:
-        what = f"steps are to settle in {1e3 * spec.settling:g} ms, and a delay of {1e3 * delay:g} ms is to be borne"
-        yield Finding("controller.goal", what, "Ask for one of them: a loop bears a fraction of what it settles in")
+        what = f"steps are to settle in {1e3 * spec.settling:g} ms, and the loop must remain stable with a delay of {1e3 * delay:g} ms"
+        yield Finding("controller.goal", what, "Keep one of them: the delay margin of a loop is a fraction of its settling time")
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ def _whole(path: Path, said: Mapping[str, str], key: str) -> int:
     text = said.get(key, "")
     if text.isdecimal() and 0 < int(text) < 10**9:
         return int(text)
-    raise refuse(f"{path}: {key}", f'its header says "{text}", where a number of 1 or more is expected', "Save the recorder's answer anew")
+    raise refuse(f"{path}: {key}", f'its header says "{text}", where a number of 1 or more is expected', "Save the recorder's answer again")
 
 
 def _separator(path: Path, said: Mapping[str, str]) -> str | None:
@@ -85,7 +85,7 @@ def _separator(path: Path, said: Mapping[str, str]) -> str | None:
 def _column_findings(path: Path, said: Mapping[str, str], width: int) -> Iterator[Finding]:
     beyond = [key for key in said if re.fullmatch(r"NAME\d+", key) and int(key[4:]) >= width]
     if beyond:
-        yield Finding(str(path), f"its header names {', '.join(beyond)}, its DIM is {width}", "Save the recorder's answer anew")
+        yield Finding(str(path), f"its header names {', '.join(beyond)}, its DIM is {width}", "Save the recorder's answer again")
 
 
 def _rate(path: Path, said: Mapping[str, str]) -> float:

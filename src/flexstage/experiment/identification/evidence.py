@@ -304,7 +304,7 @@ _INFLATION = {Window.BOXCAR: 1.0, Window.HANN: 1.94, Window.HAMMING: 1.74, Windo
 def _response_findings(known: Responses, steps: Array) -> list[Finding]:
     where = known.where
     if len(steps) < 15:
-        return [Finding(where, f"there are {len(steps) + 1} lines", "Give responses at 16 frequencies or more")]
+        return [Finding(where, f"it has {len(steps) + 1} lines", "Give responses at 16 frequencies or more")]
     if not np.all(np.isfinite(known.values)):
         return [Finding(where, f"{int(np.sum(~np.isfinite(known.values)))} values are not numbers", "Leave those channels or lines out")]
     if (falling := rising_problem(known.frequencies)) is not None:
@@ -341,9 +341,11 @@ def _findings(records: tuple[Record, ...]) -> list[Finding]:
         if not record.outputs:
             found.append(Finding(where, "no channel is an output", "Say which channels are outputs"))
         if record.rate != first.rate:
-            found.append(Finding(where, f"it is sampled at {record.rate:g} Hz, the first at {first.rate:g} Hz", "Sample all alike"))
+            found.append(
+                Finding(where, f"it is sampled at {record.rate:g} Hz, the first at {first.rate:g} Hz", "Sample all at the same rate")
+            )
         names, wanted = ({channel.name for channel in each.outputs} for each in (record, first))
         if names != wanted:
             what = f"its outputs are {', '.join(sorted(names))}, those of the first {', '.join(sorted(wanted))}"
-            found.append(Finding(where, what, "Name outputs alike in all records"))
+            found.append(Finding(where, what, "Use the same output names in all records"))
     return found

@@ -126,7 +126,7 @@ def _band(known: Evidence, search: Search) -> tuple[float, float]:
         lines = known.responses.frequencies
         require(few_lines(known, chosen, int(np.sum((lines >= chosen[0]) & (lines <= chosen[1])))))
         return chosen
-    what = f"modes between {asked[0]:g} and {asked[1]:g} Hz are asked for; the data reach from {low:.4g} to {high:.4g} Hz"
+    what = f"modes between {asked[0]:g} and {asked[1]:g} Hz are requested; the data reach from {low:.4g} to {high:.4g} Hz"
     require([Finding(known.where, what, "Request a band within it, or record faster or longer")])
     return low, high
 

@@ -194,7 +194,7 @@ def _broken_samples(record: Record, name: str, numbers: Numbers, stretch: tuple[
     first = record.start + numbers.first_broken / record.rate
     what = f"{numbers.broken} of {record.length} samples are not numbers, the first at {first:.6g} s"
     if numbers.broken > _BROKEN_SHARE * record.length:
-        return _fault(FaultTolerance.DEAD, record.where, name, what, 'Record it anew, or accept "dead" to leave it out')
+        return _fault(FaultTolerance.DEAD, record.where, name, what, 'Record it again, or accept "dead" to leave it out')
     length = f"{stop - start} samples ({(stop - start) / record.rate:.4g} s)"
     advice = f'The longest stretch without has {length}: accept "gaps" to use it alone'
     return _fault(FaultTolerance.GAPS, record.where, name, what, advice)

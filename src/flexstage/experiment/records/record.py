@@ -318,7 +318,7 @@ def rising_problem(frequencies: Array) -> str | None:
     """Describe why frequencies do not increase: fewer than two, a duplicate, or a decrease; None if they increase.
 
     >>> rising_problem(np.array([1.0, 2.0, 2.0, 3.0]))
-    'its frequencies do not rise: 2 Hz stands twice, lines 2 and 3'
+    'its frequencies do not rise: 2 Hz occurs twice, lines 2 and 3'
     """
     if len(frequencies) < 2:
         return f"it has {len(frequencies)} frequencies"
@@ -327,7 +327,7 @@ def rising_problem(frequencies: Array) -> str | None:
         return None
     line = int(falling[0])
     first, second = frequencies[line], frequencies[line + 1]
-    how = f"{first:g} Hz stands twice, lines" if first == second else f"{second:g} Hz follows {first:g} Hz, lines"
+    how = f"{first:g} Hz occurs twice, lines" if first == second else f"{second:g} Hz follows {first:g} Hz, lines"
     return f"its frequencies do not rise: {how} {line + 1} and {line + 2}"
 
 

@@ -77,7 +77,7 @@ def data_warning_table(warnings: Sequence[str]) -> Table | None:
     """
     if not warnings:
         return None
-    return make_table("What the data cannot tell", ["warning"], [(Cell(text, Mark.WARN),) for text in warnings])
+    return make_table("Limits of the data", ["warning"], [(Cell(text, Mark.WARN),) for text in warnings])
 
 
 def motion_explained_text(explained: Array) -> str:

@@ -160,7 +160,7 @@ def _findings(record: Record, size: int, outputs: tuple[Channel, ...]) -> list[F
 
 def _hop(size: int, segments: Segments) -> int:
     if not 0.0 <= segments.overlap < 1.0:
-        raise refuse("segments", f"an overlap of {segments.overlap:g} was asked for", "Give a share of at least 0 and less than 1")
+        raise refuse("segments", f"an overlap of {segments.overlap:g} was requested", "Give a share of at least 0 and less than 1")
     return max(1, round(size * (1.0 - segments.overlap)))
 
 

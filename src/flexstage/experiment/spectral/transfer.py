@@ -43,7 +43,7 @@ def h2(spectra: Spectra) -> Responses:
     """
     outputs, inputs = spectra.yx.shape[1:]
     if outputs < inputs:
-        raise refuse("H2", f"there are {outputs} outputs for {inputs} inputs", "Use H1, or record as many outputs as inputs")
+        raise refuse("H2", f"it has {outputs} outputs for {inputs} inputs", "Use H1, or record as many outputs as inputs")
     crossed = np.conj(np.swapaxes(spectra.yx, 1, 2))
     return _responses(spectra, spectra.yy @ np.linalg.pinv(crossed), "H2")
 
@@ -116,7 +116,7 @@ def dependent_inputs(spectra: Spectra) -> list[Finding]:
     if values[0] > _DEPENDENT * count and spectra.averages >= count:
         return []
     if spectra.averages < count:
-        what = f"{spectra.averages} averages cannot tell {count} inputs apart"
+        what = f"{spectra.averages} averages cannot separate {count} inputs"
         return [Finding("inputs", what, "Record longer, or request a coarser resolution")]
     involved = [spectra.inputs[index].name for index in np.flatnonzero(np.abs(vectors[:, 0]) > 0.1)]
     what = f"{' and '.join(involved)} are not independent (smallest eigenvalue of their coherence {max(values[0], 0.0):.1e})"

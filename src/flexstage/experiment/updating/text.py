@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flexstage.experiment.updating.update import Told, Updated
+from flexstage.experiment.updating.update import Identifiability, Updated
 from flexstage.mechanism.store import patch
 from flexstage.mechanism.store.retag import set_tags
 
@@ -20,5 +20,5 @@ def updated_text(text: str, found: Updated, record: str, *, where: str = "text")
 
 
 def _tag(found: Updated, index: int, record: str) -> str:
-    known = {Told.NOT: f"not identifiable from {found.data}", Told.WITHHELD: "theory and test contradict each other"}
-    return f"derived update {record}, {known.get(found.told[index], f'+- {100.0 * found.deviations[index]:.2g} %')}"
+    known = {Identifiability.NOT: f"not identifiable from {found.data}", Identifiability.WITHHELD: "theory and test contradict each other"}
+    return f"derived update {record}, {known.get(found.identifiability[index], f'+- {100.0 * found.deviations[index]:.2g} %')}"

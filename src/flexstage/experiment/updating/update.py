@@ -38,7 +38,7 @@ from flexstage.experiment.updating.rows import (
 from flexstage.mechanism.addresses.address import get
 from flexstage.mechanism.mechanism import Mechanism
 
-_TOLD, _HARDLY = 0.1, 0.2
+_IDENTIFIED, _HARDLY = 0.1, 0.2
 _NO_EFFECT = 1e-6
 _ROUNDS = 5
 _ALONE = 0.9
@@ -47,7 +47,7 @@ _FAR = 3.0
 _CONTRADICTING = 10.0
 
 
-class Told(Enum):
+class Identifiability(Enum):
     """Identifiability of a number: the share of its prior variance that remains."""
 
     WELL = "identified"
@@ -60,7 +60,7 @@ class Told(Enum):
     """Model and test differ too much for conclusions on single numbers."""
 
 
-_GRADES = {Told.WELL: Mark.PASS, Told.WEAKLY: Mark.WARN, Told.NOT: Mark.FAIL, Told.WITHHELD: Mark.FAIL}
+_GRADES = dict(zip(Identifiability, (Mark.PASS, Mark.WARN, Mark.FAIL, Mark.FAIL), strict=True))
 _DATUM = Heading(digits=6)
 _REMAINING = Heading("remaining variance", digits=2, unit="%")
 
@@ -101,12 +101,12 @@ class Residual:
 class UpdatedNumber:
     """Updated number before and after, in SI; `change` is relative, deviations are of the logarithm.
 
-    `prior_variance_left` is the remaining share of the prior variance; `told` and `verdict` describe the identifiability.
+    `prior_variance_left` is the remaining share of the prior variance; `identifiability` and `verdict` describe the identifiability.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Numbers after the test",
-        "address before after change prior_deviation deviation prior_variance_left told",
+        "address before after change prior_deviation deviation prior_variance_left identifiability",
         notes=("Remaining variance: of the prior's. Identified: at most 10 %; weakly identified: at most 20 %.",),
     )
 
@@ -116,7 +116,7 @@ class UpdatedNumber:
     after: Annotated[float, UnitIn("unit")]
     prior_deviation: Annotated[float, RATIO, Heading("prior +-", digits=2, unit="%")]
     deviation: Annotated[float, RATIO, Heading("after +-", digits=2, unit="%")]
-    told: Annotated[Told, Heading("identifiability", mark=_GRADES.__getitem__)]
+    identifiability: Annotated[Identifiability, Heading("identifiability", mark=_GRADES.__getitem__)]
     verdict: str
 
     @property
@@ -194,13 +194,13 @@ class Updated(InNotebook):
         known = self.assumed
         gains = "" if known.gain_error is None else f", gains {100.0 * known.gain_error:.3g} %"
         errors = f"Assumed errors: frequencies of theory {100.0 * known.model_error:.3g} %{gains}; +- is one standard deviation."
-        return errors, *(f"{each.address}: {each.verdict}." for each in self.parameters if each.verdict != each.told.value)
+        return errors, *(f"{each.address}: {each.verdict}." for each in self.parameters if each.verdict != each.identifiability.value)
 
     @property
     def parameters(self) -> Annotated[tuple[UpdatedNumber, ...], VIEW]:
         """List of updated numbers."""
         values = (column.tolist() for column in (self.before, self.after, self.prior, self.deviations))
-        columns: tuple[Iterable[Any], ...] = (self.addresses, self.units, *values, self.told, self.verdicts)
+        columns: tuple[Iterable[Any], ...] = (self.addresses, self.units, *values, self.identifiability, self.verdicts)
         return tuple(UpdatedNumber(*row) for row in zip(*columns, strict=True))
 
     @property
@@ -231,10 +231,13 @@ class Updated(InNotebook):
         return np.diag(self.covariance) / self.prior**2
 
     @property
-    def told(self) -> tuple[Told, ...]:
+    def identifiability(self) -> tuple[Identifiability, ...]:
         """Identifiability of each number; withheld if data deviate from the model by more than three deviations on average."""
-        known = (Told.WELL if share <= _TOLD else Told.WEAKLY if share <= _HARDLY else Told.NOT for share in self.remaining_variance)
-        return tuple(Told.WITHHELD if self.is_withheld and told is not Told.NOT else told for told in known)
+        grades = Identifiability
+        known = (
+            grades.WELL if share <= _IDENTIFIED else grades.WEAKLY if share <= _HARDLY else grades.NOT for share in self.remaining_variance
+        )
+        return tuple(grades.WITHHELD if self.is_withheld and each is not grades.NOT else each for each in known)
 
     @property
     def is_withheld(self) -> bool:
@@ -249,7 +252,7 @@ class Updated(InNotebook):
     @property
     def verdicts(self) -> tuple[str, ...]:
         """Statement on the identifiability of each number; `not identifiable from frequencies` is a valid result."""
-        return tuple(self._verdict(index, told) for index, told in enumerate(self.told))
+        return tuple(self._verdict(index, each) for index, each in enumerate(self.identifiability))
 
     @property
     def freedoms(self) -> Annotated[int, VIEW]:
@@ -261,15 +264,15 @@ class Updated(InNotebook):
         """Probability of a chi-squared value this large or larger, if deviations, priors and model are correct."""
         return float(scipy.special.chdtrc(self.freedoms, self.chi_square))
 
-    def _verdict(self, index: int, told: Told) -> str:
-        if told is Told.WITHHELD:
+    def _verdict(self, index: int, grade: Identifiability) -> str:
+        if grade is Identifiability.WITHHELD:
             return f"withheld: chi-square {self.chi_square:.2g} with {self.freedoms} data"
-        if told is not Told.NOT:
-            return told.value
+        if grade is not Identifiability.NOT:
+            return grade.value
         row = np.where(np.arange(len(self.addresses)) == index, 0.0, self.correlations.values[index])
         other = int(np.argmax(np.abs(row)))
         rest = f"; only together with {self.addresses[other]}" if abs(row[other]) > _ALONE else ""
-        return f"{told.value} from {self.data}{rest}"
+        return f"{grade.value} from {self.data}{rest}"
 
 
 @check_arguments

@@ -187,7 +187,7 @@ def _circuits(mechanism: Mechanism) -> Iterator[Finding]:
         if not name or part is None:
             continue
         if not re.fullmatch(r"\w[\w-]*", name):
-            yield Finding(f"{where}.circuit", f'"{link.circuit}" is no legal name', 'Write for example "pair" or "-pair"')
+            yield Finding(f"{where}.circuit", f'"{link.circuit}" is no legal name', 'Use e.g. "pair" or "-pair"')
         if not isinstance(inner(part), ThrustActuator):
             yield Finding(f"{where}.circuit", f'its part "{link.part}" exerts no force', "Leave it out, or use a voice coil")
         elif parts.setdefault(name, link.part) != link.part:

@@ -88,8 +88,7 @@ def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]
 
     def read(name: str, value: str, where: str) -> float:
         if name not in COMPONENTS or not value:
-            advice = f"Use e.g. z=150um; {suggest_nearest(name, COMPONENTS)}"
-            raise refuse(where, "must be a motion and a value", advice)
+            raise refuse(where, "must be a motion and a value", f"{suggest_nearest(name, COMPONENTS)}, e.g. z=150um")
         return abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=where))
 
     return read_pairs(texts, option, read)

@@ -36,7 +36,7 @@ def drift_table(drift: Drift) -> Table:
 def ground_text(ground: Ground) -> str:
     """Material of the ground, and its source.
 
-    >>> ground_text(Ground("steel", "as stated")), ground_text(Ground("steel", "all links that stand on it are of it"))
+    >>> ground_text(Ground("steel", "as specified")), ground_text(Ground("steel", "all links that stand on it are of it"))
     ('Ground made of steel', 'Ground taken as steel: all links that stand on it are of it')
     """
     if ground.material is None:

@@ -118,9 +118,7 @@ def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | s
     yield None if analysis.modes is None else _platform_modes(analysis.modes)
     yield None if analysis.modes is None else lowest_mode(analysis.modes)
     yield None if analysis.lost_motion is None else _first_rows(loss_table(analysis.lost_motion))
-    yield _strength_text(analysis)
-    yield load_line(analysis)
-    yield small_line(analysis)
+    yield "\n".join(filter(None, (_strength_text(analysis), load_line(analysis), small_line(analysis)))) or None
 
 
 def axis_table(analysis: Analysis) -> Table | None:
@@ -155,7 +153,7 @@ def _axis_note(analysis: Analysis) -> str:
         "Strokes: one axis at a time, lost motion made up by command": analysis.workspace is not None and analysis.lost_motion is not None,
         "Strokes: one axis at a time": analysis.workspace is not None and analysis.lost_motion is None,
         "Strokes: elastic motion, held for ever": analysis.force_workspace is not None,
-        "Stiffness: against a load along that axis, strokes held, the others giving way": analysis.statics is not None,
+        "Stiffness: against a load along that axis, strokes held, the other axes free": analysis.statics is not None,
         "Resolution: all gauges a step off, signs at their worst": bool(_resolution(analysis)),
     }
     return "".join(f"{text}. " for text, there in said.items() if there).rstrip()
@@ -209,7 +207,7 @@ def _platform_modes(modes: Modes) -> Table | None:
     notes: list[str] = []
     if modes.local:
         lowest = number(modes.mode(min(modes.local)).frequency, _DIGITS)
-        notes = [f"{count_text(len(modes.local), 'mode')} of single units below 1.5 times the highest of them, the lowest at {lowest} Hz."]
+        notes = [f"Up to 1.5 times the highest: {count_text(len(modes.local), 'mode')} of single units, from {lowest} Hz."]
     fields = "number frequency name platform_share compliance_share"
     table = result_table(tuple(map(modes.mode, modes.platform)), fields, title="Platform modes", notes=notes)
     return None if table is None else merge_rows(table)

@@ -227,7 +227,7 @@ def _findings(spec: Specification) -> Iterator[Finding]:
         what = "a rotation is required, and the payload has neither size nor inertia"
         yield Finding("payload", what, 'Use e.g. size = ["30 mm", "30 mm", "5 mm"]')
     if spec.goals.maximise is not None and spec.goals.minimise is not None:
-        yield Finding("goals", "there are two goals", "Keep one, and set a requirement for the other")
+        yield Finding("goals", "it has two goals", "Keep one, and set a requirement for the other")
 
 
 def _size_findings(spec: Specification) -> Iterator[Finding]:

@@ -32,6 +32,7 @@ KINDS: Mapping[str, tuple[type, ...]] = {
 """Kinds of parts in an entry: `hinges.thickness` is that of every notch, neck, leaf and compound hinge."""
 PLACED = ("units", "gauges")
 """Kinds with a placement: `units.shift` is that of every instance of a unit."""
+_NONE = "no kind has a similar name"
 
 
 @dataclass(frozen=True)
@@ -79,9 +80,9 @@ def _addresses(design: Mechanism, source: str) -> tuple[str, ...]:
     try:
         locate(design, source)
     except DesignError as error:
-        known = (*KINDS, *PLACED)
+        near = suggest_nearest(owner, (*KINDS, *PLACED), otherwise=_NONE)
         missed = any(f'"{owner}"' in each.what for each in error.findings)
-        if missed and "/" not in source and "." in source and (near := suggest_nearest(owner, known)).startswith("The nearest"):
+        if missed and near != _NONE and "/" not in source and "." in source:
             raise refuse(source, f'unknown name "{owner}"', near) from error
         raise
     return (source,)

@@ -107,8 +107,8 @@ def _broken_row(path: Path, above: list[str], form: tuple[str | None, str, int])
         broken = (at for at in range(rows[0], len(above)) if at not in rows or len(_fields(above[at], form[0])) != columns)
         at = next(broken, rows[-1])
         line, count = above[at].strip()[:60], len(_fields(above[at], form[0]))
-        wrong = "it holds what is no number here" if count == columns else f"it has {count} fields where {columns} are expected"
-        what = f'{wrong}, numbers before and after it: "{line}"'
+        wrong = "a field is not a number" if count == columns else f"wrong number of fields (got {count}, expected {columns})"
+        what = f'{wrong} between rows of numbers: "{line}"'
         yield Finding(f"{path}:{at + 1}", what, f'Correct it; if line {rows[0] + 1} is not a row of numbers, start that line with "#"')
 
 

@@ -89,14 +89,14 @@ def unsearched_band(known: Evidence, reach: Reach) -> str | None:
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
     >>> unsearched_band(evidence(one_mode_record(), None), Reach(2.0, 26.88, (0.5, 20.0)))
-    'modes from 0.5 to 20 Hz are asked for; from 2 to 20 Hz they could be looked for. Record longer.'
+    'modes from 0.5 to 20 Hz are requested; from 2 to 20 Hz they could be looked for. Record longer.'
     """
     if reach.asked is None or (reach.low <= 1.001 * reach.asked[0] and reach.high >= 0.999 * reach.asked[1]):
         return None
     low, high = max(reach.low, reach.asked[0]), min(reach.high, reach.asked[1])
     could = f"from {low:.4g} to {high:.4g} Hz they could be looked for" if low < high else "nowhere could they be looked for"
     needed = [word for word, missing in (("longer", reach.low > reach.asked[0]), ("faster", known.band[1] < reach.asked[1])) if missing]
-    return f"modes from {reach.asked[0]:g} to {reach.asked[1]:g} Hz are asked for; {could}. Record {' and '.join(needed) or 'longer'}."
+    return f"modes from {reach.asked[0]:g} to {reach.asked[1]:g} Hz are requested; {could}. Record {' and '.join(needed) or 'longer'}."
 
 
 def no_mode_warning(known: Evidence, reach: Reach) -> str:
@@ -105,7 +105,7 @@ def no_mode_warning(known: Evidence, reach: Reach) -> str:
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
     >>> no_mode_warning(evidence(one_mode_record(), None), Reach(1.0, 26.0))[:54]
-    'no mode can be told, though inputs explain 85.5% of th'
+    'no mode can be identified, though inputs explain 85.5%'
     """
     middle = float(np.sqrt(reach.low * reach.high))
     apart = line_distance(known)
@@ -113,17 +113,17 @@ def no_mode_warning(known: Evidence, reach: Reach) -> str:
         f"What is narrower than the {apart:.3g} Hz between lines may be there all the same: at {middle:.3g} Hz what is damped below "
         f"{apart / (2.0 * middle):.2g}. {_advise_length(known, None)}"
         if middle > 0.0
-        else f"There are too few lines to look for any. {_advise_length(known, None)}"
+        else f"Too few lines to search for any. {_advise_length(known, None)}"
     )
     if known.coherence is None:
-        return f"no mode stands out of the noise. {seen}"
+        return f"no mode exceeds the noise. {seen}"
     inside = (known.responses.frequencies >= known.band[0]) & (known.responses.frequencies <= known.band[1])
     mean = float(np.mean(known.coherence[inside]))
     chance = known.responses.values.shape[2] / max(known.averages, 1.0)
     told = f"inputs explain {mean:.1%} of the outputs' power on the mean"
     if mean > _BEYOND_CHANCE * chance:
-        return f"no mode can be told, though {told} ({chance:.1%} would be chance). {seen}"
-    return f"no mode stands out of the noise: {told}, and would explain {chance:.1%} of noise that has nothing to do with them. {seen}"
+        return f"no mode can be identified, though {told} ({chance:.1%} would be chance). {seen}"
+    return f"no mode exceeds the noise: {told}, and would explain {chance:.1%} of noise that has nothing to do with them. {seen}"
 
 
 def _advise_length(known: Evidence, wanted: float | None) -> str:

@@ -51,7 +51,9 @@ def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...
             f"({listed} Hz) may stand for several. Add records with other inputs driven."
         )
     if outputs == 1 and len(poles):
-        found.append(f"{known.responses.outputs[0].name} is the only output: shapes cannot be told, nor repeated modes apart.")
+        found.append(
+            f"{known.responses.outputs[0].name} is the only output: shapes cannot be identified, and repeated modes cannot be separated."
+        )
     for group in close:
         if inputs > 1 and len(group) >= min(inputs, outputs):
             near = ", ".join(f"{abs(poles[index]):.5g}" for index in group)
@@ -62,7 +64,7 @@ def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...
         window = " The responses do not say their window: if there was one, damping is too large." if known.unstated else ""
         found.append(
             f"the fit leaves a systematic residual near {listed}: parts of the data do not give the same mode. It is not linear, not "
-            f"alone, shaken by other forces, or changes during the test: smaller or longer drives, or finer lines, tell.{window}"
+            f"alone, shaken by other forces, or changes during the test: test with smaller or longer drives, or finer lines.{window}"
         )
     moved = [channel for channel in known.responses.inputs if _is_motion(channel)]
     if moved:

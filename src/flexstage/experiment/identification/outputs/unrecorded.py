@@ -43,7 +43,7 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     high = min(_HIGHEST * record.rate, search.band[1] if search.band else np.inf)
     where = record.where
     if low >= high:
-        what = f"modes up to {high:.4g} Hz are asked for; the record shows them from {low:.4g} Hz on"
+        what = f"modes up to {high:.4g} Hz are requested; the record shows them from {low:.4g} Hz on"
         require([Finding(where, what, "Request another band, or record longer")])
     began, low = low, searched_from(low, high, outputs=len(record.outputs), resolution=resolution)
     if low == np.inf:
@@ -169,7 +169,7 @@ def _result(record: Record, modes: Sequence[Shaken], density: Responses, band: t
 
 
 def _none(modes: Sequence[Shaken]) -> list[str]:
-    return [] if len(modes) else ["no mode stands out of what the floor and the gauges make: record longer, or shake more."]
+    return [] if len(modes) else ["no mode exceeds the noise of floor and gauges: record longer, or excite more."]
 
 
 def _peak(mode: Shaken, doubt: Doubt, outputs: Sequence[Channel], resolution: float) -> Peak:
