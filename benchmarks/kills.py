@@ -59,6 +59,17 @@ tolerance = { copies = 64, requirements = false }
 scatter.wire = { address = "leaf.thickness", normal = "4 um" }
 optimise = { maximise = "f", starts = 1 }
 """
+SPECIFICATION = """format = "flexstage specification 1"
+name = "focus"
+motion.x = "20 um"
+payload = { mass = "0.2 kg", size = ["40 mm", "30 mm", "20 mm"] }
+box = { size = ["160 mm", "100 mm", "40 mm"] }
+actuators.like = "PiezoDrive SA050536"
+starts = 1
+requirements.frequency = "at least 300 Hz"
+"""
+FOUND = "1-guide-piezodrive-sa050536"
+"""File name of the only answer to it."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +101,7 @@ SCENES = (
     ),
     Scene("loop compare", "loop stage.toml --floor VC-D --compare --report l.html --json l.json", "l.html l.json"),
     Scene("loop example", "loop stage.toml --example l.toml", "l.toml"),
+    Scene("design", "design spec.toml -o . --report g.html --json g.json", f"{FOUND}.toml {FOUND}.study.toml g.html g.json"),
     Scene("sweep", "sweep study.toml -o s.h5 --workers 2 --report s.html", "s.h5 s.html", "--resume", fresh=True),
     Scene("optimise", "optimise study.toml -o o.toml --json o.json", "o.toml o.json"),
     Scene("front", "optimise front.toml --report o.html --json o.json", "o.html o.json"),
@@ -145,6 +157,7 @@ def prepared(folder: Path, scenes: Sequence[Scene]) -> dict[str, dict[str, bytes
     dump(case("parallelogram"), folder / "stage.toml")
     dump(rods(), folder / "rods.toml")
     (folder / "study.toml").write_text(STUDY)
+    (folder / "spec.toml").write_text(SPECIFICATION)
     (folder / "front.toml").write_text(STUDY.replace('maximise = "f"', 'maximise = "f", minimise = "m"'))
     write(folder / "stack.csv", example_record())
     made = {}
