@@ -55,8 +55,11 @@ def _examples(test: ast.FunctionDef, named: Mapping[str, ast.expr]) -> str:
         return ""
     decorator = calls.get("settings")
     own = next((word.value for word in decorator.keywords if word.arg == "max_examples"), None) if decorator else None
-    owns = calls["examples"].args if "examples" in calls else [own] * len(PROFILES)
-    usual, full = map(_count, owns, [settings.get_profile(name).max_examples for name in PROFILES])
+    profiles = [settings.get_profile(name).max_examples for name in PROFILES]
+    if "examples" in calls:  # ten times as many in the full tests
+        count = _count(calls["examples"].args[0], 0)
+        own, profiles = None, [count, 10 * count]
+    usual, full = (_count(own, each) for each in profiles)
     return str(usual) if usual == full else f"{usual} (`make check-all`: {full})"
 
 
