@@ -26,6 +26,7 @@ from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.parts.body import Block, Body, Extrusion, Solid
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.material import Material
+from flexstage.spatial.frame import FORCES
 
 YOUNG, POISSON = 200e9, 0.3
 STEEL = Material(young=YOUNG, poisson=POISSON, density=7800.0)
@@ -160,13 +161,17 @@ def test_a_cantilever_and_a_bar_are_in_series() -> None:
 
 
 def test_forces_of_links_balance_the_load() -> None:
-    """What strokes and loads give is in balance: forces of the links on the platform add up to the load on it."""
+    """Loads on the coordinates are those of the links: sum of G^T f, f their forces as outputs."""
     mechanism = case("hexapod")
     soft = with_flexible_bodies(lumped(mechanism), mechanism, body_flexibilities(mechanism).found)
     matrix = soft.stiffness_matrix
     np.testing.assert_allclose(matrix, matrix.T, atol=1e-9 * np.max(np.abs(matrix)))
     assert np.min(np.linalg.eigvalsh(matrix)) > 0.0
-    assert BODIES in soft.stiffness
+    places = {each.name: place for place, each in enumerate(soft.outputs)}
+    links = [name for name in soft.stiffness if name != BODIES and f"{name}.{FORCES[0]}" in places]
+    forces = {name: soft.output[[places[f"{name}.{force}"] for force in FORCES]] @ np.linalg.inv(matrix) for name in links}
+    balance = sum(soft.stiffness[name].operator[:6].T @ forces[name] for name in links)
+    assert balance == pytest.approx(np.eye(len(matrix)), abs=1e-6)
     gains = static_gain(soft, ("platform.z",), ("A1", "B1")).values
     assert gains[0, 0] == pytest.approx(gains[0, 1], rel=0.03)
 

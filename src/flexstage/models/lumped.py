@@ -402,10 +402,12 @@ def _driven_motions(stage: _Stage, inertia: Mapping[str, Contribution], basis: A
     """The `loose` motions (n, k), mass-normalised, if the force actuators of one design drive all of them."""
     full = loose if basis is None else basis @ loose
     wrenches = exerted_wrenches(stage.assembly)
+    if not wrenches:
+        return None
     mass = _transpose(full) @ _momentum(inertia, full)
-    laws = max((item.law.ndim for item in stage.strains.values()), default=2)
+    laws = max(item.law.ndim for item in stage.strains.values())
     thrusts = sum((_transpose(stage.strains[name].operator[..., :6, :]) @ wrench for name, wrench in wrenches.items()), np.zeros((1, 1)))
-    work = np.real(first_design(_transpose(full) @ thrusts, 2)) if wrenches else np.zeros((1, 1))
+    work = np.real(first_design(_transpose(full) @ thrusts, 2))
     sizes = np.linalg.norm(work, axis=0)
     moved = work[:, sizes > _APART * np.max(sizes)] / sizes[sizes > _APART * np.max(sizes)]
     if np.linalg.matrix_rank(moved, tol=_APART) < loose.shape[1] or np.linalg.cond(np.real(first_design(mass, 2))) > 1.0 / _MASSLESS:

@@ -17,8 +17,8 @@ from flexstage.base.lazy import Late
 from flexstage.base.number import Array
 from flexstage.base.units.dimension import dimension_of
 from flexstage.base.units.expression import Amount, evaluate, parse_expression
-from flexstage.base.units.quantity import FREQUENCY, Quantity
-from flexstage.base.units.unit import parse, quantity_of_dimension, show
+from flexstage.base.units.quantity import Quantity
+from flexstage.base.units.unit import quantity_of_dimension, show
 from flexstage.mechanism.catalogue import shipped_catalogue
 from flexstage.mechanism.store.decode import catalogue_of, mechanism_from
 from flexstage.spatial.frame import COMPONENTS
@@ -125,17 +125,15 @@ class CatalogueActuator:
     def force(self) -> float:
         """Continuous force of a coil [N]."""
         part = self.part
-        limits = [part.continuous_current or part.peak_current or np.inf]
-        if part.resistance and part.thermal_resistance and part.temperature_rise:
-            limits.append((part.temperature_rise / part.thermal_resistance / part.resistance) ** 0.5)
-        return float(part.force_constant * min(limits))
+        limits = (part.continuous_current or part.peak_current, part.heat_current)
+        return float(part.force_constant * min(each or np.inf for each in limits))
 
 
 def catalogue_actuators(spec: Specification, where: str = "spec") -> dict[str, list[CatalogueActuator]]:
     """Return the actuators of the catalogue that a specification allows, by kind, in the order of their names.
 
-    >>> from flexstage.studies.synthesis.example import scanner
-    >>> [each.name for each in catalogue_actuators(scanner())["piezo"]][:1]
+    >>> from flexstage.studies.synthesis.specification import example
+    >>> [each.name for each in catalogue_actuators(example())["piezo"]][:1]
     ['PSt 1000/10/150 VS18']
     """
     known = catalogue_of(spec.catalogue, where)
@@ -147,13 +145,13 @@ def catalogue_actuators(spec: Specification, where: str = "spec") -> dict[str, l
         for name in sorted(section.entries):
             if spec.actuators.like is None or name in spec.actuators.like:
                 found[str(section.kind)].append(
-                    CatalogueActuator(name, str(section.kind), _entry(spec, "parts", name, kind=str(section.kind)))
+                    CatalogueActuator(name, str(section.kind), catalogue_entry(spec, "parts", name, kind=str(section.kind)))
                 )
     return found
 
 
-def _entry(spec: Specification, section: str, like: str, kind: str | None = None) -> Any:
-    """An entry of the catalogue as a material or part of a stage."""
+def catalogue_entry(spec: Specification, section: str, like: str, kind: str | None = None) -> Any:
+    """Return an entry of the catalogue as a material or part of a stage."""
     tree = {"format": "flexstage 1", "name": "a", section: {"entry": {"like": like} if kind is None else {"like": like, "kind": kind}}}
     if spec.catalogue is not None:
         tree["catalogue"] = spec.catalogue
@@ -163,8 +161,8 @@ def _entry(spec: Specification, section: str, like: str, kind: str | None = None
 def turned_axes(architecture: Architecture, spec: Specification) -> Array:
     """Return the axes of the architecture's frame as rows in that of the specification (3, 3).
 
-    >>> from flexstage.studies.synthesis.example import scanner
-    >>> turned_axes(architectures()["carriages"], scanner()).tolist() == np.eye(3).tolist()
+    >>> from flexstage.studies.synthesis.specification import example
+    >>> turned_axes(architectures()["carriages"], example()).tolist() == np.eye(3).tolist()
     True
     """
     return _TURNS[next(iter(spec.displacements))] if architecture.turns else np.eye(3)
@@ -185,7 +183,7 @@ def scope(architecture: Architecture, spec: Specification, actuator: CatalogueAc
     }
     amounts = {name: Amount(float(value), _LENGTH) for name, value in found.items()}
     amounts["plate_speed"] = Amount(_plate_speed(spec), dimension_of("m/s"))
-    if (frequency := required_frequency(spec)) is not None:
+    if (frequency := spec.least(FREQUENCY_KEYS[0])) is not None:
         amounts["frequency"] = Amount(frequency, dimension_of("1/s"))
     moved = spec.displacements
     named = {"x": next(iter(moved.values()))} if architecture.turns else moved
@@ -194,7 +192,7 @@ def scope(architecture: Architecture, spec: Specification, actuator: CatalogueAc
 
 def _plate_speed(spec: Specification) -> float:
     """The factor sqrt(E / (12 rho (1 - nu^2))) of the bodies' material in the frequencies of plates [m/s]."""
-    body = _entry(spec, "materials", spec.make.bodies)
+    body = catalogue_entry(spec, "materials", spec.make.bodies)
     return float((body.young / (12.0 * body.density * (1.0 - body.poisson**2))) ** 0.5)
 
 
@@ -227,8 +225,8 @@ def variables(architecture: Architecture, known: Mapping[str, Amount]) -> Iterat
 def measure_key(architecture: Architecture, spec: Specification, key: str) -> str:
     """Return the measure of a design that a requirement of the specification means: its axis is that of the architecture's frame.
 
-    >>> from flexstage.studies.synthesis.example import scanner
-    >>> measure_key(architectures()["carriages"], scanner(), "unwanted")
+    >>> from flexstage.studies.synthesis.specification import example
+    >>> measure_key(architectures()["carriages"], example(), "unwanted")
     'frequency.unwanted'
     """
     if key in FREQUENCY_KEYS:
@@ -340,12 +338,6 @@ def study_text(architecture: Architecture, spec: Specification, actuator: Catalo
     return "\n".join([*lines, f"starts = {spec.starts}", f"seed = {spec.seed}", ""])
 
 
-def required_frequency(spec: Specification) -> float | None:
-    """Return the required first natural frequency [Hz], `None` without one."""
-    text = spec.requirements.get(FREQUENCY_KEYS[0])
-    return None if text is None else parse(text.removeprefix("at least "), FREQUENCY)
-
-
 def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list[Architecture]:
     """Return the architectures that serve the motions of a specification. Raises `DesignError` if there is none."""
     known = architectures()
@@ -355,7 +347,6 @@ def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list
     found = [each for name, each in sorted(known.items()) if each.is_for(motions) and name in (names or known)]
     if not found:
         sets = {" ".join(sorted(each, key=COMPONENTS.index)) for one in known.values() for each in one.serves} | {"x, y or z"}
-        raise refuse(
-            "motion", f"no architecture has exactly the motions {', '.join(spec.displacements)}", f"There are: {'; '.join(sorted(sets))}"
-        )
+        what = f"no architecture has exactly the motions {', '.join(spec.displacements)}"
+        raise refuse("motion", what, f"Use one of these sets: {'; '.join(sorted(sets))}")
     return found

@@ -1,7 +1,7 @@
 """Performance bounds of a stage that hold for every mechanism: what actuators can reach at best, whatever levers and guides they use.
 
-Notation: displacements X of the motions in both directions [m, rad], masses M [kg] or moments of inertia [kg m^2] of the payload along
-them, at its centre of mass. Bounds are exact upper limits, not estimates.
+Notation: displacements X of the motions in both directions [m, rad], least masses M [kg] or moments of inertia [kg m^2] of the payload
+along them, whatever other motions accompany them. Bounds are exact upper limits, not estimates.
 """
 
 from __future__ import annotations
@@ -9,10 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-
-import scipy
-
-from flexstage.base.number import Array
 
 
 def stroke_energy(stroke: float, stiffness: float, count: int = 1) -> float:
@@ -121,16 +117,3 @@ def efficiency(frequency: float, energy: float, displacements: Mapping[str, floa
     0.282
     """
     return required_energy(displacements, masses, frequency) / energy
-
-
-def generalised_masses(inertia: Array, motions: list[int]) -> Array:
-    """Return the masses of pure motions: the diagonal of the payload's 6x6 inertia about its centre of mass, by component number.
-
-    For rotations about the centre of mass, 1 / (J^-1)_ii bounds the inertia of a rotation that may couple to the others.
-
-    >>> import numpy as np
-    >>> generalised_masses(np.diag([1.0, 1.0, 1.0, 2.0, 3.0, 4.0]), [0, 5]).tolist()
-    [1.0, 4.0]
-    """
-    inverse = scipy.linalg.inv(inertia)
-    return 1.0 / inverse.diagonal()[motions]

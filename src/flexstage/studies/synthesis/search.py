@@ -35,10 +35,10 @@ from flexstage.studies.synthesis.architecture import (
     Architecture,
     CatalogueActuator,
     catalogue_actuators,
+    catalogue_entry,
     draw,
     find_architectures,
     measure_key,
-    required_frequency,
     scope,
     specified_goal,
     study_text,
@@ -269,7 +269,7 @@ def _groups(spec: Specification, pair: CandidatePair) -> list[tuple[float, dict[
 
 def _demand(spec: Specification, pair: CandidatePair) -> float:
     """Required energy as a share of that of the actuators; the least demanding pairs are searched first."""
-    frequency = required_frequency(spec)
+    frequency = spec.least(FREQUENCY_KEYS[0])
     return 0.0 if frequency is None else max(bounds.efficiency(frequency, *each, spec.masses) for each in _groups(spec, pair))
 
 
@@ -277,13 +277,13 @@ def shortfalls(spec: Specification, pair: CandidatePair) -> Iterator[Shortfall]:
     """Yield the bounds that a pair cannot meet.
 
     >>> from flexstage.studies.synthesis.architecture import architectures
-    >>> from flexstage.studies.synthesis.example import scanner
-    >>> spec = scanner()
+    >>> from flexstage.studies.synthesis.specification import example
+    >>> spec = example()
     >>> pairs = [CandidatePair(architectures()["carriages"], each) for each in catalogue_actuators(spec)["piezo"]]
     >>> [each.actuator.name for each in pairs if next(shortfalls(spec, each), None) is None]
     ['PSt 1000/10/150 VS18', 'PSt 1000/16/200 VS25']
     """
-    frequency = required_frequency(spec)
+    frequency = spec.least(FREQUENCY_KEYS[0])
     if frequency is not None and pair.actuator.kind != "voice_coil":
         yield from _energy_shortfalls(spec, pair, frequency)
     elif frequency is not None:
@@ -334,11 +334,11 @@ def _leaf_shortfalls(spec: Specification, pair: CandidatePair) -> Iterator[Short
     rule = pair.architecture.leaf
     if rule is None:
         return
-    material = loads(draw(pair.architecture, spec, pair.actuator), checked=False).materials["flexure"]
+    material = catalogue_entry(spec, "materials", spec.make.flexures)
     if material.yield_stress is None:
         return
     travel = rule.share * max(value for axis, value in spec.displacements.items() if axis in "xyz")
-    stress = float(material.yield_stress) / _safety(spec)
+    stress = float(material.yield_stress) / (spec.least("safety", RATIO) or 2.0)
     needed = bounds.leaf_length(spec.make.thinnest, travel, float(material.young or 0.0), float(material.contraction), stress)
     room = float(evaluate(parse_expression(rule.room), scope(pair.architecture, spec, pair.actuator)).value)
     if needed > room:
@@ -346,18 +346,13 @@ def _leaf_shortfalls(spec: Specification, pair: CandidatePair) -> Iterator[Short
         yield Shortfall("box", room, needed, "m", reason)
 
 
-def _safety(spec: Specification) -> float:
-    text = spec.requirements.get("safety", "at least 2")
-    return float(text.removeprefix("at least "))
-
-
 def search(spec: Specification, pair: CandidatePair, progress: Callable[[str], None] | None = None) -> Answer | FailedPair:
     """Optimise one pair; an architecture that cannot be drawn or analysed is a failed pair with its reason.
 
     >>> from flexstage.studies.synthesis.architecture import architectures
-    >>> from flexstage.studies.synthesis.example import scanner
-    >>> pair = CandidatePair(architectures()["carriages"], catalogue_actuators(scanner())["piezo"][0])
-    >>> search(scanner(), pair).architecture
+    >>> from flexstage.studies.synthesis.specification import example
+    >>> pair = CandidatePair(architectures()["carriages"], catalogue_actuators(example())["piezo"][0])
+    >>> search(example(), pair).architecture
     'carriages'
     """
     raised, rounds = spec, 0
@@ -381,7 +376,7 @@ def search(spec: Specification, pair: CandidatePair, progress: Callable[[str], N
 def _missed(spec: Specification, pair: CandidatePair, answer: Answer) -> Iterator[tuple[str, str]]:
     """Required frequencies that elastic bodies miss, raised by the ratio of rigid to elastic (space mapping)."""
     for key in FREQUENCY_KEYS:
-        measure_, required = measure_key(pair.architecture, spec, key), spec.frequency_limit(key)
+        measure_, required = measure_key(pair.architecture, spec, key), spec.least(key)
         if required is not None and answer.elastic[measure_] < required:
             yield key, f"at least {required * answer.values[measure_] / answer.elastic[measure_]:.9g} Hz"
 

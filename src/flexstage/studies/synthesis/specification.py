@@ -14,7 +14,7 @@ import numpy as np
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
 from flexstage.base.number import Array
-from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, LENGTH, MASS, NOT_NEGATIVE, POSITIVE, ROTATION, Bound
+from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, LENGTH, MASS, NOT_NEGATIVE, POSITIVE, RATIO, ROTATION, Bound, Quantity
 from flexstage.base.units.unit import parse
 from flexstage.mechanism.grammar.node import TextsNode
 from flexstage.mechanism.store.decode import catalogue_of, record_from
@@ -28,6 +28,15 @@ FORMAT = "flexstage specification 1"
 FREQUENCY_KEYS = ("frequency", "unwanted")
 """Requirements of their own: the first natural frequency, and the first of a motion that is not required."""
 
+_EXAMPLE = """
+format = "flexstage specification 1"
+name = "scanner"
+motion = { x = "50 um", y = "50 um" }
+payload = { mass = "30 g", size = ["30 mm", "30 mm", "5 mm"] }
+box = { size = ["260 mm", "260 mm", "40 mm"] }
+actuators = { kinds = ["piezo"] }
+requirements.frequency = "at least 500 Hz"
+"""
 _Texts = Annotated[tuple[str, ...], TextsNode()]
 _Length = Annotated[float, LENGTH, POSITIVE]
 _Box = tuple[_Length, _Length, _Length]
@@ -147,14 +156,19 @@ class Specification:
 
     @property
     def masses(self) -> dict[str, float]:
-        """Mass or moment of inertia along each required motion, of the payload alone; zero of a rotation without an inertia."""
-        inertia = self.inertia
-        return {axis: float(inertia[index, index]) for index, axis in enumerate(COMPONENTS) if axis in self.displacements}
+        """Least mass or moment of inertia of the payload along each required motion, whatever other motions accompany it.
 
-    def frequency_limit(self, key: str) -> float | None:
-        """The required frequency [Hz] of a key, `None` without one."""
+        That of a rotation is 1 / (J^-1)_ii, for the inertia J about the centre of mass: (w_i)^2 <= (J^-1)_ii w^T J w.
+        """
+        least = dict.fromkeys("xyz", self.payload.mass)
+        if any(axis not in least for axis in self.displacements):
+            least |= zip(COMPONENTS[3:], 1.0 / np.linalg.inv(self.inertia[3:, 3:]).diagonal().copy(), strict=True)
+        return {axis: float(least[axis]) for axis in self.displacements}
+
+    def least(self, key: str, quantity: Quantity = FREQUENCY) -> float | None:
+        """The required least value [SI] of a key, `None` without one."""
         text = self.requirements.get(key)
-        return None if text is None else parse(text.removeprefix("at least "), FREQUENCY, where=f"requirements.{key}")
+        return None if text is None else parse(text.removeprefix("at least "), quantity, where=f"requirements.{key}")
 
     @property
     def goal(self) -> tuple[str, str]:
@@ -180,16 +194,9 @@ def load_specification(path: str | os.PathLike[str]) -> Specification:
 def loads_specification(text: str, *, where: str = "text") -> Specification:
     """Read a specification from its text; a catalogue that it names is in the folder of `where`.
 
-    >>> found = loads_specification('''
-    ... format = "flexstage specification 1"
-    ... name = "scanner"
-    ... motion = { x = "50 um", y = "50 um" }
-    ... payload = { mass = "30 g", size = ["30 mm", "30 mm", "5 mm"] }
-    ... box = { size = ["260 mm", "260 mm", "40 mm"] }
-    ... requirements.frequency = "at least 1 kHz"
-    ... ''')
-    >>> found.displacements, found.frequency_limit("frequency"), found.goal
-    ({'x': 5e-05, 'y': 5e-05}, 1000.0, ('maximise', 'frequency'))
+    >>> found = loads_specification(_EXAMPLE)
+    >>> found.displacements, found.least("frequency"), found.goal
+    ({'x': 5e-05, 'y': 5e-05}, 500.0, ('maximise', 'frequency'))
     """
     raw = parse_toml(text, where)
     try:
@@ -200,6 +207,15 @@ def loads_specification(text: str, *, where: str = "text") -> Specification:
     except DesignError as error:
         raise DesignError(with_lines(error.findings, text, where)) from None
     return found
+
+
+def example() -> Specification:
+    """Return the specification of an XY scanner.
+
+    >>> example().displacements
+    {'x': 5e-05, 'y': 5e-05}
+    """
+    return loads_specification(_EXAMPLE)
 
 
 def specification_schema() -> dict[str, Any]:
@@ -217,14 +233,14 @@ def _findings(spec: Specification) -> Iterator[Finding]:
         yield Finding("motion", "no displacement is required", 'Use e.g. motion = { x = "50 um" }')
     if not any(key in FREQUENCY_KEYS or key.startswith("stiffness") for key in spec.requirements):
         yield Finding("requirements", "no frequency or stiffness is required", 'Use e.g. frequency = "at least 100 Hz"')
-    for key in FREQUENCY_KEYS:
+    for key, quantity in (*((each, FREQUENCY) for each in FREQUENCY_KEYS), ("safety", RATIO)):
         try:
-            spec.frequency_limit(key)
+            spec.least(key, quantity)
         except DesignError as error:
             yield from error.findings
     yield from _size_findings(spec)
-    if any(axis.startswith("r") for axis in spec.displacements) and spec.payload.size is None and spec.payload.inertia is None:
-        what = "a rotation is required, and the payload has neither size nor inertia"
+    if any(axis.startswith("r") for axis in spec.displacements) and np.linalg.eigvalsh(spec.inertia)[0] <= 0.0:
+        what = "a rotation is required, and the payload has no moment of inertia about some axis"
         yield Finding("payload", what, 'Use e.g. size = ["30 mm", "30 mm", "5 mm"]')
     if spec.goals.maximise is not None and spec.goals.minimise is not None:
         yield Finding("goals", "it has two goals", "Keep one, and set a requirement for the other")

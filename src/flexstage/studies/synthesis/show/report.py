@@ -19,12 +19,12 @@ _BOUND = "Frequency and width of the answers. Lines: highest frequency of any me
 def answer_report(found: Answers) -> str:
     """Write the answers as an HTML page: tables, frequencies below their bounds, a picture of each stage.
 
-    >>> from flexstage.studies.synthesis.example import scanner
-    >>> "No stage keeps" in answer_report(Answers(scanner(), (), (), ()))
+    >>> from flexstage.studies.synthesis.specification import example
+    >>> "No stage keeps" in answer_report(Answers(example(), (), (), ()))
     True
     """
     tables = list(answer_tables(found))
-    bounded = [each for each in found.answers if each.efficiency]
+    bounded = [(each, each.efficiency) for each in found.answers if each.efficiency]
     caption = "frequency and width of the answers"
     picture = Picture(to_svg(bound_figure(bounded), "bound", caption), _BOUND) if bounded else None
     stages = [_picture(each, number) for number, each in enumerate(found.answers, 1)]
@@ -39,17 +39,15 @@ def answer_report(found: Answers) -> str:
     return page(head, [each for each in sections if each is not None])
 
 
-def bound_figure(answers: list[Answer]) -> Any:
-    """Draw the first frequency of answers by their width, each with its bound, (f / bound)^2 being the efficiency."""
+def bound_figure(answers: list[tuple[Answer, float]]) -> Any:
+    """Draw the first frequency of answers with their efficiency by their width, and their bounds: efficiency = (f / bound)^2."""
     with style_context():
         figure = canvas(FULL, 2.9)
         ax = panels(figure, 1, 1, Margins(left=0.75, bottom=0.5, right=0.2))[0, 0]
-        for number, each in enumerate(answers):
+        for number, (each, efficiency) in enumerate(answers):
             color, width = SERIES[number % len(SERIES)], 1e3 * each.values["envelope.x"]
             ax.plot(width, each.values["frequency.1"], "o", color=color, label=f"{each.architecture}, {each.actuator}")
-            if each.efficiency:
-                bound = each.values["frequency.1"] / each.efficiency**0.5
-                ax.axhline(bound, color=color, linewidth=0.8, linestyle="--")
+            ax.axhline(each.values["frequency.1"] / efficiency**0.5, color=color, linewidth=0.8, linestyle="--")
         ax.set_ylim(bottom=0.0)
         ax.set_xlabel("width [mm]")
         ax.set_ylabel("first natural frequency [Hz]")

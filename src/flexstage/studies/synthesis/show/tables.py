@@ -16,9 +16,9 @@ _DIGITS = 4
 def answer_tables(found: Answers) -> Iterator[Table]:
     """Answers from the best on, pairs that failed, and pairs that a bound excludes.
 
-    >>> from flexstage.studies.synthesis.example import scanner
+    >>> from flexstage.studies.synthesis.specification import example
     >>> from flexstage.studies.synthesis.search import Answers
-    >>> list(answer_tables(Answers(scanner(), (), (), ())))[0].title
+    >>> list(answer_tables(Answers(example(), (), (), ())))[0].title
     'No stage keeps the specification "scanner"'
     """
     yield _answer_table(found)
