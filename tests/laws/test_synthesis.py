@@ -16,7 +16,7 @@ from flexstage.base.finding import DesignError
 from flexstage.mechanism.addresses.address import set_value
 from flexstage.studies.synthesis import bounds
 from flexstage.studies.synthesis.architecture import architectures, catalogue_actuators, draw, scope, variables
-from flexstage.studies.synthesis.search import Answer, CandidatePair, FailedPair, design, search
+from flexstage.studies.synthesis.search import Answer, CandidatePair, FailedPair, design, search, shortfalls
 from flexstage.studies.synthesis.specification import Specification, loads_specification
 from tests.conftest import FULL
 
@@ -106,10 +106,14 @@ def test_levers_with_mass_do_not_exceed_the_bound_of_forces() -> None:
     rng = np.random.default_rng(3)
     for _ in range(300):
         force, mass, payload, displacement = np.exp(rng.normal(size=4))
-        ratio, lever = np.exp(rng.normal()), 0.1 * rng.random()
-        stiffness = force * ratio / displacement  # the stiffest that the force still displaces so far
-        found = np.sqrt(stiffness / (payload + lever + mass * ratio**2)) / (2.0 * np.pi)
-        assert found <= bounds.force_frequency_bound(bounds.ForceSource(force, mass), displacement, payload) * (1.0 + 1e-12)
+        count, lever = int(rng.integers(1, 4)), 0.1 * rng.random()
+        ratio = np.exp(np.linspace(-3.0, 3.0, 1001)) * (payload / mass) ** 0.5
+        stiffness = count * force * ratio / displacement  # the stiffest that the forces still displace so far
+        bound = bounds.force_frequency_bound(bounds.ForceSource(force, mass, count=count), displacement, payload)
+        for own in (0.0, lever):
+            found = np.sqrt(stiffness / (payload + own + count * mass * ratio**2)) / (2.0 * np.pi)
+            assert np.max(found) <= bound * (1.0 + 1e-12)
+            assert own or np.max(found) == pytest.approx(bound, rel=1e-4)
 
 
 @pytest.mark.parametrize("name", architectures())
@@ -234,6 +238,24 @@ def test_a_relaxed_value_gives_an_answer() -> None:
     pair = CandidatePair(architectures()["guide"], catalogue_actuators(hard)["piezo"][0])
     assert isinstance(search(replace(hard, box=box), pair), Answer)
     assert isinstance(search(replace(hard, box=replace(box, size=(0.99 * relaxed.value, *box.size[1:]))), pair), FailedPair)
+
+
+@pytest.mark.parametrize(("share", "excluded"), [(0.7, ()), (0.72, (False,)), (1.01, (True, False))])
+def test_a_bound_of_an_architecture_is_not_one_of_all_mechanisms(share: float, excluded: tuple[bool, ...]) -> None:
+    """Carriages have one actuator for each axis: half of the energy. Only what all actuators together cannot reach is impossible."""
+    spec = loads_specification(SCANNER)
+    (actuator,) = catalogue_actuators(spec)["piezo"]
+    most = bounds.frequency_bound(bounds.stroke_energy(actuator.stroke, actuator.stiffness, 2), {"x": 50e-6}, {"x": 0.03})
+    hard = replace(spec, requirements={"frequency": f"at least {share * most} Hz"})
+    found = {each.universal for each in shortfalls(hard, CandidatePair(architectures()["carriages"], actuator)) if each.unit == "Hz"}
+    assert found == set(excluded)
+
+
+def test_heat_limits_the_force_of_a_coil(tmp_path: Path) -> None:
+    (tmp_path / "lab.toml").write_text(COIL + 'thermal_resistance = "8 K/W"\ntemperature_rise = "40 K"\n')
+    text = SCANNER.replace('actuators.like = "PSt 1000/10/150 VS18"', 'catalogue = "lab.toml"')
+    (coil,) = catalogue_actuators(loads_specification(text, where=str(tmp_path / "spec.toml")))["voice_coil"]
+    assert coil.force == pytest.approx(32.0 * (40.0 / 8.0 / 5.0) ** 0.5)
 
 
 def test_motions_of_one_axis_are_turned(tmp_path: Path) -> None:

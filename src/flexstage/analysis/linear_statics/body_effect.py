@@ -16,7 +16,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
 
 SIGNIFICANT = 0.05
-"""Relative error of a stiffness or frequency above which rigid bodies are doubtful."""
+"""Relative change of a stiffness or frequency above which rigid bodies are doubtful."""
 _FREQUENCIES = 6
 
 
@@ -30,9 +30,9 @@ class BodyEffect:
     body: str
 
     @property
-    def loss(self) -> float:
-        """Relative error of rigid bodies."""
-        return self.rigid / self.flexible - 1.0
+    def change(self) -> float:
+        """Relative change by the flexibility."""
+        return self.flexible / self.rigid - 1.0
 
 
 def body_effects(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None = None) -> tuple[BodyEffect, ...]:
@@ -44,7 +44,7 @@ def body_effects(mechanism: Mechanism, model: LinearModel, kinematics: Kinematic
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
     >>> stage = parallelogram()
-    >>> all(each.loss > 0.0 for each in body_effects(stage, lumped(stage)))
+    >>> all(each.change < 0.0 for each in body_effects(stage, lumped(stage)))
     True
     """
     if model.is_sparse or model.stiffness_matrix.ndim > 2:
@@ -78,8 +78,8 @@ def _quantities(model: LinearModel, kinematics: Kinematics | None) -> dict[str, 
 
 def body_findings(effects: Sequence[BodyEffect]) -> Iterator[Finding]:
     """One warning for each body that changes quantities by more than `SIGNIFICANT`; it names the two that change most."""
-    large = sorted((each for each in effects if abs(each.loss) > SIGNIFICANT), key=lambda each: -abs(each.loss))
+    large = sorted((each for each in effects if abs(each.change) > SIGNIFICANT), key=lambda each: -abs(each.change))
     for body in dict.fromkeys(each.body for each in large):
         worst = [each for each in large if each.body == body][:2]
-        values = " and ".join(f"{each.quantity} by {100.0 * (each.flexible / each.rigid - 1.0):.0f} %" for each in worst)
+        values = " and ".join(f"{each.quantity} by {100.0 * each.change:.0f} %" for each in worst)
         yield Finding(body, f"it is taken as rigid; its flexibility changes {values}", "Make it stiffer, or include it: --elastic-bodies")

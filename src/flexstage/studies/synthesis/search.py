@@ -293,7 +293,8 @@ def shortfalls(spec: Specification, pair: CandidatePair) -> Iterator[Shortfall]:
 
 
 def _energy_shortfalls(spec: Specification, pair: CandidatePair, frequency: float) -> Iterator[Shortfall]:
-    for energy, moved in _groups(spec, pair):
+    whole = _energy(pair)
+    for energy, moved in ((each, moved) for own, moved in _groups(spec, pair) for each in dict.fromkeys((whole, own)) if each):
         best = bounds.frequency_bound(energy, moved, spec.masses)
         if best < frequency:
             factor = bounds.displacement_factor(energy, moved, spec.masses, frequency)
@@ -302,7 +303,7 @@ def _energy_shortfalls(spec: Specification, pair: CandidatePair, frequency: floa
                 f"{', '.join(moved)}: the actuators store {energy:.3g} J, and {needed:.3g} J is needed; "
                 f"at most {100 * factor:.0f} % of the displacement, or {best:.4g} Hz"
             )
-            yield Shortfall("frequency", best, frequency, "Hz", reason, universal=True)
+            yield Shortfall("frequency", best, frequency, "Hz", reason, universal=energy == whole)
 
 
 def _force_shortfalls(spec: Specification, pair: CandidatePair, frequency: float) -> Iterator[Shortfall]:
