@@ -25,7 +25,6 @@ from flexstage.base.storage.digest import digest
 from flexstage.mechanism.assembly.expand import Assembly, PlacedBody, PlacedLink, expand
 from flexstage.mechanism.design import designs, step_size
 from flexstage.mechanism.mechanism import Mechanism
-from flexstage.models.linear.channels import exerted_wrenches
 from flexstage.models.linear.model import Contribution, LinearModel
 from flexstage.parts.body import Block, Extrusion, Imported, PlacedSolid, Solid
 from flexstage.parts.compliance_matrix import Joint
@@ -155,11 +154,12 @@ def _links(flexibilities: Sequence[BodyFlexibility]) -> tuple[str, ...]:
 
 
 def with_flexible_bodies(model: LinearModel, mechanism: Mechanism, flexibilities: Sequence[BodyFlexibility]) -> LinearModel:
-    """A lumped model whose bodies yield between the ends of their links; masses, gauges and points stay with the mean motion of each body.
+    """A lumped model whose bodies yield between the ends of their links.
+
+    Masses, gauges, points and links without length, such as coils and springs, follow the mean motion of each body.
 
     With link strains e = G q - s, link stiffness k, compliance C of bodies and E the strains of the links per unit of their ends' twists,
-    the ends' twists are eliminated: the links' forces are (k - k E X E^T k) e + k E X E^T w, X = (C^-1 + E^T k E)^-1, for forces w that
-    inputs exert across links.
+    the ends' twists are eliminated: the links' forces are (k - k E X E^T k) e, X = (C^-1 + E^T k E)^-1.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -184,18 +184,15 @@ def with_flexible_bodies(model: LinearModel, mechanism: Mechanism, flexibilities
     inputs = len(model.inputs)
     none = np.zeros((6, inputs))
     strokes = np.concatenate([model.imposed.get(name, none)[:6] for name in names])
-    exerted = exerted_wrenches(assembly)
-    pushed = pull @ relief @ across.T @ np.concatenate([exerted.get(name, none) for name in names])
     output, feedthrough = model.output.copy(), model.feedthrough.copy()
     places = {channel.name: place for place, channel in enumerate(model.outputs)}
     rows = [places[f"{name}.{force}"] for name in names for force in FORCES]
     output[rows] += softer @ operator
-    feedthrough[rows] += pushed - softer @ strokes
+    feedthrough[rows] -= softer @ strokes
     return replace(
         model,
         stiffness={**model.stiffness, BODIES: Contribution(operator, softer)},
         imposed={**model.imposed, BODIES: strokes} if np.any(strokes) else model.imposed,
-        force=model.force - operator.T @ pushed,
         output=output,
         feedthrough=feedthrough,
     )

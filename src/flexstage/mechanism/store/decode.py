@@ -161,7 +161,7 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
         return reader.note(error.findings)
     body = {key: value for key, value in raw.items() if key not in ("format", "overrides", STAGES, CATALOGUE)}
     if isinstance(raw.get("requirements"), dict):
-        body["requirements"] = dict(_dotted(raw["requirements"]))
+        body["requirements"] = dict(dotted(raw["requirements"]))
     mechanism = reader.read(node_of(Mechanism), body, "")
     if not isinstance(mechanism, Mechanism):
         return BAD
@@ -188,11 +188,11 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     return replace(mechanism, formulas=Table(formulas))
 
 
-def _dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Entries of a table by their dotted keys: `stroke.x` without quotes is a table `stroke` in TOML."""
+def dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield the entries of a table by their dotted keys: `stroke.x` without quotes is a table `stroke` in TOML."""
     for key, value in table.items():
         if isinstance(value, dict) and key != TAGS:
-            yield from ((f"{key}.{inner}", each) for inner, each in _dotted(value))
+            yield from ((f"{key}.{inner}", each) for inner, each in dotted(value))
         else:
             yield key, value
 

@@ -17,7 +17,7 @@ from flexstage.base.number import Array
 from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, LENGTH, MASS, NOT_NEGATIVE, POSITIVE, RATIO, ROTATION, Bound, Quantity
 from flexstage.base.units.unit import parse
 from flexstage.mechanism.grammar.node import TextsNode
-from flexstage.mechanism.store.decode import catalogue_of, record_from
+from flexstage.mechanism.store.decode import catalogue_of, dotted, record_from
 from flexstage.mechanism.store.file import parse_toml, read_text
 from flexstage.mechanism.store.lines import with_lines
 from flexstage.mechanism.store.schema import schema_of
@@ -199,6 +199,8 @@ def loads_specification(text: str, *, where: str = "text") -> Specification:
     ({'x': 5e-05, 'y': 5e-05}, 500.0, ('maximise', 'frequency'))
     """
     raw = parse_toml(text, where)
+    if isinstance(raw.get("requirements"), dict):
+        raw["requirements"] = dict(dotted(raw["requirements"]))
     try:
         found = record_from(Specification, raw, FORMAT, tagged=False)
         if found.catalogue is not None:
