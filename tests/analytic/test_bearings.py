@@ -155,4 +155,6 @@ def test_the_error_budget_without_stiffness_is_that_of_a_closed_loop(tmp_path, c
     assert "No stiffness along the drive" in shown
     assert "PID in platform coordinates" in shown
     assert "Positioning noise" in shown
-    assert run(["budget", str(path), "--input-asd", "motor=1 uA/Hz^0.5"]) == 2
+    for option, value in (("--input-asd", "motor=1 uA/Hz^0.5"), ("--command", "x=1 um"), ("--temperature", "1 K"), ("--band", "1 Hz 9 Hz")):
+        assert run(["budget", str(path), option, *(value.split(" Hz ") if option == "--band" else [value])]) == 2
+        assert f"error: {option}: not applicable: the drive direction has no stiffness" in capfd.readouterr().err

@@ -172,6 +172,7 @@ def test_a_file_of_hysteresis_and_one_of_poses(guide: Command, tmp_path: Path) -
     assert ended.code == 0, ended.err
     assert ended.document["hysteresis"]["actuators"]["B"]["rms_error_inverse"] < 1e-9  # the stack is the model: the inverse is exact
     assert ended.document["runs"][0]["course"]["name"] == "file"
+    assert "Hysteresis of the stacks" in guide("loop", "stage.toml", *words[:3], *SMALL).out
 
 
 def test_exports_are_there_whole(guide: Command, tmp_path: Path) -> None:
@@ -315,6 +316,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     ),
     (("--controller", "none", "--bandwidth", "5 Hz"), ("there is no loop to be tuned",)),
     (("--controller", "pidd"), ("--controller", 'unknown value (got "pidd"). Use pid or pi.')),
+    (("--controller", "fuzzy"), ("--controller", "Use pi, pid, resonant, lqg, none, ppf or pvf")),
     (("--max-sensitivity", "0.9"), ("--max-sensitivity", "greater than 1")),
     (("--seconds", "-1"), ("seconds", "greater than 0")),
     (("--seconds", "1e9"), ("seconds", "samples")),

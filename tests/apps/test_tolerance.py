@@ -73,7 +73,7 @@ def test_without_a_specification_there_is_no_yield(study_file, tmp_path, flexsta
         ("copies = 40", "copies = 1", "tolerance.copies: must be 2 or more (got 1). Use e.g. 2."),
         ("seed = 2", 'sampling = "grid"', 'unknown value (got "grid")'),
         ("seed = 2", 'point = "edge"', 'unknown point "edge"'),
-        ("seed = 2", 'yield = "101 %"', "must be greater than 0.5 and less than 1 (got 1.01)"),
+        ("seed = 2", 'yield = "101 %"', "study.toml:6: tolerance.yield: must be greater than 0.5 and less than 1 (got 1.01)"),
         ("[scatter]", "[scater]", "scater: unknown key"),
     ],
 )

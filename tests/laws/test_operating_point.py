@@ -116,8 +116,9 @@ def test_a_warm_stage_sags_as_it_drifts():
     [
         ({"at": {"platform.y": 1e-3}, "loads": {"platform.fy": 1.0}}, "platform.fy specifies it"),
         ({"at": {"platform.fx": 1.0}, "loads": {"platform.fx": 1.0}}, "both a constant load and a drive"),
-        ({"at": {"platform.q": 1.0}}, "no coordinate"),
-        ({"fixed": ["platform.ry", "body.x"]}, "neither a body nor a point"),
+        ({"at": {"x": 1.0}}, "x: unknown coordinate. Use e.g. platform.x"),
+        ({"at": {"platform.q": 1.0}}, "platform.q: unknown coordinate. Use e.g. platform.y"),
+        ({"fixed": ["platform.ry", "body.x"]}, "unknown body or point"),
         ({"at": {"platform.rz": 1.5, "platform.y": 0.09}}, "of the displacement"),
         ({"at": {"platform.x": -3e-2}}, "unstable mode"),
     ],

@@ -66,7 +66,7 @@ def polygon(*corners: str) -> str:
     [
         # keys and names
         ("diameter =", "diametre =", ["parts.wire.diametre", "unknown key", "diameter"]),
-        ("diameter =", "diametre =", ["parts.wire", "no diameter", '"2 mm"']),
+        ("diameter =", "diametre =", ["parts.wire", "diameter missing", '"2 mm"']),
         ("[parts.wire]", "[part.wire]", ["part:", "unknown key", "parts"]),
         ('kind = "rod"', 'kind = "rodd"', ["parts.wire.kind", '"rodd"', "rod"]),
         ('kind = "rod"', 'kind = "wire"', ["parts.wire.kind", '"wire"', "Use rod"]),
@@ -91,7 +91,7 @@ def polygon(*corners: str) -> str:
         ("L1-L3 =", "L1-L9000 =", ["placements.L1-L9000", "got 9000", "360"]),
         ("L1-L3 =", "L1-L99999999999999999999 =", ["placements.L1-L9999", "too many digits"]),
         ("L1-L3 =", '"L 1" =', ["placements", '"L 1"', "invalid name"]),
-        ('name = "wire"', "", ["no name", 'name = "a name"']),
+        ('name = "wire"', "", ["name missing", 'name = "a name"']),
         ("[bodies.platform]", "[bodies.plate]", ["bodies", 'unknown body "platform"']),
         # units and numbers
         ('"30 mm"', "30", ["parts.wire.length", "unit missing (got 30)", '"2 mm"']),

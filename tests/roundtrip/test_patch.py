@@ -175,9 +175,9 @@ def test_assignments_in_percent(assignment: str, address: str, value: float) -> 
 @pytest.mark.parametrize(
     ("assignment", "words"),
     [
-        ("leg/front.at.y=+10%", "leg/front.at.y: a relative change of 0 is 0. Use a value with its unit"),
+        ("leg/front.at.y=+10%", "leg/front.at.y: the value is 0, and a percentage does not change it. Use a value with its unit"),
         ("numbers.arm=3 N", "a force"),
-        ("max_mode_frequency=-5%", "max_mode_frequency: not specified, and so no relative change. Use a value with its unit"),
+        ("max_mode_frequency=-5%", "max_mode_frequency: not specified, so a percentage has no reference value. Use a value with its unit"),
     ],
 )
 def test_assignments_that_are_refused(assignment: str, words: str) -> None:

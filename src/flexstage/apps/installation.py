@@ -26,7 +26,7 @@ def consult() -> int:
 
 def _print_rows(rows: Iterable[Row]) -> None:
     for row in rows:
-        print_result(f"{row.verdict.value:5} {row.what:18} {row.found}{f' (wanted: {row.wanted})' if row.wanted else ''}")
+        print_result(f"{row.verdict.value:5} {row.what:18} {row.found}{f' (required: {row.wanted})' if row.wanted else ''}")
         if row.remedy:
             print_result(f"      {'':18} {row.remedy}")
 

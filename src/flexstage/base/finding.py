@@ -144,10 +144,11 @@ def suggest_nearest(name: str, names: Iterable[str], *, otherwise: str = "") -> 
     renamed = new_name(name, known)
     if renamed is not None:
         return f"Use {renamed}"
-    lowered = {each.lower(): each for each in reversed(known)}
-    word = name[:80].lower()
-    begin = [each for each in lowered if len(word.strip("-")) > 2 and each.startswith(word)]
-    close = difflib.get_close_matches(word, lowered, n=_SUGGESTIONS, cutoff=0.6)
+    lowered = {each.lower().removeprefix("--"): each for each in reversed(known)}
+    word = name[:80].lower().removeprefix("--")
+    begin = [each for each in lowered if len(word) > 2 and each.startswith(word)]
+    close = difflib.get_close_matches(word, reversed(lowered), n=len(known) or 1)
+    close.sort(key=lambda each: (-difflib.SequenceMatcher(None, each, word).ratio(), known.index(lowered[each])))
     similar = [lowered[each] for each in (begin or close)][:_SUGGESTIONS]
     if otherwise and not similar:
         return otherwise

@@ -115,7 +115,7 @@ def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
         if reason is None and (ends := [link for link in links if np.any(span(link.part))]):
             estimate = _estimate(body, ends, mechanism.materials, known)
             found += [] if estimate is None else [estimate]
-            reason = None if estimate is not None else "its outlines do not hold together, or are too thin"
+            reason = None if estimate is not None else "with outlines that are separate or too thin"
         if reason is not None:
             reasons[name] = reason
     return BodyEstimates(tuple(found), reasons)
@@ -215,24 +215,24 @@ def _reason(body: PlacedBody, links: Sequence[PlacedLink], materials: Mapping[st
     """Why the flexibility of a body is not estimated."""
     solids = [placed.solid for placed in body.solids.values()]
     if not solids:
-        return "it has no outlines"
+        return "without outlines"
     if any(isinstance(each, Imported) for each in solids) or len(solids) > _MANY:
-        return f"an outline of it is imported, or it has more than {_MANY}"
+        return f"with an imported outline, or more than {_MANY} outlines"
     if any(materials[each.material].is_cubic or materials[each.material].density == 0.0 for each in solids):
-        return "a material of it is a crystal or has no density"
+        return "of a crystal, or of a material without density"
     if any(not isinstance(each, PlacedLink) and each.joints(body.name) for each in body.links):
-        return "it joins a superelement"
+        return "joined to a superelement"
     rigid = next((link.name for link in links if _is_rigid(link.part)), None)
     if rigid is not None:
-        return f"{rigid} is rigid along some freedoms"
+        return f"{rigid} is rigid in some degrees of freedom"
     size = max(float(np.max(each.sides)) for each in solids)
     far = {link.name: _distance(body, _end(link, body.name)) for link in links if np.any(span(link.part))}
     worst = max(far, key=far.__getitem__, default="")
-    return f"{worst} ends {far[worst] * 1e3:.3g} mm outside its outlines" if worst and far[worst] > _FAR * size else None
+    return f"{worst} ends {far[worst] * 1e3:.3g} mm outside the outlines" if worst and far[worst] > _FAR * size else None
 
 
 def _is_rigid(part: Part) -> bool:
-    """Whether a part is an ideal joint, or has fixed freedoms."""
+    """Whether a part is an ideal joint, or has fixed degrees of freedom."""
     return isinstance(part, Joint) or (isinstance(part, Restricted) and len({*part.elastic, *part.free}) < len(Freedom))
 
 

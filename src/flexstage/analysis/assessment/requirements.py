@@ -164,7 +164,7 @@ def _read(mechanism: Mechanism, where: str, key: str, text: str) -> Requirement:
     match = _LINE.fullmatch(text)
     if match is None:
         raise refuse(
-            where, f'invalid requirement (got "{text}")', 'Use "at least" or "at most" and a value, e.g. "at least 50 um at chuck"'
+            where, f'invalid requirement (got "{text}")', 'Use "at least" or "at most" and a value, e.g. "at least 50 um" of a stroke'
         )
     requested = _measure(mechanism, f"{key} at {match['point']}" if match["point"] else key, where)
     limit = parse(match["value"], requested.quantity, where=where)

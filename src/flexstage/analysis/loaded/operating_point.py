@@ -165,15 +165,15 @@ def coordinate(state: State, name: str) -> Array:
     0.0001
     """
     owner, _, component = name.rpartition(".")
-    if component not in COMPONENTS:
-        raise refuse(name, "it is no coordinate of this stage", "Use e.g. platform.y")
+    if not owner or component not in COMPONENTS:
+        raise refuse(name, "unknown coordinate", f"Use e.g. platform.{component if component in COMPONENTS else 'y'}")
     return state.twist(owner)[..., COMPONENTS.index(component)]
 
 
 def _contradictions(requested: Conditions) -> Iterator[Finding]:
     for name in requested.driven:
         if name in requested.loads:
-            yield Finding(name, "it is both a constant load and a drive", "Remove one of the two")
+            yield Finding(name, "both a constant load and a drive", "Remove one of the two")
     for name in requested.coordinates:
         owner, _, component = name.rpartition(".")
         load = f"{owner}.{FORCES[COMPONENTS.index(component)]}" if component in COMPONENTS else ""

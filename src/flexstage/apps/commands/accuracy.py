@@ -15,7 +15,7 @@ from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace import workspace as study
 from flexstage.analysis.workspace.force_workspace import force_workspace
 from flexstage.analysis.workspace.small import SecondOrder, second_order
-from flexstage.base.finding import refuse
+from flexstage.base.finding import Finding, require
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import TEMPERATURE
 from flexstage.base.units.unit import parse
@@ -166,11 +166,14 @@ def budget(
 
     Of a stage that forces move, in open loop: parasitic motion, gauge noise, quantisation and drift.
 
+    Of a stage without stiffness along its drive: positioning noise in closed loop, as flexstage loop --quick. No option then applies.
+
     With --input-asd: noise of the actuators and floor vibration.
     """
     stands = footing(mechanism, Place())
     if stands.links.floating is not None:
-        return _closed_loop(mechanism, input_asd)
+        own = {"--command": command, "--temperature": temperature, "--point": point != PLATFORM, "--input-asd": input_asd, "--band": band}
+        return _closed_loop(mechanism, [option for option, value in own.items() if value])
     asked = motions(command or ()) or required_command(mechanism) or _reached(mechanism)
     warmth = None if temperature is None else parse(temperature, TEMPERATURE, where="--temperature")
     noise = spectra(stands.links, input_asd) if input_asd else None
@@ -193,15 +196,14 @@ def _reached(mechanism: Mechanism) -> dict[str, float]:
     return {name: float(held) for name, held in zip(reach.coordinates, reach.held, strict=True) if np.isfinite(held)}
 
 
-def _closed_loop(mechanism: Mechanism, densities: list[str] | None) -> CommandResult:
-    """Positioning noise of the default loop, of a stage without stiffness along its drive."""
+def _closed_loop(mechanism: Mechanism, options: list[str]) -> CommandResult:
+    """Positioning noise of the default loop, of a stage without stiffness along its drive; `options` do not apply to it."""
     from flexstage.control.show.tables import controller_text, noise_table  # loops take a second to load
     from flexstage.control.study.setup import ControllerSetup, LoopSetup
     from flexstage.control.study.study import loop_study
 
-    if densities:
-        what = "the drive direction has no stiffness, so that the budget is of a closed loop"
-        raise refuse("--input-asd", what, "State floor and amplifier noise in the set-up of flexstage loop")
+    what = "not applicable: the drive direction has no stiffness, so the budget is that of a closed loop"
+    require(Finding(option, what, "Omit it, and set noise and trajectory in flexstage loop") for option in options)
     found = loop_study(mechanism, LoopSetup(controller=ControllerSetup(quick=True)))
     text = f"No stiffness along the drive: noise in closed loop, with the controller of flexstage loop --quick ({controller_text(found)})."
     return CommandResult(mechanism, lambda: found.noise, lambda: [text, noise_table(found)], model=Model.LUMPED)

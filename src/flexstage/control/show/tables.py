@@ -45,9 +45,9 @@ def loop_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def short_tables(found: LoopStudy) -> list[Table | str | None]:
-    """The loop, bandwidth, margins, time responses and positioning noise, without notes; of an unstable loop with the reason."""
-    margins = margin_tables(replace(found, disk_margin=None))
-    parts = [*_charge_tables(found), *_damping_tables(found), *measured_tables(found), *time_tables(found.runs), noise_table(found)]
+    """Loop, bandwidth, margins, time responses, positioning noise and hysteresis, without notes; of an unstable loop with the reason."""
+    margins, noise = margin_tables(replace(found, disk_margin=None)), error_tables(replace(found, static_errors=None))
+    parts = [*_charge_tables(found), *_damping_tables(found), *measured_tables(found), *time_tables(found.runs), *noise]
     shown = [replace(each, notes=()) for each in (loop_table(found), *margins, *parts) if each is not None]
     if not found.stability.stable:
         shown[0] = loop_table(found)

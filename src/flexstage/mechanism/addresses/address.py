@@ -123,9 +123,9 @@ def _share_of(mechanism: Mechanism, where: str, factor: float) -> Number:
     """A number scaled by a factor."""
     value = get(mechanism, where)
     if value is None:
-        raise refuse(where, "not specified, and so no relative change", "Use a value with its unit")
+        raise refuse(where, "not specified, so a percentage has no reference value", "Use a value with its unit")
     if np.all(np.equal(value, 0.0)):
-        raise refuse(where, "a relative change of 0 is 0", "Use a value with its unit")
+        raise refuse(where, "the value is 0, and a percentage does not change it", "Use a value with its unit")
     return value * factor  # type: ignore[no-any-return]
 
 

@@ -263,8 +263,8 @@ class RecordNode(Node):
                 used.add(key)
                 values[name] = reader.read(inner, raw[key], join(where, key))
             elif slot.required:
-                advice = f"Use e.g. {slot.keys[0]} = {slot.node.example}"
-                values[name] = reader.refuse(where or "file", f"it has no {' or '.join(slot.keys)}", advice)
+                advice = f"Add e.g. {slot.keys[0]} = {slot.node.example}"
+                values[name] = reader.refuse(where or "file", f"{' or '.join(slot.keys)} missing", advice)
             else:
                 values[name] = slot.default
         known = [key for slot in self.fields.values() for key in slot.keys]

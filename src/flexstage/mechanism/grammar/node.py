@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, ClassVar
 
-from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
+from flexstage.base.finding import DesignError, Finding, list_choices, refuse, require, suggest_nearest
 from flexstage.base.units.expression import UnknownAmountError
 from flexstage.base.units.quantity import (
     COMPLIANCE,
@@ -521,7 +521,7 @@ class ChoiceNode(Node):
         """Choice of that name."""
         if isinstance(raw, str) and raw in self.words:
             return self.words[raw]
-        return reader.refuse(where, f"unknown value (got {kind(raw)})", suggest_nearest(kind(raw).strip('"'), self.words))
+        return reader.refuse(where, f"unknown value (got {kind(raw)})", suggest_nearest(kind(raw).strip('"'), self.words, otherwise=f"Use {list_choices(list(self.words))}"))
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
         """Name of the choice."""

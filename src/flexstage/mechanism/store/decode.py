@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Table
+from flexstage.base.storage.digest import KEY
 from flexstage.mechanism.addresses.address import set_text, set_value
 from flexstage.mechanism.addresses.locate import canonical, locate
 from flexstage.mechanism.assembly.expand import unknown_entries
@@ -86,11 +87,21 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
     try:
         value = reader.read(node_of(record), {key: part for key, part in raw.items() if key != "format"}, "")
         for address, number, node in () if value is BAD else node_of(record).numbers(value):
-            reader.note(number_findings(address, number, node))
+            reader.note(number_findings(_in_file(value, address), number, node))
     except EnoughError:
         reader.findings.append(Finding("file", f"at least {MOST_FINDINGS} errors", "Correct these first"))
     require(reader.findings)
     return value
+
+
+def _in_file(value: Any, address: str) -> str:
+    """Address with the keys of the file, where the fields have other names (`yield`)."""
+    keys = []
+    for name in address.split("."):
+        own = {each.name: each.metadata.get(KEY, each.name) for each in fields(value)} if is_dataclass(value) else {}
+        keys.append(own.get(name, name))
+        value = value.get(name) if isinstance(value, Mapping) else getattr(value, name, None)
+    return ".".join(keys)
 
 
 def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:

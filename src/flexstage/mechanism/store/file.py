@@ -30,7 +30,7 @@ def read_text(path: str | os.PathLike[str]) -> str:
     >>> read_text("nowhere/stage.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/stage.toml: file not found. Check the path; "flexstage new" writes a design file.
+    flexstage.base.finding.DesignError: nowhere/stage.toml: file not found. Check the path.
     """
     where = os.fspath(path)
     try:
@@ -89,7 +89,7 @@ def _reason(error: OSError | ValueError) -> str:
 
 def _unreadable(where: str, error: OSError | ValueError) -> DesignError:
     if isinstance(error, FileNotFoundError):
-        return refuse(where, "file not found", 'Check the path; "flexstage new" writes a design file')
+        return refuse(where, "file not found", "Check the path")
     if isinstance(error, IsADirectoryError):
         return refuse(where, "not a file but a folder", "Use the design file in it")
     return refuse(where, f"cannot be read: {_reason(error)}", "Check the path and its permissions")

@@ -145,7 +145,7 @@ def place(model: Nonlinear, name: str) -> tuple[int, Array]:
         return model.body(name), np.zeros(3)
     known = wrench_places(model.assembly)
     if name not in known:
-        raise refuse(name, "neither a body nor a point of this stage", suggest_nearest(name, [*model.bodies, *known]))
+        raise refuse(name, "unknown body or point", suggest_nearest(name, [*model.bodies, *known]))
     body = model.body(known[name].body)
     return body, known[name].point - model.reference[body]
 
@@ -351,7 +351,7 @@ def _unknown_inputs(model: Nonlinear, loads: Mapping[str, Number]) -> Iterator[F
     names = [channel.name for channel in model.inputs]
     for name in loads:
         if name not in names:
-            yield Finding(name, "not a load of this stage", suggest_nearest(name, names))
+            yield Finding(name, "unknown load", suggest_nearest(name, names))
 
 
 def _unknown_coordinates(model: Nonlinear, held: Mapping[str, Number]) -> Iterator[Finding]:
@@ -360,4 +360,4 @@ def _unknown_coordinates(model: Nonlinear, held: Mapping[str, Number]) -> Iterat
         owner, _, component = name.rpartition(".")
         if owner not in places or component not in COMPONENTS:
             advice = suggest_nearest(name, [f"{each}.{component}" for each in places for component in COMPONENTS])
-            yield Finding(name, "not a coordinate of this stage", advice)
+            yield Finding(name, "unknown coordinate", advice)

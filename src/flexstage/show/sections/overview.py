@@ -17,7 +17,7 @@ def headline(analysis: Analysis) -> Headline:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> headline(analyse(double_triangle(), Model.IDEAL)).text
-    'All 8 requirements are met; the least margin is 6.01 %, for frequency.platform.1.'
+    'All 8 requirements are met; the smallest margin is 6.01 %, for frequency.platform.1.'
     """
     verdicts = analysis.verdicts
     if not verdicts:
@@ -59,7 +59,7 @@ def summary_section(analysis: Analysis) -> Section | None:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> summary_section(analyse(double_triangle(), Model.IDEAL)).blocks[0].text.partition(": ")[2]
-    '6 freedoms (x, y, z, rx, ry, rz), 6 actuators, 6 gauges'
+    '6 DOFs (x, y, z, rx, ry, rz), 6 actuators, 6 gauges'
     """
     parts = (stage_text(analysis), *summary_tables(analysis, explained=True))
     return section("Summary", [Prose(each) if isinstance(each, str) else each for each in parts])

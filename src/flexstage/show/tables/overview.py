@@ -38,10 +38,10 @@ def stage_text(analysis: Analysis) -> str:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> stage_text(analyse(double_triangle(), Model.IDEAL))
-    'double triangle, ideal model: 6 freedoms (x, y, z, rx, ry, rz), 6 actuators, 6 gauges'
+    'double triangle, ideal model: 6 DOFs (x, y, z, rx, ry, rz), 6 actuators, 6 gauges'
     """
     found = analysis.kinematics
-    free = f"{count_text(found.mobility, 'freedom')} ({', '.join(found.coordinates)})" if found.coordinates else "no freedoms"
+    free = f"{count_text(found.mobility, 'DOF')} ({', '.join(found.coordinates)})" if found.coordinates else "no DOF"
     driven = [count_text(len(found.actuators), "actuator")] if found.actuators or not found.thrusts else []
     forced = [count_text(len(found.thrusts), "force actuator")] if found.thrusts else []
     with_bodies = " with elastic bodies" if analysis.mechanism.elastic_bodies and analysis.model is Model.LUMPED else ""
@@ -246,9 +246,11 @@ def _strength_text(analysis: Analysis) -> str | None:
 
 
 def _weakest_text(found: HingeStress) -> str:
-    """The least safety factor at the worst corner of some strokes, the hinge and the place in it."""
+    """Smallest safety factor at the worst corner of some strokes, the hinge and the position in it."""
     place = f", {found.places[found.links.index(found.weakest)]}" if found.places else ""
-    return f"Least safety factor at the worst corner {found.condition}: {number(single(found.min_safety), 4)}, in {found.weakest}{place}."
+    safety = single(found.min_safety)
+    value = number(safety, 4) if np.isfinite(safety) else "unknown"
+    return f"Smallest safety factor at the worst corner {found.condition}: {value}, in {found.weakest}{place}."
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
@@ -257,7 +259,7 @@ def closing_text(analysis: Analysis, *, whole: bool) -> str:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
     >>> print(closing_text(analyse(double_triangle()), whole=True))
-    Verdict: All 8 requirements are met; the least margin is 6.01 %, for frequency.platform.1.
+    Verdict: All 8 requirements are met; the smallest margin is 6.01 %, for frequency.platform.1.
       Look at frequency.platform.1, 106.01 Hz (at least 100 Hz, +6.01 %): mode 1, tilt.
     """
     doubts = () if analysis.ends is None else analysis.ends.warnings

@@ -64,7 +64,7 @@ def verdict_text(verdicts: Sequence[Verdict]) -> str:
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
     >>> verdict_text(judge(double_triangle()))
-    'All 8 requirements are met; the least margin is 6.01 %, for frequency.platform.1.'
+    'All 8 requirements are met; the smallest margin is 6.01 %, for frequency.platform.1.'
     """
     failed = [verdict for verdict in verdicts if not is_met(verdict)]
     if failed:
@@ -73,7 +73,7 @@ def verdict_text(verdicts: Sequence[Verdict]) -> str:
     margins = {verdict.requirement.key: first_margin(verdict) for verdict in verdicts}
     least = min(margins, key=lambda key: margins[key])
     which = f"All {len(verdicts)} requirements are met" if len(verdicts) > 1 else "The requirement is met"
-    return f"{which}; the least margin is {percent(margins[least], 3)}, for {least}."
+    return f"{which}; the smallest margin is {percent(margins[least], 3)}, for {least}."
 
 
 def first_margin(verdict: Verdict) -> float:

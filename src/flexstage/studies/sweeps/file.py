@@ -38,7 +38,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     >>> load_study("nowhere/study.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/study.toml: file not found. Check the path; "flexstage new" writes a design file.
+    flexstage.base.finding.DesignError: nowhere/study.toml: file not found. Check the path.
     """
     return loads_study(read_text(path), where=os.fspath(path), folder=Path(path).parent)
 

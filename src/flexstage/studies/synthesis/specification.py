@@ -186,7 +186,7 @@ def load_specification(path: str | os.PathLike[str]) -> Specification:
     >>> load_specification("nowhere/spec.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/spec.toml: file not found. Check the path; "flexstage new" writes a design file.
+    flexstage.base.finding.DesignError: nowhere/spec.toml: file not found. Check the path.
     """
     return loads_specification(read_text(path), where=os.fspath(path))
 

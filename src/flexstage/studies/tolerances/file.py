@@ -43,7 +43,7 @@ def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
     >>> load_tolerance("nowhere/study.toml")
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: nowhere/study.toml: file not found. Check the path; "flexstage new" writes a design file.
+    flexstage.base.finding.DesignError: nowhere/study.toml: file not found. Check the path.
     """
     return loads_tolerance(read_text(path), where=os.fspath(path), folder=Path(path).parent)
 
@@ -157,7 +157,7 @@ def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
 def _no_share(where: str, addresses: list[str], design: Mechanism) -> list[Finding]:
     nought = [address for address in addresses if float(get(design, address)) == 0.0]
     advice = 'Use a deviation with a unit, e.g. "10 um"'
-    return [Finding(where, f"{nought[0]} is 0, and a share of it is 0", advice)] if nought else []
+    return [Finding(where, f"{nought[0]} is 0, and a percentage of 0 is no deviation", advice)] if nought else []
 
 
 def _components(sources: tuple[str, ...], where: str, bench: _Reached, findings: list[Finding]) -> dict[str, list[str]]:

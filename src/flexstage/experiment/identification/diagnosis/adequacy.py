@@ -67,7 +67,7 @@ def coarse_lines(known: Evidence, poles: Array) -> str | None:
     >>> from flexstage.experiment.example import one_mode_record
     >>> short, long = (evidence(one_mode_record(seconds=seconds), None) for seconds in (16.0, 64.0))
     >>> coarse_lines(short, np.array([-0.2 + 10.0j]))[:88]
-    'lines are 1.49 Hz apart, the mode at 10 Hz is 0.4 Hz wide: further modes next to those f'
+    'frequency lines too coarse (got a spacing of 1.49 Hz, the mode at 10 Hz is 0.4 Hz wide):'
     >>> coarse_lines(long, np.array([-0.2 + 10.0j])) is None
     True
     """
@@ -78,8 +78,8 @@ def coarse_lines(known: Evidence, poles: Array) -> str | None:
     narrowest = int(np.argmin(widths / distances))
     apart = float(distances[narrowest])
     return (
-        f"lines are {apart:.3g} Hz apart, the mode at {abs(poles[narrowest]):.4g} Hz is {widths[narrowest]:.3g} Hz wide: further modes "
-        f"next to those found may be missing. {_advise_length(known, widths[narrowest])}"
+        f"frequency lines too coarse (got a spacing of {apart:.3g} Hz, the mode at {abs(poles[narrowest]):.4g} Hz is "
+        f"{widths[narrowest]:.3g} Hz wide): close modes may be missing. {_advise_length(known, widths[narrowest])}"
     )
 
 
@@ -89,12 +89,12 @@ def unsearched_band(known: Evidence, reach: Reach) -> str | None:
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
     >>> unsearched_band(evidence(one_mode_record(), None), Reach(2.0, 26.88, (0.5, 20.0)))
-    'modes from 0.5 to 20 Hz are requested; from 2 to 20 Hz they could be looked for. Record longer.'
+    'modes from 0.5 to 20 Hz are requested; the search covers only 2 to 20 Hz. Record longer.'
     """
     if reach.asked is None or (reach.low <= 1.001 * reach.asked[0] and reach.high >= 0.999 * reach.asked[1]):
         return None
     low, high = max(reach.low, reach.asked[0]), min(reach.high, reach.asked[1])
-    could = f"from {low:.4g} to {high:.4g} Hz they could be looked for" if low < high else "nowhere could they be looked for"
+    could = f"the search covers only {low:.4g} to {high:.4g} Hz" if low < high else "the record covers no part of this band"
     needed = [word for word, missing in (("longer", reach.low > reach.asked[0]), ("faster", known.band[1] < reach.asked[1])) if missing]
     return f"modes from {reach.asked[0]:g} to {reach.asked[1]:g} Hz are requested; {could}. Record {' and '.join(needed) or 'longer'}."
 
@@ -120,20 +120,20 @@ def no_mode_warning(known: Evidence, reach: Reach) -> str:
     inside = (known.responses.frequencies >= known.band[0]) & (known.responses.frequencies <= known.band[1])
     mean = float(np.mean(known.coherence[inside]))
     chance = known.responses.values.shape[2] / max(known.averages, 1.0)
-    told = f"inputs explain {mean:.1%} of the outputs' power on the mean"
+    told = f"inputs explain {mean:.1%} of the outputs' power on average"
     if mean > _BEYOND_CHANCE * chance:
-        return f"no mode can be identified, though {told} ({chance:.1%} would be chance). {seen}"
-    return f"no mode exceeds the noise: {told}, and would explain {chance:.1%} of noise that has nothing to do with them. {seen}"
+        return f"no mode can be identified, although {told} ({chance:.1%} is expected by chance). {seen}"
+    return f"no mode exceeds the noise: {told}; {chance:.1%} is expected by chance. {seen}"
 
 
 def _advise_length(known: Evidence, wanted: float | None) -> str:
     """Advice: record length for a line spacing of `wanted` Hz with the same averages."""
     if known.coherence is None:
-        return "Measure with finer lines." if wanted is None else f"Measure with lines {wanted:.2g} Hz apart."
+        return "Measure with a finer line spacing." if wanted is None else f"Measure with a line spacing of {wanted:.2g} Hz."
     lasts = 1.0 / known.resolution
     if wanted is None:
-        return f"It lasts {lasts:.3g} s: record longer."
-    return f"The record lasts {lasts:.3g} s: it takes {_round_up(lasts * line_distance(known) / wanted):.3g} s at least."
+        return f"Record for more than {lasts:.3g} s."
+    return f"Record for at least {_round_up(lasts * line_distance(known) / wanted):.3g} s (got {lasts:.3g} s)."
 
 
 def _round_up(value: float) -> float:
