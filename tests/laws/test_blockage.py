@@ -108,7 +108,7 @@ def test_a_stack_without_hinges_is_told_where_they_belong() -> None:
     """A lever pushed by a stack that is fixed to it and to the ground cannot turn; with hinges at the ends it does."""
     rigid = loads(LEVER)
     (told,) = ideal(rigid).blockages
-    assert str(told).startswith("stack: the stroke cannot move: it is blocked by the locked freedoms of pivot (x), stack (rz)")
+    assert str(told).startswith("stack: the stroke cannot move: it is blocked by the locked degrees of freedom of pivot (x), stack (rz)")
     assert "It joins ground and platform without a hinge, and is elastic along its axis only: put a hinge at each end" in told.advice
     ends = 'bodies.base = { mass = "1 g", point = true }\nbodies.tip = { mass = "1 g", point = true }\n[parts]'
     hinged = LEVER.replace('["ground", "platform"], part = "stack"', '["base", "tip"], part = "stack"').replace("[parts]", ends) + JOINTS

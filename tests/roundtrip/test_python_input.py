@@ -108,7 +108,7 @@ def test_a_stage_without_sections_or_freedoms_is_told():
     assert "no link has a section" in found.workspace.reasons["stress"]
     locked = replace(stage, parts={"stack": Restricted(stack, ())})
     assert fs.ideal(locked).mapping.values[0, 0] == 1.0
-    with pytest.raises(fs.DesignError, match="every freedom is locked, by pzt"):
+    with pytest.raises(fs.DesignError, match="every degree of freedom is locked, by pzt"):
         fs.lumped(locked)
 
 

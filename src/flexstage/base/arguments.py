@@ -99,7 +99,7 @@ def check_arguments(function: Callable[P, T]) -> Callable[P, T]:
     2.0
     >>> check_arguments(bend)("ab")
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: bend: ends: must be several values (got the text 'ab'). Give a tuple or a list of them.
+    flexstage.base.finding.DesignError: bend: ends: must be several values (got the text 'ab'). Use a tuple or a list of them.
     """
 
     @functools.wraps(function)
@@ -290,7 +290,7 @@ def _whole(bound: Bound | None, value: Any) -> Any:
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
         raise MismatchError(value, "a whole number", "Give an int")
     if bound is not None and not bound.low <= value <= bound.high:
-        raise MismatchError(value, f"a whole number of {bound.whole()}", "Give an int within these limits")
+        raise MismatchError(value, f"a whole number of {bound.whole()}", "Use an int within these limits")
     return int(value)
 
 
@@ -327,7 +327,7 @@ def _as_float(value: Any) -> float:
 
 def _no_number(value: Any) -> MismatchError:
     advice = "Use a number in SI units, e.g. 0.4 * fs.mm; texts with units are for design files (fs.load)"
-    return MismatchError(value, "a number", advice if isinstance(value, str) else "Give a number or an array in SI units")
+    return MismatchError(value, "a number", advice if isinstance(value, str) else "Use a number or an array in SI units")
 
 
 def _array(demand: Demand, value: Any) -> Any:
@@ -335,7 +335,7 @@ def _array(demand: Demand, value: Any) -> Any:
         return value
     array = _as_array(value) if isinstance(value, list | tuple) else value
     if not isinstance(array, np.ndarray) or array.dtype.kind not in "fciu":
-        raise MismatchError(value, "an array of numbers", "Give a numpy array in SI units")
+        raise MismatchError(value, "an array of numbers", "Use a numpy array in SI units")
     if demand.finite and not (finite := np.isfinite(array)).all():
         index = tuple(np.argwhere(~finite)[0])
         fault = MismatchError(float(np.real(array[index])), "a finite number", "Give finite numbers")
@@ -362,14 +362,14 @@ def _direction(rule: Rule, value: Any) -> Any:
 def _row(rules: list[Rule], value: Any) -> Any:
     """One value per rule."""
     if not isinstance(value, tuple | list) or len(value) != len(rules):
-        raise MismatchError(value, f"{len(rules)} values", "Give a tuple of them")
+        raise MismatchError(value, f"{len(rules)} values", "Use a tuple of them")
     return _same_or(tuple, value, [_inside(rule, str(place), each) for place, (rule, each) in enumerate(zip(rules, value, strict=True))])
 
 
 def _items(kind: type, rule: Rule, value: Any) -> Any:
     """Any number of values."""
     if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable) or isinstance(value, np.ndarray):
-        raise MismatchError(value, "several values", "Give a tuple or a list of them")
+        raise MismatchError(value, "several values", "Use a tuple or a list of them")
     return _same_or(kind, value, [_inside(rule, str(place), each) for place, each in enumerate(value)])
 
 
@@ -389,7 +389,7 @@ def _frozen_table(rule: Rule, value: Any) -> Any:
 
 def _items_by_name(rule: Rule, value: Any) -> dict[str, Any]:
     if not isinstance(value, Mapping) or not all(isinstance(name, str) for name in value):
-        raise MismatchError(value, "values by name", "Give a dict with names as keys")
+        raise MismatchError(value, "values by name", "Use a dict with names as keys")
     return {name: _inside(rule, name, each) for name, each in value.items()}
 
 

@@ -32,7 +32,7 @@ _EVERY: Array = np.arange(6)
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """Stiffness and constraints of a link: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` freedoms.
+    """Stiffness and constraints of a link: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` DOFs.
 
     `inner` (..., m) [1/s^2] are the squared angular frequencies of its mass-normalised fixed-end modes: m more coordinates of the lumped
     model.
@@ -81,9 +81,9 @@ def stiffness(part: Elastic, material: Material | None) -> Array:
 
 
 def law(part: Part, material: Material | None) -> Law:
-    """Compute the stiffness and the locked freedoms of any part.
+    """Compute the stiffness and the locked DOFs of any part.
 
-    A `Joint` has no stiffness and locks all freedoms that are not free. Ordinary parts lock nothing.
+    A `Joint` has no stiffness and locks all DOFs that are not free. Ordinary parts lock nothing.
 
     A `Restricted` part starts from K = C^-1. Locked rows and columns are deleted. Freed ones are condensed: K_ee - K_ef K_ff^-1 K_fe.
     Freedoms without any stiffness are free already.
@@ -110,7 +110,7 @@ def law(part: Part, material: Material | None) -> Law:
 def viscous_damping(part: Part) -> Array | None:
     """Return the viscous damping (..., 6, 6) [N s/m] of a part about its centre, or `None` if it specifies none.
 
-    A restricted part keeps the damping of its elastic freedoms.
+    A restricted part keeps the damping of its elastic DOFs.
 
     >>> from flexstage.parts.voice_coil import VoiceCoil
     >>> viscous_damping(VoiceCoil(force_constant=10.0, damping=2.0)).diagonal().tolist()
@@ -141,7 +141,7 @@ def fixed_end_modes(part: Elastic, material: Material | None) -> tuple[FixedEndM
 
 
 def locked_freedoms(part: Part) -> tuple[Freedom, ...]:
-    """Return the freedoms that a part locks."""
+    """Return the DOFs that a part locks."""
     if isinstance(part, Joint):
         return others(part.free)
     return others(part.elastic + part.free) if isinstance(part, Restricted) else ()
@@ -201,7 +201,7 @@ def _required_material(part: Part, material: Material | None) -> Material:
 
 
 def _regular(part: Elastic, specified: Array, freedoms: Array = _EVERY) -> Array:
-    """A non-singular stiffness (..., k, k) in some freedoms: NaN for singular designs; raises if the first design is singular."""
+    """A non-singular stiffness (..., k, k) in some DOFs: NaN for singular designs; raises if the first design is singular."""
     size = np.sqrt(np.max(np.abs(np.real(specified)), axis=-1))
     size = np.where(size > 0.0, size, 1.0)
     _, values, motions = np.linalg.svd(np.real(specified) / size[..., :, None] / size[..., None, :])
@@ -215,7 +215,7 @@ def _regular(part: Elastic, specified: Array, freedoms: Array = _EVERY) -> Array
 
 
 def _stiff_among(freedoms: Array, stiffness: Array) -> Array:
-    """The given freedoms in which any design has stiffness."""
+    """The given DOFs in which any design has stiffness."""
     rows = np.any(np.real(stiffness[..., freedoms, :]) != 0.0, axis=-1)
     return freedoms[np.any(rows, axis=tuple(range(rows.ndim - 1)))]
 

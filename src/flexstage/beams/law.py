@@ -58,7 +58,7 @@ class PartLaw:
     A part is a `beam`, which defines its compliance, mass, geometric stiffness and stress. `diagonal` is its compliance (..., 6) if it
     differs from the beam's (plates). All 6x6 are about the centre. A part without a beam has:
 
-    - `compliance` (..., 6, 6), or `stiffness` (..., 6, 6) if it may be singular or negative in some freedoms;
+    - `compliance` (..., 6, 6), or `stiffness` (..., 6, 6) if it may be singular or negative in some DOFs;
     - `material_stiffness` if the stiffness depends on the material;
     - `mass` (..., 12, 12).
 

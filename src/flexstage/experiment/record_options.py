@@ -119,13 +119,13 @@ class RecordTexts:
     def require_unsaid(self) -> None:
         """Refuse every record option without a record."""
         said = ("array" if name == "arrays" else name.replace("_", "-") for name, value in vars(self).items() if value)
-        require(Finding(f"--{name}", "it is of records, and none is given", "Name them by --record, or leave it out") for name in said)
+        require(Finding(f"--{name}", "needs a record, and there is none", "Name them by --record, or leave it out") for name in said)
 
     def search(self) -> Search:
         """Search parameters."""
         band = None if self.band is None else (_hertz("--band", self.band[0]), _hertz("--band", self.band[1]))
         if self.band is not None and band is not None and band[0] >= band[1]:
-            raise refuse("--band", f"{self.band[0]} to {self.band[1]} is no band", "Give a low frequency and a higher one")
+            raise refuse("--band", f"{self.band[0]} to {self.band[1]} is no band", "Use a low frequency and a higher one")
         lines = self._resolution()
         moved = self.excitation or Excitation.RECORDED
         return Search(band=band, segments=None if lines is None else Segments(1.0 / lines), excitation=moved)
@@ -176,7 +176,7 @@ def _repeated(paths: Sequence[Path]) -> Iterator[Finding]:
     counts = Counter(path.resolve() for path in paths)
     for path in {path.resolve(): path for path in paths}.values():
         if (count := counts[path.resolve()]) > 1:
-            yield Finding(str(path), f"it is given {count} times", "Give every record once: it would count as so many tests")
+            yield Finding(str(path), f"it is given {count} times", "Name each record once: a repeated record would count as another test")
 
 
 def _units(texts: Sequence[str] | None, findings: list[Finding]) -> tuple[tuple[str, str], ...]:

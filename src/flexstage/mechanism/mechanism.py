@@ -159,7 +159,7 @@ class LinkProbe(Description):
 class GaugeSum(Description):
     """Weighted sum of other gauges of one quantity, by name: `{S1 = 0.5, S2 = -0.5}`.
 
-    The sum replaces its members: the pose follows from sums and from gauges outside sums. Noise, steps and range are those of its members.
+    The sum replaces its members: the pose follows from sums and from gauges outside sums. Noise, steps and range belong to its members.
     """
 
     sum: Mapping[str, Annotated[Number, RATIO]]

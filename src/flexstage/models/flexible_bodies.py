@@ -94,7 +94,7 @@ class BodyEstimates:
 def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     """Estimate the flexibility of every body of one design from its outlines.
 
-    Bodies without outlines, with imported ones, on superelements, ideal joints or fixed freedoms, and those whose links end far from the
+    Bodies without outlines, with imported ones, on superelements, ideal joints or fixed DOFs, and those whose links end far from the
     outlines, have a reason instead; so have all bodies of large stages. Equal bodies share their estimate.
 
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -1,4 +1,4 @@
-"""Ideal model: rigid bodies; hinges are free in their intended freedoms and locked in all others; superelements are rigid.
+"""Ideal model: rigid bodies; hinges are free in their intended DOFs and locked in all others; superelements are rigid.
 
 Unknowns are the twists of all bodies and the strokes. The locked deformations of every link are zero; those of an actuator equal its free
 deformation times its stroke.
@@ -62,7 +62,7 @@ class _Graph:
 
 
 def free_freedoms(link: PlacedLink) -> tuple[Freedom, ...]:
-    """Return the free freedoms of a link: as specified at the link, else the intended freedoms of the part.
+    """Return the free DOFs of a link: as specified at the link, else the intended DOFs of the part.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [freedom.value for freedom in free_freedoms(expand(double_triangle()).links["B4/pivot"])]
@@ -242,7 +242,7 @@ def _owners(matrix: Any, column: int, threshold: float, names: tuple[str, ...]) 
 
 
 def _hinges(graph: _Graph) -> dict[str, PlacedSuperelement]:
-    """The superelements whose links specify freedoms."""
+    """The superelements whose links specify DOFs."""
     return {name: item for name, item in graph.elements.items() if item.link.free}
 
 
@@ -271,7 +271,7 @@ def _blockages(graph: _Graph, immobile: tuple[str, ...]) -> dict[str, Blockage]:
 
 
 def _rigid_ends(link: PlacedLink, blocked: Blockage) -> tuple[str, ...]:
-    """Ends at ground or platform of an actuator whose locked freedoms work against its stroke."""
+    """Ends at ground or platform of an actuator whose locked DOFs work against its stroke."""
     own = f"{link.drawn.removeprefix('links.')}."
     stiff = any(name.startswith(own) for name in blocked.against)
     return tuple(body for body in link.joins if body in (GROUND, PLATFORM)) if stiff else ()
@@ -345,7 +345,7 @@ def _require_paths(graph: _Graph, idle_strokes: Array) -> None:
         Finding(
             link,
             f"actuator {name} can move with the platform at rest: its stroke has no path to the platform",
-            "Join its unit to the platform, or lock the freedom that lets it slip",
+            "Join its unit to the platform, or lock the degree of freedom along which it slips",
         )
         for (name, link), slips in zip(graph.assembly.strokes.items(), moving, strict=True)
         if slips
@@ -409,8 +409,10 @@ def _stiffnesses(graph: _Graph, idle: Array, watching: list[str]) -> Iterator[tu
         if strained[number]:
             element = next((each for each, item in _hinges(graph).items() if name in {weld.name for weld in item.welds()}), None)
             if element is not None:
-                what = f"sees a free internal mode in the specified freedoms of {element}, whose stiffness is unknown in this model"
-                raise refuse(", ".join(watching), what, "Move the gauge to the platform, or remove the freedoms")
+                what = (
+                    f"sees a free internal mode in the specified degrees of freedom of {element}, whose stiffness is unknown in this model"
+                )
+                raise refuse(", ".join(watching), what, "Move the gauge to the platform, or remove these degrees of freedom")
             try:
                 yield slice(6 * number, 6 * number + 6), law(link.part, link.material).stiffness
             except DesignError as error:
@@ -451,7 +453,7 @@ def _undetermined_findings(graph: _Graph, gauges: list[str], motions: Array) -> 
         yield Finding(
             name,
             f"sees a free internal mode without elastic resistance ({bodies}): {what} the platform's motion",
-            "Move the gauge to the platform, give a link of these bodies stiffness in that freedom, or lock it",
+            "Move the gauge to the platform, add stiffness in that degree of freedom to a link of these bodies, or lock it",
         )
 
 
@@ -506,6 +508,6 @@ def _idle(graph: _Graph, motions: Array) -> tuple[Idle, ...]:
 
 
 def _redundant(graph: _Graph) -> tuple[Redundant, ...]:
-    """Self-stress states of the locked freedoms: left null vectors of the constraints."""
+    """Self-stress states of the locked DOFs: left null vectors of the constraints."""
     states = echelon(null_space(_comparable(graph).T).T)
     return tuple(Redundant(tuple(graph.names[place] for place in np.flatnonzero(np.abs(state) > _NEGLIGIBLE))) for state in states)

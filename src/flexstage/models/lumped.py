@@ -90,7 +90,7 @@ class _Stage:
 
     @property
     def locked(self) -> Mapping[str, Array]:
-        """The rows (..., l, N) of the locked freedoms of every link."""
+        """The rows (..., l, N) of the locked DOFs of every link."""
         indices = {name: [freedom.index for freedom in freedoms] for name, freedoms in self.freedoms.items()}
         return {name: self.strains[name].operator[..., rows, :] for name, rows in indices.items()}
 
@@ -106,14 +106,14 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 
     Valid for small displacements about the nominal position and for frequencies below the first resonance of the parts.
 
-    - Locked freedoms of `Restricted` and `Joint` parts are eliminated exactly, a stroke along a locked axis as an imposed motion.
+    - Locked DOFs of `Restricted` and `Joint` parts are eliminated exactly, a stroke along a locked axis as an imposed motion.
     - Free internal modes without effect keep their inertia, are removed with their zero modes, and are listed in `idle`.
     - With `elastic_bodies`, bodies have the compliance that `body_flexibilities` estimates; batches of designs are refused.
 
     Raises `DesignError`:
 
     - for a mechanism (K singular), naming the free bodies;
-    - for a stroke that locked freedoms block;
+    - for a stroke that locked DOFs block;
     - for a nominal position that negative stiffnesses make unstable. An unstable later design of a batch has NaN.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -126,7 +126,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 def variants(
     mechanism: Mechanism, kept: Iterable[Mapping[str, tuple[Freedoms, Freedoms]]], masses: Masses = Masses.ALL
 ) -> Iterator[LinearModel]:
-    """Build the models of a stage for other elastic and free freedoms of its restricted parts, by name, on one expansion of the stage.
+    """Build the models of a stage for other elastic and free DOFs of its restricted parts, by name, on one expansion of the stage.
 
     The origin of each model is the stage. Raises `DesignError` as `lumped`.
 
@@ -143,7 +143,7 @@ def variants(
 
 
 def _restricted(stage: _Stage, kept: Mapping[str, tuple[Freedoms, Freedoms]]) -> _Stage:
-    """The stage with other freedoms of the named restricted parts."""
+    """The stage with other DOFs of the named restricted parts."""
     links = dict(stage.assembly.links)
     for name, link in links.items():
         if link.link.part in kept:
@@ -213,7 +213,7 @@ class _Idle:
 
 @dataclass(frozen=True, eq=False)
 class _RetainedMotions:
-    """z = `basis` q + `driven` u: the retained motions (absent: all), and motions imposed by inputs on locked freedoms (absent: none)."""
+    """z = `basis` q + `driven` u: the retained motions (absent: all), and motions imposed by inputs on locked DOFs (absent: none)."""
 
     basis: Array | None
     driven: Array | None
@@ -223,7 +223,7 @@ class _RetainedMotions:
 
 
 def _stage_without_zeros(mechanism: Mechanism) -> _Stage | None:
-    """Sparse operators of a large stage; `None` for small stages, batches, and stages with freedoms or motions that are not elastic."""
+    """Sparse operators of a large stage; `None` for small stages, batches, and stages with DOFs or motions that are not elastic."""
     assembly = expand(mechanism)
     if len(assembly.bodies) < LARGE or assembly.superelements or not is_single(assembly):
         return None
@@ -341,7 +341,7 @@ def _require_distinguishable(stage: _Stage, loose: Array, basis: Array | None) -
             stiff,
             f"stiffnesses from {ends[soft].min():.3g} N/m ({soft}) to {ends[stiff].max():.3g} N/m ({stiff}), rotations over 0.1 m, "
             "differ too much for double precision",
-            f"Check for an extreme value in {stiff} or {soft}, or lock the stiff freedoms",
+            f"Check for an extreme value in {stiff} or {soft}, or lock the stiff degrees of freedom",
         )
 
 
@@ -368,7 +368,7 @@ def _loss_factor(link: PlacedLink) -> Number:
 
 
 def _retain_motions(stage: _Stage, inertia: Mapping[str, Contribution]) -> _RetainedMotions:
-    """Motions that satisfy the locked freedoms and have no momentum in free internal modes."""
+    """Motions that satisfy the locked DOFs and have no momentum in free internal modes."""
     names = stage.order.coordinates
     scale = np.array([10.0 if name.rpartition(".")[2].startswith("r") else 1.0 for name in names])
     basis: Array | None = None
@@ -380,8 +380,8 @@ def _retain_motions(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Reta
         basis, independent = solution.basis, solution.independent
         driven = _stroke_motion(stage, solution, rows)
     if not independent:
-        what = f"every freedom is locked, by {', '.join(stage.freedoms)}, so that nothing is elastic"
-        raise refuse("stage", what, "Give a link stiffness in some freedom; the ideal model computes the motion by strokes")
+        what = f"every degree of freedom is locked, by {', '.join(stage.freedoms)}, so that nothing is elastic"
+        raise refuse("stage", what, "Add stiffness to a link; the ideal model computes the motion by strokes")
     loose = np.zeros((len(names), 0)) if stage.order.sparse else _loose(stage, basis)
     if _moves_platform(loose, independent) and (floating := _driven_motions(stage, inertia, basis, loose)) is not None:
         return _RetainedMotions(basis, driven, tuple(names[index] for index in independent), None, floating)
@@ -419,7 +419,7 @@ def _driven_motions(stage: _Stage, inertia: Mapping[str, Contribution], basis: A
 
 
 def _stroke_motion(stage: _Stage, solution: Elimination, rows: Array) -> Array | None:
-    """Motion (..., N, inputs) that strokes impose on locked freedoms; absent if no actuator is locked along its stroke."""
+    """Motion (..., N, inputs) that strokes impose on locked DOFs; absent if no actuator is locked along its stroke."""
     locked = [(name, freedom) for name, freedoms in stage.freedoms.items() for freedom in freedoms]
     none = np.zeros((6, len(input_channels(stage.assembly))))
     strokes = _strokes(stage)
@@ -433,11 +433,11 @@ def _stroke_motion(stage: _Stage, solution: Elimination, rows: Array) -> Array |
 
 
 def _blocked_findings(stage: _Stage, locked: list[tuple[str, Freedom]], missed: Array) -> Iterator[Finding]:
-    """Errors of strokes (columns) that locked freedoms (rows) cannot follow."""
+    """Errors of strokes (columns) that locked DOFs (rows) cannot follow."""
     for number, (name, link) in enumerate(stage.assembly.actuators.items()):
         blocking = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
         if blocking:
-            what = f"the stroke of actuator {name} is blocked: no elastic freedom between its locked axis and {', '.join(blocking[:6])}"
+            what = f"the stroke of actuator {name} is blocked: no elastic degree of freedom between its locked axis and {', '.join(blocking[:6])}"
             yield Finding(link, what, "Free one of these, or give it stiffness")
 
 
@@ -585,10 +585,10 @@ def _critical_share(other: Array, steep: Array) -> float:
 
 
 def _least_entry(diagonal: Array, share: float) -> str:
-    """The most negative stiffness of a part by freedom, rotations over 0.1 m, and its stable fraction."""
+    """The most negative stiffness of a part by DOF, rotations over 0.1 m, and its stable fraction."""
     place = int(np.argmin(diagonal / _OVER**2))
     if diagonal[place] >= 0.0:
-        return f"a negative stiffness where freedoms are coupled, beyond {share:.4g} times that"
+        return f"a negative stiffness with coupled degrees of freedom, beyond {share:.4g} times that"
     unit = "N/m" if place < len(_OVER) // 2 else "N m/rad"
     return f"{diagonal[place]:.6g} {unit} in {ALL[place].value}, beyond {share * diagonal[place]:.6g} {unit} ({share:.4g} times that)"
 
@@ -627,7 +627,7 @@ def _loose_coordinates(stage: _Stage, loose: Array, independent: tuple[int, ...]
             "stage",
             f"the stiffness matrix is singular: {loose.shape[1]} motion(s) without stiffness move the platform and "
             f"{', '.join(_moving(stage, loose, independent))}",
-            "Add a link that holds this motion, or check which freedoms the links leave free",
+            "Add a link that constrains this motion, or check the free degrees of freedom of the links",
         )
     order = scipy.linalg.qr(_as_ones(loose).T, pivoting=True)[2]
     return sorted(int(index) for index in order[: loose.shape[1]])

@@ -175,8 +175,8 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
 def chain_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) -> Number | None:
     """Compute the compliance [m/N] in an actuator coordinate of all links that carry its load: the sum of f^T C f, by virtual work.
 
-    f is the wrench in the locked freedoms of a link, in equilibrium with fixed strokes. The platform wrench loads only this actuator, V^T w
-    = R_a^T e, and no guide. Links that carry wrenches without motion are rigid in this model. Free freedoms carry nothing; ideal joints are
+    f is the wrench in the locked DOFs of a link, in equilibrium with fixed strokes. The platform wrench loads only this actuator, V^T w
+    = R_a^T e, and no guide. Links that carry wrenches without motion are rigid in this model. Free DOFs carry nothing; ideal joints are
     rigid.
 
     `None` if statics does not determine f (redundant constraints or a guide contribute), if a link has no known compliance, or if nothing
@@ -370,7 +370,7 @@ def _series(chain: list[PlacedLink], line: PlacedLink) -> Array:
 
 
 def _compliance(link: PlacedLink) -> Array:
-    """Compliance of a link's part; for a restricted part only of its elastic freedoms, as freed ones have no stiffness."""
+    """Compliance of a link's part; for a restricted part only of its elastic DOFs, as freed ones have no stiffness."""
     part = link.part
     if isinstance(part, Joint) or (isinstance(part, Restricted) and Freedom.X in part.free):
         raise refuse(link.name, "it is an ideal joint or has no axial stiffness, and the unit's stiffness needs one", "")

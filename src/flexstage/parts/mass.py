@@ -65,7 +65,7 @@ def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame
 def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = None) -> MassProperties:
     """Compute mass properties of the union of solids, in the frame of the solids' frames.
 
-    Common volumes are those of the solids in `meant` positions, if specified.
+    Common volumes are computed for the solids in `meant` positions, if specified.
 
     >>> half = Block("steel", size=(1.0, 1.0, 1.0))
     >>> float(union_properties([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)

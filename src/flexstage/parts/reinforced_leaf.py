@@ -23,7 +23,7 @@ class ReinforcedLeaf(Leaf):
     """Leaf spring with a reinforced middle: thin over the `flexure_length` at both ends, `reinforced_thickness` between them.
 
     The step is square, or has a quarter-circle fillet of radius `fillet` at its foot, within the flexure's length. Ideal degrees of freedom
-    are those of a leaf.
+    equal those of a leaf.
     """
 
     kind: ClassVar[str] = "reinforced_leaf"

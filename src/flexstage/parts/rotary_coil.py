@@ -37,7 +37,7 @@ class RotaryCoil(Coil):
 
     Positive turns the second body in the positive sense about x; a negative `torque_constant` turns it the other way. `stiffness` and
     `damping` are the magnets' and the coil's own about x, `angular_travel` the whole angle for which the torque constant holds. All other
-    numbers are as for a `VoiceCoil`; masses count as points, so that moments of inertia are those of the bodies.
+    numbers are as for a `VoiceCoil`; masses count as points, so that moments of inertia belong to the bodies.
     """
 
     kind: ClassVar[str] = "rotary_coil"

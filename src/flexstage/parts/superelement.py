@@ -86,7 +86,7 @@ class Superelement(Elastic):
 
     @property
     def is_axisymmetric(self) -> bool:
-        """False: its axes are those of its file."""
+        """False: its axes belong to its file."""
         return False
 
     @property

@@ -45,7 +45,7 @@ def _write_mat(variables: dict[str, Any]) -> bytes:
 def to_mat(result: Any) -> bytes:
     """The MATLAB v5 file of a result, its parts as structs of columns, those of matrices with `values`, `rows`, `columns` and `unit`.
 
-    Names are those of the document, with `_` for characters that MATLAB names cannot contain; SI units.
+    Names are as in the document, with `_` for characters that MATLAB names cannot contain; SI units.
 
     >>> import scipy.io
     >>> scipy.io.loadmat(io.BytesIO(to_mat({"loss": {"B/1": 0.1}})), simplify_cells=True)["loss"]

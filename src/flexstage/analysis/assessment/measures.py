@@ -237,7 +237,7 @@ def direction_of(name: str, where: str = "direction") -> Array:
 def least_stiffness(bench: Bench, asked: Measure) -> Array:
     """Least stiffness of the platform over all directions of force.
 
-    Real directions, so that complex-step derivatives are those of a simple eigenvalue.
+    Real directions, so that complex-step derivatives apply to a simple eigenvalue.
     """
     block = _compliance(bench, asked)[..., :3, :3]
     worst = np.linalg.eigh(0.5 * np.real(block + np.swapaxes(block, -1, -2)))[1][..., :, -1]

@@ -43,7 +43,7 @@ class Sensitivities(Result):
 
     `frequency` (P, k) [Hz per SI unit of the parameter]: for the modes of a cluster it is the derivative of the cluster's mean. `clusters`
     lists the groups of modes. `one_sided` has, per cluster, the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi as frequency slopes. They
-    are for single parameters (not additive over parameters). `gain` and `loss` (P, n) are those of each actuator; n = 0 if the strokes do
+    are for single parameters (not additive over parameters). `gain` and `loss` (P, n) belong to each actuator; n = 0 if the strokes do
     not determine the platform. `missing` has the reasons for absent results.
     """
 

@@ -69,7 +69,7 @@ class Modes(Result):
     `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist. `share` (..., k)
     is the kinetic-energy fraction of the platform body, `compliance_share` (..., k) the fraction of its static compliance. `bodies` names
     the rows of `energies` (..., b, k), the fraction of every body and link. `chosen` (..., k) are the modes of the platform frequencies.
-    `names`, `in_plane` and `platform` (indices of the chosen modes) are those of the first design. A mode with equal fractions of several
+    `names`, `in_plane` and `platform` (indices of the chosen modes) belong to the first design. A mode with equal fractions of several
     bodies is named after all of them; repeated modes likewise. `limit` determines only the number of listed modes. A large stage has only
     the lowest modes, `partial`, including those of the platform among them.
     """

@@ -72,7 +72,7 @@ def transmissibility(
 def default_frequencies(model: LinearModel, band: tuple[float, float] | None = None, *, damping: Damping | None = None) -> Array:
     """Return a frequency grid (f,) in Hz: 40 points a decade, 25 across every resonance f_r (1 + zeta_r tan theta), |theta| < 83 degrees.
 
-    Default `band`: from f_1/50 to twice the twelfth natural frequency. Resonances are those of the first design of a batch; repeated modes
+    Default `band`: from f_1/50 to twice the twelfth natural frequency. Resonances belong to the first design of a batch; repeated modes
     at their mean.
 
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -25,7 +25,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
 class DriveForce(Result):
     """Force per displacement along each coordinate, compared with the ideal guide.
 
-    The ideal guide has the same stiffness in the intended freedoms of its flexures, and is rigid in the others. `force` (coordinates x
+    The ideal guide has the same stiffness in the intended DOFs of its flexures, and is rigid in the others. `force` (coordinates x
     elastic, ideal) is the generalised force of the actuators per displacement. `shares` (links x coordinates) are the parts of the elastic
     displacement, which add up to 1. `excess` (links x coordinates) are the parts of the relative excess of the force.
     """
@@ -34,7 +34,7 @@ class DriveForce(Result):
         "Drive force per displacement, compared with the ideal guide",
         "table",
         head="along",
-        notes=("Ideal guide: the same stiffness in the intended freedoms of the flexures, rigid in the others. Negative: softer than it.",),
+        notes=("Ideal guide: flexures equally stiff in their intended DOFs, rigid in the others. Negative: softer than the ideal guide.",),
     )
 
     force: Matrix
@@ -59,7 +59,7 @@ def drive_force(kinematics: Kinematics, model: LinearModel, workspace: ForceWork
     """Compare the elastic stage with its ideal guide under the inputs that move the platform along each coordinate.
 
     By reciprocity x_j = sum over the links of g_j^T k g_u: g_j are their deformations under a unit load of the platform along j, g_u those
-    under the inputs u. With the locked freedoms of the ideal joints prevented, the same sum is the displacement of the ideal guide. One
+    under the inputs u. With the locked DOFs of the ideal joints prevented, the same sum is the displacement of the ideal guide. One
     design.
 
     >>> import flexstage as fs
@@ -95,7 +95,7 @@ def drive_force(kinematics: Kinematics, model: LinearModel, workspace: ForceWork
 
 
 def _ideal_motions(kinematics: Kinematics, model: LinearModel) -> Array:
-    """Motions (n, m) of the coordinates without deformation in the locked freedoms of the ideal joints."""
+    """Motions (n, m) of the coordinates without deformation in the locked DOFs of the ideal joints."""
     locked = [
         model.stiffness[link].operator[[axis.index for axis in ALL if axis not in free]]
         for link, free in kinematics.free.items()

@@ -24,7 +24,7 @@ def amplified(mechanism: Mechanism) -> Amplified:
 
     From the lumped model: compliance of the platform at its reference point with the stroke fixed, and its motion at full stroke. The
     part's centre is that reference point, with the stage's axes: a link has `along` in the stage's x and `bends` in its z. Voltages, bias
-    and capacitance are those of the single actuator. Half of the mass of all bodies and links is at each face.
+    and capacitance belong to the single actuator. Half of the mass of all bodies and links is at each face.
 
     Exact in statics, without internal modes: valid well below the first internal mode with both faces fixed. Loads and preload of the inner
     stack are ignored. Raises `DesignError` for a stage without exactly one actuator.

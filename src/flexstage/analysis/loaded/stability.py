@@ -108,7 +108,7 @@ class Stability:
             yield Finding("stage", what, "Stiffen the parts that the stacks compress, or limit the strokes")
         if stiffer > 1.0 / DOUBTFUL:
             what = f"weight, payloads and forces stiffen it by up to {100.0 * stiffer:.2g} % in one motion"
-            yield Finding("stage", what, "Expect higher frequencies in that motion than those of the unloaded stage")
+            yield Finding("stage", what, "Expect higher frequencies in that motion than without load")
 
 
 def buckling_clause(bodies: str) -> str:

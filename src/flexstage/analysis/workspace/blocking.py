@@ -23,7 +23,7 @@ class StackLine(Result):
     """Force-displacement lines of single stacks against the stage, (..., n) each; other strokes zero.
 
     `free` displacement [m] and `blocking` force [N] are the ends of the stack's line, `stiffness` [N/m] is its stiffness. `stage_stiffness`
-    [N/m] is that of the stage at its ends, other strokes fixed. `travel` [m] and `force` [N] (compression) are the intersection of both
+    [N/m] belongs to the stage at its ends, other strokes fixed. `travel` [m] and `force` [N] (compression) are the intersection of both
     lines.
     """
 

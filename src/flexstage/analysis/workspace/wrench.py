@@ -30,7 +30,7 @@ def corner_wrenches(
     """Compute link wrenches (k, ..., L, 6) [N, N m] at all k = 2^n stroke corners, on the second body, in the frame at the link's centre.
 
     The wrench is linear in the strokes, so convex measures of it (stress, force) are largest at a corner. Weight and forces are included.
-    With a `command`, limits are those of its coordinates.
+    With a `command`, limits belong to its coordinates.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -202,7 +202,7 @@ def _closed_loop(mechanism: Mechanism, options: list[str]) -> CommandResult:
     from flexstage.control.study.setup import ControllerSetup, LoopSetup
     from flexstage.control.study.study import loop_study
 
-    what = "not applicable: the drive direction has no stiffness, so the budget is that of a closed loop"
+    what = "not applicable: the drive direction has no stiffness, so the budget is of a closed loop"
     require(Finding(option, what, "Omit it, and set noise and trajectory in flexstage loop") for option in options)
     found = loop_study(mechanism, LoopSetup(controller=ControllerSetup(quick=True)))
     text = f"No stiffness along the drive: noise in closed loop, with the controller of flexstage loop --quick ({controller_text(found)})."

@@ -218,12 +218,12 @@ def _view_ending(path: Path) -> str:
     """The kind of the output file, by its ending; refuses other endings."""
     ending = path.suffix.lower()
     if ending not in {".html", ".glb"}:
-        raise refuse("--view", f'"{path}" ends neither in .html nor in .glb', "Name a page, stage.html, or a GLB file, stage.glb")
+        raise refuse("--view", f'"{path}" ends neither in .html nor in .glb', "Use a file name such as stage.html or stage.glb")
     return ending
 
 
 def _moving(mechanism: Mechanism, linear: LinearModel, found: Modes, ending: str | None, model: Model) -> str | bytes:
-    """The stage with its modes, as a page or as a GLB file; strokes and deflections are those of the undeformed stage."""
+    """The stage with its modes, as a page or as a GLB file; strokes and deflections belong to the undeformed stage."""
     drawn = standing(mechanism) if model is Model.LUMPED else linear
     shown = stage_data(mechanism, model=drawn, weighed=linear, found=found)
     return glb_of(shown) if ending == ".glb" else view_of(mechanism, shown).html

@@ -115,7 +115,7 @@ def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
     if isinstance(own, StrokeActuator):
         return float(np.real(own.stroke))
     if quantity not in (LENGTH, ANGLE):
-        raise refuse("--to", f"it is not said where {drive} ends", f'Use e.g. --to "{quantity.example}"')
+        raise refuse("--to", f"the last value of {drive} is missing", f'Use e.g. --to "{quantity.example}"')
     return 1e-4 if quantity is LENGTH else 1e-3
 
 

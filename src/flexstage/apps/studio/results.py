@@ -225,7 +225,7 @@ def _response(known: Bench, choice: Choice) -> Response:
     inputs, outputs, low, high = choice
     model = known.felt.model
     if low is not None and high is not None and not 0.0 < low < high < np.sqrt(np.finfo(float).max):
-        raise refuse("response", f"{low:g} Hz to {high:g} Hz is no band", "Give a low frequency above zero and a higher one")
+        raise refuse("response", f"{low:g} Hz to {high:g} Hz is no band", "Use a low frequency above zero and a higher one")
     grid = None if low is None or high is None else np.geomspace(low, high, _POINTS)
     return response(model, outputs or ("platform",), inputs or (model.actuators or ("ground.z",))[:1], grid)
 

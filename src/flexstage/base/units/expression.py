@@ -111,7 +111,7 @@ def _pair(sign: str, first: Expression, second: Expression, text: str, scope: Sc
     if left.dimension.powers != right.dimension.powers:
         word, joint = ("adds", "and") if sign == "+" else ("takes", "less")
         what = f'"{text}" {word} unlike quantities: {left.noun()} {joint} {right.noun()}'
-        raise ExpressionError(what, "Give both the same unit")
+        raise ExpressionError(what, "Use the same unit for both")
     return Amount(value, left.dimension)
 
 
@@ -139,7 +139,7 @@ def parse_expression(text: str) -> Expression:
     """
     if len(text) > LONGEST:
         raise ExpressionError(
-            f"the expression has {len(text)} characters, at most {LONGEST} are read", "Give parts of it names of their own"
+            f"the expression has {len(text)} characters, at most {LONGEST} are read", "Name parts of the formula in [numbers]"
         )
     return _Parser(common_spelling(text)).whole()
 
@@ -226,7 +226,7 @@ class _Parser:
     def deeper(self, inner: Callable[[], Expression]) -> Expression:
         self.depth += 1
         if self.depth > DEEPEST:
-            raise ExpressionError(f"it nests deeper than {DEEPEST} levels", "Give parts of it names of their own")
+            raise ExpressionError(f"nested deeper than {DEEPEST} levels", "Name parts of the formula in [numbers]")
         result = inner()
         self.depth -= 1
         return result

@@ -40,7 +40,7 @@ class Notch(CheckedFields):
         super().__post_init__()
         where, found = f"notch at {self.frequency:g} Hz", []
         if not 0.0 < self.frequency < np.inf:
-            found.append(Finding(where, "must be a positive frequency", "Give a positive one: that of a mode"))
+            found.append(Finding(where, "must be a positive frequency", "Use a positive number: the frequency of a mode"))
         if not 0.0 <= self.depth <= 1.0:
             found.append(Finding(where, f"its depth is {self.depth:g}", "Use the gain at the notch: from 0 to 1 (no notch)"))
         if not 0.0 < self.damping < np.inf:

@@ -320,12 +320,12 @@ def _findings(given: Hardware) -> Iterable[Finding]:
 
 def _item_findings(name: str, item: Amplifier | Sensor, rate: float | None) -> Iterable[Finding]:
     if not item.bandwidth > 0.0:
-        yield Finding(name, f"its bandwidth is {item.bandwidth:g} Hz", "Give a positive number, or leave it out")
+        yield Finding(name, f"its bandwidth is {item.bandwidth:g} Hz", "Use a positive number, or leave it out")
     if item.noise_density is not None and not 0.0 <= item.noise_density < np.inf:
-        yield Finding(name, f"its noise density is {item.noise_density:g}", "Give a number of 0 or more")
+        yield Finding(name, f"its noise density is {item.noise_density:g}", "Use a number of 0 or more")
     if isinstance(item, Amplifier):
         if not item.low < item.high:
-            yield Finding(name, f"its stroke goes from {item.low:g} m to {item.high:g} m", "Give low below high")
+            yield Finding(name, f"its stroke goes from {item.low:g} m to {item.high:g} m", "Use a low value below the high one")
         return
     if not 0.0 <= item.resolution < np.inf:
         yield Finding(name, f"its resolution is {item.resolution:g}", "Give 0 or more")

@@ -133,7 +133,7 @@ def zero_order_hold(given: Plant) -> System:
 
     Ground motion is linear between samples (`first_order_hold`): a hold would add jumps to the gauge readings. A gauge is read before its
     sample's output arrives: without delay and lag it still shows the previous output. Returns a continuous plant unchanged. Inputs and
-    outputs are those of `Plant.system`; its states come first, then the delayed strokes.
+    outputs belong to `Plant.system`; its states come first, then the delayed strokes.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -49,7 +49,8 @@ def headline(found: LoopStudy) -> Headline:
     phases = {each.channel: float(np.rad2deg(each.phase.value)) for each in found.margins.channels}
     least = min(phases, key=lambda name: phases[name])
     return Headline(
-        f"The loop is {'stable' if stable else 'unstable'}; the least phase margin is {number(phases[least], 3)} deg, of {least}.", stable
+        f"The loop is {'stable' if stable else 'unstable'}; the smallest phase margin is {number(phases[least], 3)} deg, of {least}.",
+        stable,
     )
 
 

@@ -35,7 +35,7 @@ def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
 
     >>> from flexstage.control.study.setup import GaugeSetup
     >>> [str(each) for each in setup_findings(LoopSetup(gauges=GaugeSetup(filter_order=4)))]
-    ['gauges.filter_order: a filter of order 4 has no corner. Give filter_corner, or order 0.']
+    ['gauges.filter_order: a filter of order 4 has no corner. Add filter_corner, or use order 0.']
     """
     for address, value, node in node_of(LoopSetup).numbers(setup):
         yield from number_findings(address, value, node)
@@ -67,9 +67,9 @@ def _trajectory(found: TrajectorySetup) -> Iterator[Finding]:
 
 def _gauges(found: GaugeSetup) -> Iterator[Finding]:
     if found.filter_order and found.filter_corner is None:
-        yield Finding("gauges.filter_order", f"a filter of order {found.filter_order} has no corner", "Give filter_corner, or order 0")
+        yield Finding("gauges.filter_order", f"a filter of order {found.filter_order} has no corner", "Add filter_corner, or use order 0")
     elif found.filter_corner is not None and not found.filter_order:
-        yield Finding("gauges.filter_corner", "a corner is given, but order 0 is no filter", "Give filter_order, for example 4")
+        yield Finding("gauges.filter_corner", "a corner is given, but order 0 is no filter", "Add filter_order, e.g. 4")
 
 
 def _floor(floor: Floor) -> Iterator[Finding]:
@@ -84,7 +84,7 @@ def _shaking(where: str, found: VibrationSetup) -> Iterator[Finding]:
     given = [*(["criterion"] if found.criterion is not None else []), *tables]
     if len(given) != 1:
         what = f"it is given by {' and '.join(given)}" if given else "no amplitude is specified"
-        yield Finding(where, what, "Give one of criterion, acceleration, velocity, displacement")
+        yield Finding(where, what, "Use one of criterion, acceleration, velocity, displacement")
         return
     if found.criterion is not None:
         if found.frequencies:
@@ -93,9 +93,9 @@ def _shaking(where: str, found: VibrationSetup) -> Iterator[Finding]:
     ((name, table),) = tables.items()
     wanted = len(found.frequencies) or 1
     if len(table) != wanted:
-        yield Finding(f"{where}.{name}", f"found {len(table)} densities for {wanted} frequencies", "Give as many as frequencies")
+        yield Finding(f"{where}.{name}", f"found {len(table)} densities for {wanted} frequencies", "Use one density for each frequency")
     if found.frequencies and (len(found.frequencies) < 2 or any(low >= high for low, high in pairwise(found.frequencies))):
-        yield Finding(f"{where}.frequencies", "they do not ascend", "Give at least two, ascending")
+        yield Finding(f"{where}.frequencies", "they do not ascend", "Use at least two, ascending")
     if found.frequencies and 0.0 in table:
         yield Finding(f"{where}.{name}", "a density of a table is 0", "Use positive ones: the table is interpolated in log-log")
 
@@ -114,7 +114,7 @@ def _controller(found: ControllerSetup) -> Iterator[Finding]:
         yield Finding("controller.derivative", f"a controller of kind {found.law.value} has none", "Take kind pid, or leave it out")
     unfiltered = any(each.derivative and each.filter is None for each in (found, *found.loops))
     if found.law is ControllerKind.PID and unfiltered and found.filter is None:
-        yield Finding("controller.filter", "the derivative has no filter", "Give its corner, for example ten times the bandwidth")
+        yield Finding("controller.filter", "the derivative has no filter", "Add its corner, e.g. ten times the bandwidth")
     if found.law is ControllerKind.NONE and tuned:
         yield Finding(f"controller.{tuned[0]}", "there is no loop to be tuned", "Take another kind, or leave it out")
 
@@ -127,12 +127,14 @@ def _follow(found: FollowSetup, path: TrajectorySetup) -> Iterator[Finding]:
     if shaped and found.frequency is None:
         yield Finding("follow.frequency", "a shaper needs the frequency of its mode", 'Use e.g. frequency = "106 Hz"')
     if not shaped and found.frequency is not None:
-        yield Finding("follow.frequency", f"{found.method.value} has no mode of its own", "Leave it out, or take zv or zvd")
+        yield Finding(
+            "follow.frequency", f"{found.method.value} has no natural frequency as a parameter", "Leave it out, or take zv or zvd"
+        )
 
 
 def _damping(found: DampingSetup) -> Iterator[Finding]:
     if found.ratio is not None and found.gain is not None:
-        yield Finding("damping", "both a damping ratio and a gain are given", "Give one of them: the other follows")
+        yield Finding("damping", "both a damping ratio and a gain are given", "Remove one of them: the other follows")
     if found.gauges and found.noise is not None:
         yield Finding(
             "damping.noise",
@@ -165,7 +167,7 @@ def _loops(found: ControllerSetup) -> Iterator[Finding]:
     if not all(each.axes for each in found.loops):
         yield Finding("controller.loops", "the axes of the numbers are missing", 'Use e.g. axes = ["x", "y"]')
     if found.loops and not found.stated and found.law in (ControllerKind.PI, ControllerKind.PID):
-        yield Finding("controller.loops", "loops are stated without gains", "Give proportional or integral, or leave loops out")
+        yield Finding("controller.loops", "loops are stated without gains", "Add proportional or integral, or leave loops out")
     if found.prefilter is not None and not found.stated:
         yield Finding("controller.prefilter", "it has no gains", "State the gains, or leave it out")
 
@@ -177,7 +179,7 @@ def _contradiction(tuned: list[str], gains: list[str]) -> str:
 def _hysteresis(found: HystereticStacks) -> Iterator[Finding]:
     if (found.file is None) == (found.width is None):
         what = "both a file and a width are given" if found.file is not None else "neither a file nor a width is given"
-        yield Finding("hysteresis", what, "Give one of them")
+        yield Finding("hysteresis", what, "Use either a file or a width")
 
 
 def _compensation(setup: LoopSetup) -> Iterator[Finding]:
@@ -185,7 +187,7 @@ def _compensation(setup: LoopSetup) -> Iterator[Finding]:
         what = "the inverse applies to voltage drive, but the stacks have charge drive"
         yield Finding("compensate", what, "Omit hysteresis: its remainder under charge drive differs")
     if Compensation.HYSTERESIS in setup.compensate and setup.hysteresis is None:
-        yield Finding("compensate", "hysteresis is to be compensated, and the stacks have none", "Give [hysteresis], a file or a width")
+        yield Finding("compensate", "hysteresis is to be compensated, and the stacks have none", "Add [hysteresis] with a file or a width")
     for each in dict.fromkeys(setup.compensate):
         if setup.compensate.count(each) > 1:
             yield Finding("compensate", f"{each.value} stands {setup.compensate.count(each)} times", "Write it once")

@@ -76,7 +76,7 @@ class DisturbedLoop:
 
 
 def part_of(found: Simulated, part: slice) -> Simulated:
-    """Slice of a simulation, with time from its start; limit shares are those of the whole."""
+    """Slice of a simulation, with time from its start; limit shares belong to the whole."""
     names = [field.name for field in fields(Simulated) if np.shape(getattr(found, field.name))[:1] == found.times.shape]
     kept = {name: getattr(found, name)[part] for name in names}
     return replace(found, **(kept | {"times": found.times[part] - found.times[part.start]}))

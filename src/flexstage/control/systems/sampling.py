@@ -131,5 +131,5 @@ def _findings(system: System, step: float, delay: float) -> list[Finding]:
     if not 0.0 < step < np.inf:
         found.append(Finding("step", f"it is {step:g} s", "Give a positive time"))
     if not 0.0 <= delay < np.inf:
-        found.append(Finding("delay", f"it is {delay:g} s", "Give a time of 0 or more"))
+        found.append(Finding("delay", f"it is {delay:g} s", "Use a time of 0 or more"))
     return found

@@ -134,7 +134,7 @@ def _findings(system: System) -> Iterable[Finding]:
             for name in sorted({name for name in names if names.count(name) > 1}):
                 yield Finding(name, f"{names.count(name)} {kind}s have this name", "Rename all but one")
     if system.step is not None and not 0.0 < system.step < np.inf:
-        yield Finding("step", f"it is {system.step:g} s", "Give a positive time, or none for a continuous system")
+        yield Finding("step", f"it is {system.step:g} s", "Use a positive time, or none for a continuous system")
 
 
 def from_state_space(space: StateSpace) -> System:

@@ -249,7 +249,7 @@ def _spread(spec: TuningSpec, cases: tuple[Variant, ...]) -> list[int]:
 def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: float = 0.0, work: Work | None = None) -> Field:
     """Prepare the data of a search from a view at the offsets of `variants`.
 
-    Frequencies are also dense around `places` [Hz] of the model, shifted with the modes. `fast` as in `Field`; `work` is that of an earlier
+    Frequencies are also dense around `places` [Hz] of the model, shifted with the modes. `fast` as in `Field`; `work` belongs to an earlier
     field whose search continues.
     """
     drive, cases = seen.loops.drive, variants(spec)

@@ -63,15 +63,15 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
     ['Ask for less than 159.2 Hz, or 0.3183 ms']
     """
     if spec.bandwidth is not None and not 0.0 < spec.bandwidth < np.inf:
-        yield Finding("bandwidth", f"it is {spec.bandwidth:g} Hz", "Give a positive frequency")
+        yield Finding("bandwidth", f"it is {spec.bandwidth:g} Hz", "Use a positive frequency")
     elif spec.bandwidth is not None and step is not None and spec.bandwidth >= 0.5 / step:
         what = f"{spec.bandwidth:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
         yield Finding("bandwidth", what, f"Sample above {10.0 * spec.bandwidth:g} Hz, or ask for less")
     if not 1.0 < spec.sensitivity < np.inf:
-        advice = "Give more, for example 2 (6 dB): no loop with a delay stays at 1"
+        advice = "Use a larger value, e.g. 2 (6 dB): a loop with delay always exceeds 1"
         yield Finding("sensitivity", f"the highest peak of S allowed is {spec.sensitivity:g}, and it has to be above 1", advice)
     if not 0.0 <= spec.spread < 0.5:
-        yield Finding("spread", f"modes are to be off by up to {spec.spread:g}", "Give a ratio from 0 to 0.5, for example 0.02")
+        yield Finding("spread", f"modes are to be off by up to {spec.spread:g}", "Use a ratio from 0 to 0.5, e.g. 0.02")
     delay = spec.delay_margin or 0.0
     if spec.rejection is not None and step is not None and spec.rejection >= 0.5 / step:
         what = f"{spec.rejection:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"

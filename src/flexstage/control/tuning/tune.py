@@ -190,7 +190,7 @@ def _help(seen: View, spec: TuningSpec, wanted: float) -> str:
         acts = wanted if spec.family.notched else max(wanted, float(seen.modes[0]))
         lag = 360.0 * acts * (seen.plant.hardware.delay + 0.5 * seen.step)
         if lag > _NOTICED:
-            found.append(f"sample faster: hold and delay take {lag:.0f} deg at {_three_digits(acts)} Hz")
+            found.append(f"sample faster: zero-order hold and delay cost {lag:.0f} deg at {_three_digits(acts)} Hz")
     return "; ".join([*found, f"try {spec.family.others}, more damping, or a smaller spread of the modes"])
 
 

@@ -304,7 +304,7 @@ _INFLATION = {Window.BOXCAR: 1.0, Window.HANN: 1.94, Window.HAMMING: 1.74, Windo
 def _response_findings(known: Responses, steps: Array) -> list[Finding]:
     where = known.where
     if len(steps) < 15:
-        return [Finding(where, f"it has {len(steps) + 1} lines", "Give responses at 16 frequencies or more")]
+        return [Finding(where, f"it has {len(steps) + 1} lines", "Use responses at 16 frequencies or more")]
     if not np.all(np.isfinite(known.values)):
         return [Finding(where, f"{int(np.sum(~np.isfinite(known.values)))} values are not numbers", "Leave those channels or lines out")]
     if (falling := rising_problem(known.frequencies)) is not None:
@@ -337,9 +337,9 @@ def _findings(records: tuple[Record, ...]) -> list[Finding]:
     for record in records:
         where = record.where
         if not record.inputs:
-            found.append(Finding(where, "no channel is an input", "Say which channels are inputs"))
+            found.append(Finding(where, "no channel is an input", "Specify the input channels"))
         if not record.outputs:
-            found.append(Finding(where, "no channel is an output", "Say which channels are outputs"))
+            found.append(Finding(where, "no channel is an output", "Specify the output channels"))
         if record.rate != first.rate:
             found.append(
                 Finding(where, f"it is sampled at {record.rate:g} Hz, the first at {first.rate:g} Hz", "Sample all at the same rate")

@@ -132,7 +132,7 @@ def _hidden_mode_factor(band: Band, found: Fit) -> Array:
 def widen_by_parts(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], found: Found) -> Found:
     """Increase the deviations to include the scatter between parts of the record, if the residual exceeds noise.
 
-    `cells` are those of the same band, computed from the parts' transforms. A mode that depends on amplitude or time differs between parts.
+    `cells` belong to the same band, computed from the parts' transforms. A mode that depends on amplitude or time differs between parts.
     """
     modal = found.modal
     band = _band(known, cells, candidates, found.group)

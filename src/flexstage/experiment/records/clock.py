@@ -145,7 +145,7 @@ def _problems(times: Array, typical: float, jumps: int, where: str) -> Iterator[
     """First fault of times as a clock."""
     count, broken = len(times), int(np.count_nonzero(~np.isfinite(times)))
     if count < 2:
-        yield Finding(where, f"it has {count} samples", "Give a record of at least two samples")
+        yield Finding(where, f"it has {count} samples", "Use a record of at least two samples")
     elif broken:
         yield Finding(where, f"{broken} of {count} times are not numbers", "Correct them, or specify the rate")
     elif not typical > 0.0:

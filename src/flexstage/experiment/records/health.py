@@ -287,7 +287,7 @@ def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
 def _roles(record: Record, requirements: RecordRequirements, where: str) -> Iterator[Fault]:
     for channel in record.channels:
         if channel.role is Role.UNKNOWN:
-            advice = 'Say what it is (inputs, outputs), or accept "names" to leave it out'
+            advice = 'Specify it (inputs, outputs), or accept "names" to leave it out'
             yield _fault(FaultTolerance.NAMES, where, channel.name, "its role is unknown", advice)
     if requirements.unrecorded and record.inputs:
         what = f"{', '.join(each.name for each in record.inputs)}: taken for inputs, where none is said to have been recorded"
@@ -295,7 +295,7 @@ def _roles(record: Record, requirements: RecordRequirements, where: str) -> Iter
     for kind, channels in (("input", record.inputs), ("output", record.outputs)):
         if not channels and not (requirements.unrecorded and kind == "input"):
             what = f"none of its channels ({', '.join(record.names[:12])}) is an {kind}"
-            other = ", or say what else moved the stage (excitation)" if kind == "input" else ""
+            other = ", or specify the excitation (excitation)" if kind == "input" else ""
             yield _fault(None, where, "", what, f"Select the {kind}s ({kind}s), by names or patterns{other}")
     yield from _name_faults(record.inputs, record.outputs, requirements, where)
 

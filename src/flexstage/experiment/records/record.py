@@ -338,7 +338,7 @@ def name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
     ['2 channels have this name']
     """
     if not channels:
-        return [Finding(where, "there is no channel", "Give at least one")]
+        return [Finding(where, "there is no channel", "Use at least one")]
     counts = Counter(channel.name for channel in channels)
     unnamed = [Finding(where, f"{counts['']} of {len(channels)} channels have no name", "Name every channel")] if counts[""] else []
     twice = [name for name, count in counts.items() if count > 1 and name]
@@ -348,4 +348,4 @@ def name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
 def _rate_findings(where: str, rate: float) -> list[Finding]:
     if RATES[0] <= rate <= RATES[1]:
         return []
-    return [Finding(where, f"the sampling rate is {rate:g} Hz", f"Give a rate between {RATES[0]:g} and {RATES[1]:g} Hz")]
+    return [Finding(where, f"the sampling rate is {rate:g} Hz", f"Use a rate between {RATES[0]:g} and {RATES[1]:g} Hz")]

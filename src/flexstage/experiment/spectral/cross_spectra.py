@@ -149,7 +149,7 @@ def independent_averages(averages: int, window: Array, hop: int) -> float:
 
 def _findings(record: Record, size: int, outputs: tuple[Channel, ...]) -> list[Finding]:
     where = record.where
-    found = [] if outputs else [Finding(where, "no channel is an output", "Say which channels are outputs")]
+    found = [] if outputs else [Finding(where, "no channel is an output", "Specify the output channels")]
     if size < 8:
         found.append(Finding(where, f"a segment has {size} samples", "Use segments of 8 samples or more"))
     elif record.length < size:
@@ -160,7 +160,7 @@ def _findings(record: Record, size: int, outputs: tuple[Channel, ...]) -> list[F
 
 def _hop(size: int, segments: Segments) -> int:
     if not 0.0 <= segments.overlap < 1.0:
-        raise refuse("segments", f"an overlap of {segments.overlap:g} was requested", "Give a share of at least 0 and less than 1")
+        raise refuse("segments", f"an overlap of {segments.overlap:g} was requested", "Use a share of at least 0 and less than 1")
     return max(1, round(size * (1.0 - segments.overlap)))
 
 

@@ -106,7 +106,7 @@ def dependent_inputs(spectra: Spectra) -> list[Finding]:
     """
     count = spectra.xx.shape[1]
     if not count:
-        return [Finding("inputs", "no channel is an input", "Say which channels are inputs")]
+        return [Finding("inputs", "no channel is an input", "Specify the input channels")]
     mean = np.mean(spectra.xx, axis=0)
     power = np.real(np.diagonal(mean))
     dead = [spectra.inputs[index].name for index in range(count) if power[index] <= 0.0]

@@ -44,18 +44,18 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
     drive, amplifier, order = setup.drive, setup.amplifier, setup.filter.order
     if len(drive.amounts) > 1:
         named = " and as a ".join(each.value for each in drive.amounts)
-        yield Finding("drive", f"its rms is given as a {named}", "Give one of them")
+        yield Finding("drive", f"its rms is given as a {named}", "Remove one of them")
     if drive.band is not None and not drive.band[0] < drive.band[1]:
-        yield Finding("band", f"{drive.band[0]:g} Hz to {drive.band[1]:g} Hz is no band", "Give 0 <= low < high in Hz")
+        yield Finding("band", f"{drive.band[0]:g} Hz to {drive.band[1]:g} Hz is no band", "Use 0 <= low < high in Hz")
     if amplifier.bandwidth is not None and amplifier.resistance is not None:
         yield Finding("amplifier", "both its bandwidth and its resistance are given", "Specify one of them: the other follows")
     if not 0 <= order <= _HIGHEST_ORDER:
-        yield Finding("filter", f"its order is {order}", f"Give an order from 0 (none) to {_HIGHEST_ORDER}")
+        yield Finding("filter", f"its order is {order}", f"Use an order from 0 (none) to {_HIGHEST_ORDER}")
 
 
 def _clock_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:
     if setup.seed < 0:
-        yield Finding("seed", f"it is {setup.seed}", "Give a whole number of 0 or more")
+        yield Finding("seed", f"it is {setup.seed}", "Use a whole number of 0 or more")
     highest = platform_modes(mechanism, model).highest
     top = np.inf if setup.drive.band is None else (1.0 + TAPER) * setup.drive.band[1]
     if setup.rate is not None and 0.0 < setup.rate < 2.0 * min(highest, top):
@@ -118,7 +118,7 @@ def _thrust_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterato
     if not setup.drive.amounts and np.isnan(driven.full):
         yield Finding(name, "it states no limit, and the default drive is 1 % of it", f'Use for example --drive-rms "{example}"')
     if setup.amplifier.resistance is not None:
-        yield Finding(name, "an output resistance needs a stack's capacitance", "Give the amplifier's bandwidth in Hz")
+        yield Finding(name, "an output resistance needs a stack's capacitance", "Set the amplifier's bandwidth in Hz")
 
 
 def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:

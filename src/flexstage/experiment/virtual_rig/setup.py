@@ -63,7 +63,7 @@ class AntiAlias(CheckedFields):
 class Sensing(CheckedFields):
     """Errors of gauges: white noise of `density` [m/Hz^0.5], steps of `resolution` [m], and `drift`.
 
-    Default density and resolution are those of each gauge in the design. `drift` is a random walk, its standard deviation after a minute
+    Default density and resolution belong to each gauge in the design. `drift` is a random walk, its standard deviation after a minute
     [m]. The values apply to displacement gauges; rotation gauges keep the design's values, without drift.
     """
 

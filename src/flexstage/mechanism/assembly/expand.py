@@ -62,7 +62,7 @@ NO_IMAGE = ("the mirror image of its part is unknown", "Draw the other side in a
 class PlacedBody:
     """Body of the expanded stage: its frame, reference point (..., 3) and mass properties, in the stage's frame.
 
-    `drawn` is the body with the bodies lent to it; the mass is of all of them, with `materials`. `links` are those of the stage.
+    `drawn` is the body with the bodies lent to it; the mass is of all of them, with `materials`. `links` belong to the stage.
     """
 
     name: str
@@ -347,7 +347,7 @@ def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Return errors for links without a position, or with two.
 
     >>> print(*place_findings(Mechanism("", links={"strut": Link(("ground", "platform"), "wire", end=(0.0, 0.0, 0.1))})))
-    links.strut: from missing. Give both from and to, or at and along.
+    links.strut: from missing. Specify both from and to, or at and along.
     """
     for where, link in every_link(mechanism):
         ends, place = {"from": link.start, "to": link.end}, {"at": link.at, "along": link.along}
@@ -357,7 +357,7 @@ def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
             continue
         wanted = place if link.start is None and link.end is None else ends
         for name in [name for name, value in wanted.items() if value is None]:
-            advice = "Give both from and to, or at and along" if wanted is ends else f"Use e.g. {name} = {_EXAMPLES[name]}"
+            advice = "Specify both from and to, or at and along" if wanted is ends else f"Use e.g. {name} = {_EXAMPLES[name]}"
             yield Finding(where, f"{name} missing", advice)
 
 
@@ -447,7 +447,7 @@ def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
 
 
 def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable[str] = ()) -> tuple[str, ...]:
-    """Return the moving bodies at a link's ends or ports, with owners instead of bodies `of` them; `own` are those of its unit.
+    """Return the moving bodies at a link's ends or ports, with owners instead of bodies `of` them; `own` belong to its unit.
 
     >>> strut = Link(("pad", "W/slide"), "wire", at=(0.0, 0.0, 0.0), along=(1.0, 0.0, 0.0))
     >>> joined(strut, {"pad": Body(of="ground"), "W/slide": Body()})

@@ -38,7 +38,7 @@ class Ground:
 class Expansion:
     """Expansion coefficients [1/K] of the `bodies` (with the ground) and of the `parts` with a length [m].
 
-    `taken` is the assumed material of each body with its source (solids, links); `ground` is that of the ground.
+    `taken` is the assumed material of each body with its source (solids, links); `ground` is the material of the ground.
     """
 
     bodies: Mapping[str, Number]

@@ -120,7 +120,7 @@ def _members(place: GaugeSum, gauges: Mapping[str, GaugePlace]) -> Iterator[tupl
 
 
 def gauge_findings(mechanism: Mechanism, links: Collection[str]) -> Iterator[Finding]:
-    """Return errors in poses, links and sums of gauges with known sensors; `links` are those of the expanded stage."""
+    """Return errors in poses, links and sums of gauges with known sensors; `links` belong to the expanded stage."""
     for key, place in mechanism.gauges.items():
         if isinstance(place, GaugeSum):
             yield from _sum_findings(f"gauges.{key}", key, place, mechanism.gauges)

@@ -521,7 +521,11 @@ class ChoiceNode(Node):
         """Choice of that name."""
         if isinstance(raw, str) and raw in self.words:
             return self.words[raw]
-        return reader.refuse(where, f"unknown value (got {kind(raw)})", suggest_nearest(kind(raw).strip('"'), self.words, otherwise=f"Use {list_choices(list(self.words))}"))
+        return reader.refuse(
+            where,
+            f"unknown value (got {kind(raw)})",
+            suggest_nearest(kind(raw).strip('"'), self.words, otherwise=f"Use {list_choices(list(self.words))}"),
+        )
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
         """Name of the choice."""

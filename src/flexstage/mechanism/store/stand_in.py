@@ -86,7 +86,7 @@ def _clashes(mechanism: Mechanism, parts: Mapping[str, StandIn]) -> list[Finding
     for key in mechanism.overrides:
         ends = [address for address in touched if f"/{key}".partition(".")[0].endswith(f"/{address.rpartition('/')[2]}")]
         if ends:
-            what = f"it overrides {touched[ends[0]]}, whose 6x6 is shared"
+            what = f"changes one link of part {touched[ends[0]]}, but the calibrated 6x6 applies to all its links"
             results.append(Finding(f'overrides."{key}"', what, "Use a separate part for that link, or remove the override"))
     return results
 

@@ -38,7 +38,7 @@ SHAPES: Mapping[str, tuple[int, ...]] = {
 class Topology:
     """Connectivity of the stage: `links` are (part, first body, second body), bodies by number, the platform first.
 
-    `locked`: some freedom is locked or loose, or a part has coordinates of its own, so that a body does not have six free coordinates.
+    `locked`: some DOF is locked or loose, or a part has coordinates of its own, so that a body does not have six free coordinates.
     """
 
     bodies: tuple[str, ...]

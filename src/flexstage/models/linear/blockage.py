@@ -1,6 +1,6 @@
-"""Blockage: the locked freedoms that prevent a stroke, and those that must be freed.
+"""Blockage: the locked DOFs that prevent a stroke, and those that must be freed.
 
-A stroke is blocked if it is a combination of constraints: forces of the locked freedoms, balanced on all bodies, work only against it. The
+A stroke is blocked if it is a combination of constraints: forces of the locked DOFs, balanced on all bodies, work only against it. The
 solution with the fewest forces (least sum of magnitudes, a linear programme) names the links.
 """
 
@@ -21,11 +21,11 @@ _RANK = 1e-9
 
 @dataclass(frozen=True)
 class Blockage:
-    """Cause of an immobile stroke: the locked freedoms that work against it, largest force first, and the freedoms to free.
+    """Cause of an immobile stroke: the locked DOFs that work against it, largest force first, and the DOFs to free.
 
     `against` and `free` name them `link.freedom`. Any one of `free` is enough, or all of them are needed if `together`.
 
-    `ends` are ground or platform ends that the actuator joins directly, if its own locked freedoms work against its stroke: a hinge is
+    `ends` are ground or platform ends that the actuator joins directly, if its own locked DOFs work against its stroke: a hinge is
     missing there.
     """
 
@@ -38,7 +38,7 @@ class Blockage:
 def blockage(constraints: Array, stroke: int, names: Sequence[str], intended: frozenset[str]) -> Blockage:
     """Find the blockage of a stroke: comparable rows (m, N), their names, and the stroke's column; the first six are the platform's.
 
-    `wanted` are intended freedoms of their parts: they are freed first. Freeing must move the platform.
+    `wanted` are intended DOFs of their parts: they are freed first. Freeing must move the platform.
 
     >>> rows = np.zeros((3, 7))
     >>> rows[0, [0, 6]], rows[1, 0], rows[2, 1] = (1.0, -1.0), 1.0, 1.0

@@ -74,7 +74,7 @@ def _require_served(constraints: Array, scale: Array, choice: _Choice) -> None:
 
 def _require_none(others: Array) -> None:
     if len(others):
-        raise unlike(int(others[0]), "has locked freedoms with other dependencies than those of the first")
+        raise unlike(int(others[0]), "locked degrees of freedom depend on each other in another way than in the first design")
 
 
 def unlike(number: int, what: str) -> DesignError:
@@ -85,7 +85,7 @@ def unlike(number: int, what: str) -> DesignError:
 def eliminate_each(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
     """Eliminate as `eliminate`, each design of a batch by its own pivots: equal to the last bit to the single-design result.
 
-    `scale` is (..., N). Designs may differ in the coordinates outside `keep` that represent motions: the returned ones are those of the
+    `scale` is (..., N). Designs may differ in the coordinates outside `keep` that represent motions: the returned ones belong to the
     first design.
 
     Raises `DesignError` for designs with other independent coordinates in `keep`, or another number of independent coordinates.

@@ -89,7 +89,7 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
     """Compute H (..., f, p, m) at `frequencies` (f,) in Hz: y/u with M z'' + D z' + K z = B u - M_b u'', y = C z + D_f u.
 
     - Modal and Rayleigh damping: exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f. The residual
-      R = C K^-1 - C Phi Lambda^-1 Phi^T makes the freedoms without inertia exact.
+      R = C K^-1 - C Phi Lambda^-1 Phi^T makes the DOFs without inertia exact.
     - Structural damping: direct solutions of K* - omega^2 M. A stroke u exerts K_p (1 + j eta_p) u; a link force has the same loss.
     - Dampers of parts (`LinearModel.viscous`) couple modes: direct solutions under any law.
 
@@ -248,7 +248,7 @@ def modal_forces(solved: Eigen, chosen: Ports) -> tuple[Array, Array]:
 
 
 def residual(model: LinearModel, solved: Eigen, chosen: Ports) -> Array:
-    """Compute C (K^-1 - Phi Lambda^-1 Phi^T) B (..., p, m): the static residual of omitted modes and of freedoms without inertia.
+    """Compute C (K^-1 - Phi Lambda^-1 Phi^T) B (..., p, m): the static residual of omitted modes and of DOFs without inertia.
 
     Motions of the ground add nothing: M_b is in the range of M, which the modes span.
 

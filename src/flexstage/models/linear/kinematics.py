@@ -31,7 +31,7 @@ class Idle:
 
 @dataclass(frozen=True)
 class Redundant:
-    """Redundant constraint: a set of locked freedoms (`B1/left.y`) with one superfluous member."""
+    """Redundant constraint: a set of locked DOFs (`B1/left.y`) with one superfluous member."""
 
     TABLE: ClassVar[Layout] = Layout("Redundant constraints", "constraints")
 
@@ -43,8 +43,8 @@ class Kinematics(Result):
 
     The platform twist is x = V xi at its reference point; xi are the platform coordinates named `coordinates` (all six for f = 6).
     `actuation` is da/dxi (..., n, f), `sensing` ds/dx (..., g, 6), `motion` V (..., 6, f). `bodies` is the motion of all body coordinates
-    per xi (..., N, f). `strains` is the deformation of each link per xi (..., 6, f) in its frame (only intended freedoms and strokes
-    non-zero). `free` has the free freedoms of each link. `length` (...) is the scale that makes rotations comparable with translations.
+    per xi (..., N, f). `strains` is the deformation of each link per xi (..., 6, f) in its frame (only intended DOFs and strokes
+    non-zero). `free` has the free DOFs of each link. `length` (...) is the scale that makes rotations comparable with translations.
     `blocked` has the blockage of each immobile actuator. `gauge_units` are the units of the readings (absent: m), `sums` the weights of the
     gauges in each sum of gauges.
 
@@ -94,7 +94,7 @@ class Kinematics(Result):
 
     @property
     def mapping(self) -> Annotated[Matrix, Called("R_a")]:
-        """R_a = da/dxi (Eq. 13 of Shin & Moon; da/dx for six freedoms). Raises `DesignError` if the stage is under-actuated."""
+        """R_a = da/dxi (Eq. 13 of Shin & Moon; da/dx for six DOFs). Raises `DesignError` if the stage is under-actuated."""
         self._require_actuated()
         return Matrix(self.actuation, self.actuators, self.coordinates, ratio_units(("m",) * len(self.actuators), self._units))
 
@@ -102,10 +102,10 @@ class Kinematics(Result):
     def force_map(self) -> Annotated[Matrix, Called("W")]:
         """V^T W: generalised force on the platform's ideal motions per unit input of each force actuator, by virtual work.
 
-        With six freedoms V is the identity and this is the whole platform wrench at its reference point. W = R_f^T with R_f the force
+        With six DOFs V is the identity and this is the whole platform wrench at its reference point. W = R_f^T with R_f the force
         actuators' d(elongation)/dx, times force per unit input.
 
-        With fewer freedoms only the work of W in the ideal motions is known; locked freedoms carry the other components. A row is then the
+        With fewer DOFs only the work of W in the ideal motions is known; locked DOFs carry the other components. A row is then the
         force conjugate to its coordinate. Positive inputs push apart.
         """
         rows = [COMPONENTS.index(name) for name in self.coordinates]
@@ -218,14 +218,16 @@ class Kinematics(Result):
     def _advice(self) -> str:
         """Hint for strokes that do not determine the platform."""
         if not self.thrusts:
-            return "Add actuators or lock freedoms of links"
+            return "Add actuators, or lock degrees of freedom of links"
         return f"Forces ({', '.join(self.thrusts)}) determine no motion: the elastic model computes the displacement"
 
     @property
     def blockages(self) -> tuple[Finding, ...]:
-        """Warnings of immobile strokes: the links that block them, largest force first, and the freedoms to free; equal ones are joined."""
+        """Warnings of immobile strokes: the links that block them, largest force first, and the DOFs to free; equal ones are joined."""
         return join_findings(
-            Finding(name, f"the stroke cannot move: it is blocked by the locked freedoms of {_by_link(each.against)}", _freeing(each))
+            Finding(
+                name, f"the stroke cannot move: it is blocked by the locked degrees of freedom of {_by_link(each.against)}", _freeing(each)
+            )
             for name, each in self.blocked.items()
         )
 

@@ -56,7 +56,7 @@ class LinearModel(InNotebook, CheckedFields):
       the outputs.
     - `base_inertia` (..., n, 6): inertial force per unit base acceleration.
     - `inertial` (..., n, m): M_u, the inertia that imposed motions of inputs accelerate (absent: zero).
-    - `unknown`: outputs that the model does not determine, forces of locked freedoms.
+    - `unknown`: outputs that the model does not determine, forces of locked DOFs.
 
     Batch axes lead, and only where something varies: an array without them is valid for every design.
 
@@ -112,7 +112,7 @@ class LinearModel(InNotebook, CheckedFields):
         return _freeze(assemble(self.inertia, len(self.coordinates)))
 
     def grounded(self, square: Number = 1.0) -> Array:
-        """K with the floating motions on springs: their eigenvalue is `square` [1/s^2], all others and the shapes are those of K."""
+        """K with the floating motions on springs: their eigenvalue is `square` [1/s^2], all others and the shapes are unchanged."""
         if self.floating is None:
             return self.stiffness_matrix
         momentum = self.inertia_matrix @ self.floating

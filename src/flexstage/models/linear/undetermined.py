@@ -1,4 +1,4 @@
-"""Quantities that a model does not determine, refused by name: free internal modes (zero stiffness), and forces of locked freedoms."""
+"""Quantities that a model does not determine, refused by name: free internal modes (zero stiffness), and forces of locked DOFs."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _TENTH = 0.1
 _METRE = np.array([1.0, 1.0, 1.0, _TENTH, _TENTH, _TENTH])
 """Rotations are compared with translations over 0.1 m."""
 _ALLOWED = "Modes, responses and loops are available; a spring in that motion gives it a stiffness"
-_ADVICE = "Give a link of these bodies stiffness in that freedom, or lock it"
+_ADVICE = "Add stiffness in that degree of freedom to a link of these bodies, or lock it"
 
 
 def require_known(model: LinearModel, outputs: Iterable[str]) -> None:
-    """Refuse forces of locked freedoms, which no elastic deformation determines.
+    """Refuse forces of locked DOFs, which no elastic deformation determines.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -28,7 +28,7 @@ def require_known(model: LinearModel, outputs: Iterable[str]) -> None:
     """
     unknown = set(model.unknown)
     require(
-        Finding(name, "unknown force, as this freedom of the link is locked", "Give the freedom a stiffness")
+        Finding(name, "unknown force, as this degree of freedom of the link is locked", "Specify its stiffness")
         for name in outputs
         if name in unknown
     )

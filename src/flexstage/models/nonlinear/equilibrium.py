@@ -280,7 +280,7 @@ def corrected(
     """Correct a state for a slightly different model by two Newton steps: right to first order in the difference.
 
     One step would suffice if the stiffness were the derivative of the residual to more than the 1e-6 of its rule. Loads and fixed
-    coordinates are those of `start`. Cases without a state in `start` have none in the result.
+    coordinates belong to `start`. Cases without a state in `start` have none in the result.
     """
     request = _request(model, loads or {}, hold or {}, weight, stated)
     pose = _first(model, start, request.hold, len(request.loads.inputs))

@@ -63,7 +63,7 @@ class ResidualSum:
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Residual (b, n) and stiffness of body freedoms and reactions, one array or sparse matrix per case; groups of flexures at the pose."""
+    """Residual (b, n) and stiffness of body DOFs and reactions, one array or sparse matrix per case; groups of flexures at the pose."""
 
     residual: Array
     matrix: Array | tuple[Any, ...]
@@ -268,7 +268,7 @@ def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, tally: ResidualSum) -
 
 
 def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
-    """Compute the generalised forces (b, n) of loads on bodies and locked freedoms at a pose, linear in the loads."""
+    """Compute the generalised forces (b, n) of loads on bodies and locked DOFs at a pose, linear in the loads."""
     cases, size = len(pose.position), model.freedoms + 6 + len(model.hinges.locked)
     result = []
     for inputs in (0.0 * rate.inputs, rate.inputs):

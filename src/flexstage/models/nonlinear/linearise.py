@@ -53,7 +53,7 @@ class _Linear:
 
 @dataclass(frozen=True, eq=False)
 class _Coordinates:
-    """Offsets of the coordinates: body freedoms, then the own amplitudes of every flexure, in order."""
+    """Offsets of the coordinates: body DOFs, then the own amplitudes of every flexure, in order."""
 
     model: Nonlinear
     own: Mapping[str, int]
@@ -68,7 +68,7 @@ class _Coordinates:
         return (*bodies, *(f"{link}.mode{number + 1}" for link, count in self.own.items() for number in range(count)))
 
     def body(self, number: int) -> Array:
-        """Selector (6, n) of the freedoms of a body, zero for the ground."""
+        """Selector (6, n) of the DOFs of a body, zero for the ground."""
         result = np.zeros((6, self.size))
         if 0 <= number < len(self.model.bodies):
             result[:, 6 * number : 6 * number + 6] = np.eye(6)
@@ -97,7 +97,7 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
     - Stiffness is symmetrised, and split by link, with one more contribution, `geometric`.
     - Forces inside flexures are `unknown`. Gauges measure along their nominal lines.
     - Without `inner` coordinates flexures follow their bodies statically, each as a 6x6 about its middle, in the frame of its start.
-      Statics is equal link by link, as lost motion and drift require; modes are those of Guyan reduction.
+      Statics is equal link by link, as lost motion and drift require; modes follow from Guyan reduction.
 
     Raises `DesignError` if no case has a state, for `locked` names that are not fixed, and if matrices take more than 8 GB.
 
@@ -200,7 +200,7 @@ def _assembled(
 
 
 def _add(matrix: Array, select: Array, own: Array) -> None:
-    """Add link terms (b, k, k) to the freedoms (b, n, n) of its selector (k, n), for two different bodies; the ground has no rows."""
+    """Add link terms (b, k, k) to the DOFs (b, n, n) of its selector (k, n), for two different bodies; the ground has no rows."""
     rows, columns = np.nonzero(select)
     matrix[:, columns[:, None], columns] += own[:, rows[:, None], rows]
 
@@ -528,7 +528,7 @@ def _at(state: State, order: _Coordinates) -> Callable[[str, Frame], Array]:
 
 
 def _locked_rows(model: Nonlinear, rows: Array, order: _Coordinates, joins: Mapping[str, tuple[int, int]]) -> Array:
-    """Locked freedoms of links by all coordinates (b, c, n)."""
+    """Locked DOFs of links by all coordinates (b, c, n)."""
     names = model.hinges.names
     locked_rows = [rows[link, :, freedom, None] @ order.link(names[link], joins[names[link]]) for link, freedom in model.hinges.locked]
     return np.concatenate(locked_rows, axis=-2) if locked_rows else np.zeros((rows.shape[1], 0, order.size))
@@ -540,12 +540,12 @@ def _held_rows(state: State, order: _Coordinates, locked: list[int]) -> list[Arr
 
 
 def _locked(state: State, order: _Coordinates, rows: Array, locked: list[int]) -> Array:
-    """Constraint rows (b, c, n): locked freedoms of links, and coordinates, by number, that stay fixed."""
+    """Constraint rows (b, c, n): locked DOFs of links, and coordinates, by number, that stay fixed."""
     return np.concatenate([_locked_rows(state.model, rows, order, _joins(state.model)), *_held_rows(state, order, locked)], axis=-2)
 
 
 def _free(locked: Array, order: _Coordinates) -> tuple[Array, tuple[int, ...]]:
-    """Null space of the locked freedoms (b, c, n): motions (..., n, k) and the names of their coordinates."""
+    """Null space of the locked DOFs (b, c, n): motions (..., n, k) and the names of their coordinates."""
     if not locked.shape[-2]:
         return np.eye(order.size), tuple(range(order.size))
     scale = np.array([10.0 if name.rpartition(".")[2].startswith("r") else 1.0 for name in order.names])

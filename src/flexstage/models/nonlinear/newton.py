@@ -275,7 +275,7 @@ def motion(model: Nonlinear, step: Array, length: float) -> Array:
 
 
 def lack(model: Nonlinear, system: System) -> Array:
-    """Return the largest flexure residual (b,): gaps, and forces on amplitudes over their stiffness; also of locked freedoms."""
+    """Return the largest flexure residual (b,): gaps, and forces on amplitudes over their stiffness; also of locked DOFs."""
     largest = [np.zeros(len(system.residual))]
     for group, bent in zip(model.flexures, system.bent, strict=True):
         stiff = np.max(np.diagonal(group.law.form, axis1=-2, axis2=-1), axis=-1)[:, None]

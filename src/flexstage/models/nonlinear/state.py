@@ -71,7 +71,7 @@ class Loads:
 class Pose:
     """Configuration of b cases: body references `position` (b, n + 1, 3) and `turn` (b, n + 1, 3, 3), the ground last.
 
-    `strain` (l, b, q) and `wrench` (l, b, 6) are by group of flexures, `held` (b, c) are the reactions of locked and fixed freedoms.
+    `strain` (l, b, q) and `wrench` (l, b, 6) are by group of flexures, `held` (b, c) are the reactions of locked and fixed DOFs.
     """
 
     position: Array

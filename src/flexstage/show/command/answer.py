@@ -124,7 +124,7 @@ def _paths(value: Any) -> list[Path]:
 def write_result(kind: str, found: CommandResult, outputs: Mapping[str, Any], csv: Path | None) -> None:
     """Write the requested outputs, by name `json`, `xlsx` and `report`, and `csv`; print the tables unless an output is stdout.
 
-    `kind` is that of the JSON document.
+    `kind` belongs to the JSON document.
     """
     json, xlsx, report = (outputs.get(name) for name in ("json", "xlsx", "report"))
     if report is not None and found.report is not None:

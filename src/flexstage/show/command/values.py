@@ -104,7 +104,7 @@ def band_limits(band: tuple[str, str] | None) -> tuple[float, float] | None:
         return None
     low, high = (parse(text, FREQUENCY, where="--band") for text in band)
     if not 0.0 < low < high:
-        raise refuse("--band", f"{band[0]} to {band[1]} is no band", "Give a low frequency above zero and a higher one")
+        raise refuse("--band", f"{band[0]} to {band[1]} is no band", "Use a low frequency above zero and a higher one")
     return low, high
 
 

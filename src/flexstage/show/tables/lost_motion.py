@@ -74,7 +74,7 @@ def budget_table(lost: LostMotion) -> Table | None:
     return make_table("Lost-motion budget", ["link", *(Column(name) for name in budgets)], share_rows(budgets, "loss"), notes=notes)
 
 
-_OWN_AND_OTHERS = "Links without a unit's name are those of the actuator's own unit, those with one another unit's"
+_OWN_AND_OTHERS = "Links without a unit's name are parts of the actuator's own unit; links with a unit's name are parts of another unit"
 
 
 def named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:

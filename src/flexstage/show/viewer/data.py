@@ -142,7 +142,7 @@ def stage_data(
     """Compute the data of a viewer for a stage, of the first design of a batch; `still` if already known.
 
     `model`, `kinematics` and its modes are computed by default (lumped, ideal, those of the platform). Missing parts are left out, with
-    the reason among the notes. `weighed` is the model of the modes if different: small motions about the loaded stage. `text` is that of
+    the reason among the notes. `weighed` is the model of the modes if different: small motions about the loaded stage. `text` belongs to
     the design's file, for line numbers. `count` is the number of lowest modes shown; those of the platform are always included. Raises
     `DesignError` if the stage cannot be drawn.
     """

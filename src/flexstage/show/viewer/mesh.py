@@ -69,7 +69,7 @@ class Mesh:
 def mesh_of(
     pieces: Sequence[DrawnPiece], bodies: Mapping[str, int], parts: Mapping[str, int], bends: Mapping[str, Bend], straight: Bend
 ) -> Mesh:
-    """The mesh of pieces, with the numbers of bodies and parts by name; `bends` are those of parts other than `straight`.
+    """The mesh of pieces, with the numbers of bodies and parts by name; `bends` belong to parts other than `straight`.
 
     >>> mesh_of((), {}, {}, {}, Bend(np.zeros(1), np.zeros((1, 5)))).points.shape
     (0, 3)

@@ -97,7 +97,7 @@ class Course:
 class Motion:
     """A motion of all bodies: `twists` (b, 6) at the stage's origin, the ground's first.
 
-    `name` is unique in its group, `remark` adds information; `frequency` [Hz] is that of a mode. `energy` is the strain-energy fraction by
+    `name` is unique in its group, `remark` adds information; `frequency` [Hz] belongs to a mode. `energy` is the strain-energy fraction by
     link, and of other elastic parts by name; empty if unknown. `stress` is the utilisation of links by name, and `stressed` its condition:
     at the full stroke, under that load. The amplitude is physical except for modes. Motions of large displacements, along a path or about a
     state, have a `course` instead of twists; motions over time have a `response`, and the twists of their farthest instant.

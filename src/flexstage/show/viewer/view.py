@@ -55,7 +55,7 @@ def view(mechanism: Mechanism, *, motion: str = _FIRST) -> View:
     """Show the moving stage of a description, of the first design of a batch.
 
     It begins with `motion`: "stroke B1", "axis x", "deflection own weight", or, by default, "mode 1" (undeformed without one). Modes,
-    unit strokes and deflections are those of the lumped model, motions of the platform those of the ideal one. Missing parts are left out,
+    unit strokes and deflections belong to the lumped model, motions of the platform to the ideal one. Missing parts are left out,
     with the reason in the viewer. Motions are small ones, drawn exaggerated by the displayed factor. Raises `DesignError` if the stage
     cannot be drawn.
 

@@ -151,7 +151,7 @@ def _symmetrise(hinge: SolidHinge) -> Array:
     """The 6x6 with the symmetry of the drawn hinge, which its mesh has only approximately.
 
     Reflected across y and z a hinge is itself, and across x if its roots are equal; a round one is axially symmetric. Compliances that
-    cannot be separated from the stubs are those of beam theory.
+    cannot be separated from the stubs are from beam theory.
     """
     matrix, known = np.array(hinge.found.compliance), np.array(hinge.separable)
     matrix[~known] = matrix[:, ~known] = 0.0
@@ -168,7 +168,7 @@ def _source(hinge: SolidHinge) -> str:
     found = hinge.found
     kept = [axis for axis, known in zip(COMPONENTS, hinge.separable, strict=True) if not known]
     beam = f"; {', '.join(kept)} by beam theory" if kept else ""
-    return f"finite elements of order {found.order}, {found.freedoms} freedoms, error {100.0 * found.error:.2g} %{beam}"
+    return f"finite elements of order {found.order}, {found.freedoms} degrees of freedom, error {100.0 * found.error:.2g} %{beam}"
 
 
 def _mass(hinge: SolidHinge) -> float:

@@ -102,7 +102,7 @@ def model(
 ) -> LinearModel:
     """Read a stage as 3-D elastic solids: finite elements of each distinct component, reduced by Craig and Bampton's method and joined.
 
-    Names of inputs and outputs are those of `lumped`. Every component is drawn, meshed and reduced once, in a separate process, and
+    Names of inputs and outputs equal those of `lumped`. Every component is drawn, meshed and reduced once, in a separate process, and
     stored in the `cache` (`None`: not used). `progress` receives the step, the fraction and the seconds left; `memory` [bytes] limits the
     planned memory (absent: the free memory of the machine). Raises `DesignError` for links without a shape, for gaps, overlaps and slivers
     of outlines, all by name before meshing. Also for failed meshes, insufficient memory or time, and stages with rigid-body motions.

@@ -67,7 +67,7 @@ class Row:
 
     `theory` is the lumped model's (for hinges beam theory's), `mapped` the paper's axial springs if they apply, `calibrated` the
     lumped model with the hinges' FEA 6x6. `fea_error` is the estimated relative error of FEA. `calibration` names the parts of FEA origin
-    in the theory. `modal_assurance` is that of paired modes. Absent values are unknown, for a `reason`: without `theory` and
+    in the theory. `modal_assurance` belongs to paired modes. Absent values are unknown, for a `reason`: without `theory` and
     `fea_error` there is no verdict.
     """
 

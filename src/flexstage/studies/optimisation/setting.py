@@ -134,4 +134,4 @@ def _range_findings(study: Study) -> Iterator[Finding]:
             found = _stated_values(study, each)
             if max(found) - min(found) > _EDGE * max(map(abs, found)):
                 what = f"its addresses have different values, {min(found):.6g} to {max(found):.6g}{unit}"
-                yield Finding(where, what, "Give the range in percent, or use two variables")
+                yield Finding(where, what, "Use a range in percent, or two variables")

@@ -44,7 +44,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
 
 
 def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -> Study:
-    """Read a study from its text; `folder` is that of design files.
+    """Read a study from its text; `folder` contains the design files.
 
     >>> study = loads_study('''
     ... format = "flexstage study 1"
@@ -146,7 +146,7 @@ def _step(table: VariedTable, quantity: Quantity, where: str, findings: list[Fin
         findings += error.findings
         return None
     if is_share(table.low):
-        findings.append(Finding(f"{where}.step", "the range is relative (%)", "Give the range with a unit, or leave out the step"))
+        findings.append(Finding(f"{where}.step", "the range is relative (%)", "Use a range with a unit, or leave out the step"))
     elif not step > 0.0:
         findings.append(Finding(f"{where}.step", f"must be greater than 0 (got {step:g})", 'Use e.g. step = "10 um"'))
     return step

@@ -124,7 +124,7 @@ def second_order(blocks: Array, dimensions: int) -> tuple[Array, Array]:
 
     S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j. Estimated by products of designs that share x_i and x_j only: A with column j of B,
     and B with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280); the mean is subtracted first, both orders are
-    averaged. Errors are those of independent rows, and smaller for a Sobol sequence.
+    averaged. Errors assume independent rows; a Sobol sequence has smaller ones.
 
     >>> second_order(np.zeros((6, 4, 1)), 2)[0][0, 1].tolist()  # constant response
     [nan]

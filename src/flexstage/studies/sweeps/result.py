@@ -43,7 +43,7 @@ class ResponseEffects(Asked):
     """A response over the designs with values [SI], and the effects of variables.
 
     By variable the first-order and total shares of its variance; the latter are absent unless the plan is Saltelli's. The largest
-    standard errors of an index and of one of second order are those of Saltelli's plan, with pairs.
+    standard errors of an index and of one of second order come from Saltelli's plan, with pairs.
     """
 
     TABLE: ClassVar[Layout] = Layout("Responses", "name address min_value mean spread max_value within_limits")

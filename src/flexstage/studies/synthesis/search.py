@@ -126,7 +126,7 @@ class Answer:
     """A stage that keeps all requirements in the lumped model: the text of its design file and study, goal [SI] and active requirements.
 
     `efficiency` is the stroke energy that it uses as a share of that of its actuators, at most 1 by `bounds.frequency_bound`; `None` of
-    coils. `warnings` are those of `flexstage check`; `elastic` has frequencies and stiffnesses with elastic bodies, estimated from their
+    coils. `warnings` are printed by `flexstage check`; `elastic` has frequencies and stiffnesses with elastic bodies, estimated from their
     outlines, `rounds` the number of searches until these kept the requirements.
     """
 

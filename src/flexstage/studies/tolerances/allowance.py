@@ -38,7 +38,7 @@ class AllowedEntry:
 class Allowance:
     """Factors on the specified deviations for which each requirement has at least the yield `wanted`, to first order.
 
-    `names` are those of the m entries. `reach` (l,): change of a requirement's value towards its limit at that yield, `share` (m, l): each
+    `names` belong to the m entries. `reach` (l,): change of a requirement's value towards its limit at that yield, `share` (m, l): each
     entry's share of its square. `together`: factor on all deviations (above one: a margin; 0: the nominal design fails).
     `alone` (m,): factor on one entry, the others unchanged; `equal` (m,): on all at once, each entry with the same share. Infinite without
     an effect. `binding` and `binds` (m,) name the deciding requirements. `then`: yield of the sample with its changes scaled

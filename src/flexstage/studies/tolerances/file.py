@@ -49,7 +49,7 @@ def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
 
 
 def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = None) -> Tolerance:
-    """Read a tolerance study from its text; `folder` is that of design files.
+    """Read a tolerance study from its text; `folder` contains the design files.
 
     >>> study = loads_tolerance('''
     ... format = "flexstage study 1"

@@ -46,7 +46,7 @@ class Reached:
 def reach(design: Mechanism, source: str) -> Reached:
     """Expand an address or a kind into numbers of single instances; vectors into their components.
 
-    Kinds are those of `KINDS`, `units`, `gauges` and `materials`, before a number's name: `hinges.thickness`, `units.rotation.z`,
+    Kinds are the keys of `KINDS`, `units`, `gauges` and `materials`, before a number's name: `hinges.thickness`, `units.rotation.z`,
     `gauges.shift`, `stacks.stroke`, `materials.young`. The name of a unit or of a pattern means its instances: `horizontal.shift.x`,
     `S1-S3.shift`. Raises `DesignError` for unknown addresses, with the nearest names.
 

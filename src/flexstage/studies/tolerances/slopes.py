@@ -27,7 +27,7 @@ class Slopes:
     """Values (r,) of the nominal design, derivatives (r, d) by the deviations in SI, and the mask of `smooth` (r,) responses.
 
     Other responses (the lowest of two equal frequencies, the largest of three equal losses) change to one side for any deviation.
-    Their derivatives are those of one of the equal values, of equal frequencies those of their mean.
+    Their derivatives belong to one of the equal values, for equal frequencies to their mean.
     """
 
     values: Array

@@ -206,7 +206,7 @@ def _parts(path: Path, layout: Layout, chosen: list[int]) -> tuple[tuple[str, ..
     partial = {name for name in owners if tuple(ending for own, ending in zip(owners, endings, strict=True) if own == name) != order}
     whole = [name for name in dict.fromkeys(owners) if name not in partial]
     advice = (
-        'Give real and imaginary part of each, "frequency [Hz], S1 re [um/V], S1 im [um/V]", with or without "S1 coherence", or magnitude '
+        'Write real and imaginary part of each, "frequency [Hz], S1 re [um/V], S1 im [um/V]", with or without "S1 coherence", or magnitude '
         'and phase, "frequency [Hz], S1 magnitude [um/V], S1 phase [deg]"'
     )
     named = f"; or use only the complete ones (only): {', '.join(whole[:12])}" if all(whole) and whole else ""

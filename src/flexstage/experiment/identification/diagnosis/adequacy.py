@@ -104,16 +104,16 @@ def no_mode_warning(known: Evidence, reach: Reach) -> str:
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
-    >>> no_mode_warning(evidence(one_mode_record(), None), Reach(1.0, 26.0))[:54]
-    'no mode can be identified, though inputs explain 85.5%'
+    >>> no_mode_warning(evidence(one_mode_record(), None), Reach(1.0, 26.0))[:55]
+    'no mode can be identified, although inputs explain 85.5'
     """
     middle = float(np.sqrt(reach.low * reach.high))
     apart = line_distance(known)
     seen = (
-        f"What is narrower than the {apart:.3g} Hz between lines may be there all the same: at {middle:.3g} Hz what is damped below "
+        f"Modes narrower than the {apart:.3g} Hz between frequency lines may be missing: at {middle:.3g} Hz modes with a damping ratio below "
         f"{apart / (2.0 * middle):.2g}. {_advise_length(known, None)}"
         if middle > 0.0
-        else f"Too few lines to search for any. {_advise_length(known, None)}"
+        else f"Too few frequency lines to search for modes. {_advise_length(known, None)}"
     )
     if known.coherence is None:
         return f"no mode exceeds the noise. {seen}"

@@ -31,7 +31,7 @@ class Hinges:
     - `push` (l, 6): nominal wrench on the second body.
     - `strut` (l,): length [m] between the ends that a strut turns about, zero for a link about its centre.
     - `bow` (l, 6, 6, 6): G.
-    - `locked` (c, 2): pairs of link and freedom without deformation.
+    - `locked` (c, 2): pairs of link and DOF without deformation.
 
     If designs differ from case to case, all but `first`, `second` and `locked` have an axis of cases, (l, b, ...).
     """
@@ -105,7 +105,7 @@ def _of(values: Array, links: Array) -> Array:
 
 
 def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:
-    """Compute the internal wrenches (..., l, b, 6): elastic, less those of inputs (b, m) and pushes, plus `held` of locked freedoms."""
+    """Compute the internal wrenches (..., l, b, 6): elastic, less those of inputs (b, m) and pushes, plus `held` of locked DOFs."""
     own = _by_input(hinges.thrust, inputs) + pushing[:, None] * _by_case(hinges.push, 1)
     return (_by_case(hinges.stiffness, 2) @ (deformation - imposed(hinges, inputs))[..., None])[..., 0] - own + held
 

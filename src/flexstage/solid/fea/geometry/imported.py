@@ -29,7 +29,7 @@ TOLERANCE = 1e-3
 class ImportedProperties:
     """Properties of a file's solid, in its own axes: `sha256` of the file, sides and middle of its box [m], volume [m^3], centre [m].
 
-    `inertia` (3, 3) is that of unit density about the centre [m^5].
+    `inertia` (3, 3) is for unit density, about the centre [m^5].
     """
 
     sha256: str
@@ -170,7 +170,7 @@ def _sha256(path: Path) -> str:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except (OSError, ValueError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise refuse(str(path), f"it cannot be read: {reason}", "Give an absolute path, or a path relative to the design file") from None
+        raise refuse(str(path), f"it cannot be read: {reason}", "Use an absolute path, or a path relative to the design file") from None
 
 
 def _solid(path: Path, name: str | None) -> occ.TopoDS_Shape:

@@ -92,7 +92,7 @@ class Piece:
 def medium(material: Material, rotation: Array | None = None) -> Medium:
     """The medium of a material; for a crystal, in a drawing whose axes are the columns of `rotation` (3, 3) in the stage.
 
-    Without `rotation`, the axes are those of the part that defines the crystal, or else the stage's.
+    Without `rotation`, the axes belong to the part that defines the crystal, or else the stage's.
 
     >>> medium(Material(young=200e9, poisson=0.3, density=7750.0)).density
     7750.0

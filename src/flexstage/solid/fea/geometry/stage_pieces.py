@@ -75,5 +75,5 @@ def require_shapes(mechanism: Mechanism, stage: Stage) -> None:
     >>> require_shapes(parallelogram(), stage_pieces(parallelogram()))
     """
     if not stage.pieces:
-        advice = "Give bodies solids, or links parts with a shape"
+        advice = "Add solids to bodies, or use parts with a shape"
         raise refuse(mechanism.name or "stage", "no body has outlines and no link a shape", advice)

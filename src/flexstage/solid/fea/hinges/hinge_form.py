@@ -30,7 +30,7 @@ class HingeSolid:
     `compliance` and `stiffness` (6, 6): twist of the second side against the first, (x, y, z, rx, ry, rz). `error` estimates the largest
     relative error of the compliance *at the hinge's end*, each entry ij against sqrt(C_ii C_jj) there. `changes` (6,) are the last
     relative changes of the diagonal about the centre: those of y and z are larger, as small differences of lever arms.
-    `whole` (6, 6) is the compliance with the stubs of length `stub` [m]. `freedoms`, `elements` and `order` are those of the last solve;
+    `whole` (6, 6) is the compliance with the stubs of length `stub` [m]. `freedoms`, `elements` and `order` belong to the last solve;
     `finding` reports a missed accuracy.
     """
 

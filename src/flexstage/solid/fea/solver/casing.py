@@ -35,7 +35,7 @@ def casing(link: PlacedLink) -> Array | None:
         raise refuse(
             link.name,
             f"its bending rigidity {stated:.4g} N m^2 is below the {own:.4g} N m^2 of its ceramic alone",
-            "Give the encapsulated stack's rigidity, or leave it out",
+            "Use the rigidity of the encapsulated stack, or leave it out",
         )
     extra = stated - own
     across, bending = 12.0 * extra / length**3, extra / length

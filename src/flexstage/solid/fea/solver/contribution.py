@@ -20,7 +20,7 @@ from flexstage.spatial.frame import Frame
 class Contribution:
     """Forces and momenta of a group of elements in k motions, on its degrees of freedom `rows` (m,).
 
-    `forces` (m, k) are those of the motions less their rigid part, `strained` (m, k); `momenta` (m, k) those of the `motions` (m, k).
+    `forces` (m, k) belong to the motions less their rigid part, `strained` (m, k); `momenta` (m, k) those of the `motions` (m, k).
     """
 
     name: str

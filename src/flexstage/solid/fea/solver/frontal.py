@@ -335,7 +335,7 @@ def _eliminate(panel: _Panel, trace: Array) -> tuple[_Factor, Array]:
 
 @dataclass(frozen=True, eq=False)
 class _Entries:
-    """Entries of a matrix by nodes; `rank` is that of elimination, -1 for fixed nodes."""
+    """Entries of a matrix by nodes; `rank` belongs to elimination, -1 for fixed nodes."""
 
     matrix: Any
     nodes: Array

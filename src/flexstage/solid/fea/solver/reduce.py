@@ -82,7 +82,7 @@ def reduce_mesh(
 ) -> Superelement:
     """Assemble and reduce a meshed component, with progress reports.
 
-    With `springs` (6 m, 6 m) between its interfaces, the modes are those of the component with free interfaces joined by the
+    With `springs` (6 m, 6 m) between its interfaces, the modes belong to the component with free interfaces joined by the
     springs, in place of the fixed-interface modes. A whole stage in one piece then has its exact modes. Its statics is exact only
     for strokes and wrenches on the platform, which saves most of the motions of so large a mesh.
 

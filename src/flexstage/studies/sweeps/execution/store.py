@@ -52,7 +52,7 @@ class Failure:
 class Results:
     """Designs computed so far: `designs` (n,) their numbers, `variables` (n, d), `responses` (n, r) in SI, failures by design number.
 
-    `names` and `units` are those of the variables, then of the responses. `planned` is the number of designs, `facts` are their inputs.
+    `names` and `units` belong to the variables, then to the responses. `planned` is the number of designs, `facts` are their inputs.
     `text` is the study's file; `made` are the versions of the programs, one text each.
     """
 

@@ -29,7 +29,7 @@ def answer_report(found: Answers) -> str:
     picture = Picture(to_svg(bound_figure(bounded), "bound", caption), _BOUND) if bounded else None
     stages = [_picture(each, number) for number, each in enumerate(found.answers, 1)]
     count = len(found.answers)
-    said = Headline(f"{count} stage{'' if count == 1 else 's'} keep{'s' if count == 1 else ''} the specification.", count > 0)
+    said = Headline(f"{count} stage{'' if count == 1 else 's'} meet{'s' if count == 1 else ''} the specification.", count > 0)
     sections = [
         section("Answers", [tables[0], picture]),
         section("Stages", [Abreast(tuple(stages[place : place + 2])) for place in range(0, count, 2)]),

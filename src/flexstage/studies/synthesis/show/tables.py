@@ -19,7 +19,7 @@ def answer_tables(found: Answers) -> Iterator[Table]:
     >>> from flexstage.studies.synthesis.specification import example
     >>> from flexstage.studies.synthesis.search import Answers
     >>> list(answer_tables(Answers(example(), (), (), ())))[0].title
-    'No stage keeps the specification "scanner"'
+    'No stage meets the specification "scanner"'
     """
     yield _answer_table(found)
     if found.failed:
@@ -29,7 +29,7 @@ def answer_tables(found: Answers) -> Iterator[Table]:
         ]
         notes = [
             "Least violation: the smallest share by which the worst requirement is missed, within all ranges.",
-            "Possible with one relaxed: its best value with all other requirements kept, found by search.",
+            "Possible with one relaxed: its best value with all other requirements met, found by search.",
         ]
         heads = ["architecture", "actuator", Column("least violation", "%"), "contradicting requirements", "possible with one relaxed"]
         yield make_table("Failed", heads, rows, notes=notes)
@@ -45,7 +45,7 @@ def _answer_table(found: Answers) -> Table:
     way, key = spec.goal
     if not found.answers:
         counts = [("failed", str(len(found.failed))), ("impossible", str(len(found.impossible)))]
-        return make_table(f'No stage keeps the specification "{spec.name}"', ["pairs", Column("number")], counts)
+        return make_table(f'No stage meets the specification "{spec.name}"', ["pairs", Column("number")], counts)
     rows = [(str(number), *_answer_cells(each)) for number, each in enumerate(found.answers, 1)]
     numbers = map(Column, (f"{key}, {way}d", "elastic bodies", "size", "efficiency"))
     columns = ["", "architecture", "actuator", *numbers, "active requirements", "warnings"]
