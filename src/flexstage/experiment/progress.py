@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import TypeAlias
 
-Told: TypeAlias = Callable[[str, float], None]
+ProgressCallback: TypeAlias = Callable[[str, float], None]
 """Callback with the current work and the completed share, 0 to 1."""
 
 
@@ -15,11 +15,11 @@ def _ignore(_text: str, _share: float) -> None:
     """Without observer."""
 
 
-_FOLLOWER: ContextVar[Told] = ContextVar("_FOLLOWER", default=_ignore)
+_FOLLOWER: ContextVar[ProgressCallback] = ContextVar("_FOLLOWER", default=_ignore)
 
 
 @contextmanager
-def followed(told: Told) -> Generator[None]:
+def followed(told: ProgressCallback) -> Generator[None]:
     """Report the progress of the computations within to `told`.
 
     >>> with followed(print), part(0.5, 1.0, "finding modes"):

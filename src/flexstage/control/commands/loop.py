@@ -21,7 +21,7 @@ from flexstage.control.study.compare import Comparison, compare_controllers
 from flexstage.control.study.file import example as commented_example
 from flexstage.control.study.study import LoopStudy, loop_study
 from flexstage.experiment.pipeline import Identification, identification, usable_measurement
-from flexstage.experiment.progress import Told, followed
+from flexstage.experiment.progress import ProgressCallback, followed
 from flexstage.experiment.record_options import RECORD, AcceptFault, Arrays, Channels, Inputs, Outputs, RecordTexts, Units, open_records
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
@@ -116,7 +116,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     return _closed(found, stands, model, full=full)
 
 
-def _identified(record: list[Path] | None, texts: RecordTexts, tell: Told) -> Identification | None:
+def _identified(record: list[Path] | None, texts: RecordTexts, tell: ProgressCallback) -> Identification | None:
     """Modes identified from the records, all of one test."""
     if not record:
         return None

@@ -31,7 +31,7 @@ from flexstage.control.tuning.search import field
 from flexstage.control.tuning.spec import TuningSpec
 from flexstage.control.tuning.view import view
 from flexstage.experiment.pipeline import Identification
-from flexstage.experiment.progress import Told
+from flexstage.experiment.progress import ProgressCallback
 from flexstage.mechanism.assembly.expand import expand
 from flexstage.mechanism.mechanism import Mechanism
 
@@ -174,7 +174,7 @@ def compare_controllers(
     there: OperatingPoint | None = None,
     solid: FeaModes | None = None,
     test: Identification | None = None,
-    tell: Told | None = None,
+    tell: ProgressCallback | None = None,
     workers: int = 0,
 ) -> Comparison:
     """Tune PI, PID, integral resonant control, LQG and the kinds of `CONTROLLERS` for one set-up, and compare their step responses.

@@ -53,7 +53,7 @@ from flexstage.control.study.stacks import Stacks, Sweep, stacks_of, sweep_stack
 from flexstage.control.systems.closed import Loop, LoopBreak, loop
 from flexstage.control.systems.curves import Curves, curves
 from flexstage.experiment.pipeline import Identification
-from flexstage.experiment.progress import Told, followed, part
+from flexstage.experiment.progress import ProgressCallback, followed, part
 from flexstage.mechanism.mechanism import Mechanism
 
 _LOWEST = 0.1
@@ -172,7 +172,7 @@ def loop_study(
     there: OperatingPoint | None = None,
     solid: FeaModes | None = None,
     test: Identification | None = None,
-    tell: Told | None = None,
+    tell: ProgressCallback | None = None,
 ) -> LoopStudy:
     """Analyse the loop of a stage for a set-up; missing keys have usual defaults.
 
