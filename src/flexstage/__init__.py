@@ -7,7 +7,7 @@ read the same table from `__init__.pyi`.
 
 from importlib import import_module
 
-from flexstage.base.lazy import Late, lazy_attributes
+from flexstage.base.lazy import LazyModule, lazy_attributes
 from flexstage.base.notebook import RenderHook
 from flexstage.base.version import __version__ as __version__
 
@@ -90,7 +90,7 @@ HOMES = {
     "show.sheets": "to_csv to_pandas to_xarray",
     "show.workbook": "to_xlsx",
 }
-RenderHook.tables, RenderHook.views = Late("flexstage.show.notebook"), Late("flexstage.show.viewer.view")
+RenderHook.tables, RenderHook.views = LazyModule("flexstage.show.notebook"), LazyModule("flexstage.show.viewer.view")
 _of_core, _names = lazy_attributes(__name__, HOMES)
 
 

@@ -28,7 +28,7 @@ from flexstage.analysis.workspace.stroke import StrokeLimits, mapping_at, stroke
 from flexstage.analysis.workspace.wrench import Command
 from flexstage.base.finding import refuse
 from flexstage.base.labelled import Matrix
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.number import Array, stack
 from flexstage.mechanism.assembly.expand import Assembly, expand
 from flexstage.mechanism.design import design
@@ -42,9 +42,9 @@ if TYPE_CHECKING:
     from flexstage.models.nonlinear import linearise
     from flexstage.models.nonlinear import stage as displaced
 else:
-    strokes = Late("flexstage.analysis.loaded.stroke")
-    linearise = Late("flexstage.models.nonlinear.linearise")
-    displaced = Late("flexstage.models.nonlinear.stage")
+    strokes = LazyModule("flexstage.analysis.loaded.stroke")
+    linearise = LazyModule("flexstage.models.nonlinear.linearise")
+    displaced = LazyModule("flexstage.models.nonlinear.stage")
 
 
 KEPT = 48

@@ -33,7 +33,7 @@ from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.workspace import Workspace, workspace
 from flexstage.base.arguments import check_arguments
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Table
 from flexstage.base.processes.threads import one_thread
@@ -48,7 +48,7 @@ from flexstage.models.theory import Model
 if TYPE_CHECKING:
     from flexstage.analysis.loaded import load_cases
 else:
-    load_cases = Late("flexstage.analysis.loaded.load_cases")
+    load_cases = LazyModule("flexstage.analysis.loaded.load_cases")
 
 __all__ = ["Analysis", "Model", "analyse", "felt", "platform_modes", "read", "required_command"]
 

@@ -26,7 +26,7 @@ def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[s
     return attribute, lambda: sorted({*home, *(name for name in vars(modules[package]) if name.startswith("__"))})
 
 
-class Late:
+class LazyModule:
     """Module by its full name, imported at first use; type checkers see the import.
 
     >>> Late("math").floor(1.5)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import dataclass_transform
 
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 
 
 class RenderHook:
@@ -14,8 +14,8 @@ class RenderHook:
     `tables` has `to_html(value)` and `to_text(value)`, `views` has `view(mechanism, *, motion)`.
     """
 
-    tables: Late
-    views: Late
+    tables: LazyModule
+    views: LazyModule
 
 
 class InNotebook:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.base.units.unit import parse
 from flexstage.experiment.identification.excitation import Excitation
@@ -33,7 +33,7 @@ from flexstage.show.command.values import names
 if TYPE_CHECKING:
     from flexstage.experiment.formats import read as files
 else:
-    files = Late("flexstage.experiment.formats.read")  # loops often have no record
+    files = LazyModule("flexstage.experiment.formats.read")  # loops often have no record
 
 RECORD = text_option("--record", "RECORD", "Record or frequency responses of a test. Repeatable.")
 Inputs: TypeAlias = Annotated[

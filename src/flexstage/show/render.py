@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.cells import cell_len
 
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.text import printable
 from flexstage.show.display import to_typography
 from flexstage.show.table import PAGE_ROWS, Cell, Column, Mark, Table, first_rows
@@ -18,7 +18,7 @@ from flexstage.show.table import PAGE_ROWS, Cell, Column, Mark, Table, first_row
 if TYPE_CHECKING:
     import jinja2
 else:
-    jinja2 = Late("jinja2")  # not needed for a terminal
+    jinja2 = LazyModule("jinja2")  # not needed for a terminal
 
 _STYLES = {
     Mark.STRONG: "bold",

@@ -21,7 +21,7 @@ from flexstage.analysis.workspace.stops import with_stops
 from flexstage.analysis.workspace.strength import HingeStress
 from flexstage.analysis.workspace.stroke import utilisation
 from flexstage.base.finding import LowerBoundError, refuse, require
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.number import Array, magnitude, stack
 from flexstage.base.register import Register
 from flexstage.base.units.quantity import (
@@ -53,9 +53,9 @@ if TYPE_CHECKING:
     from flexstage.models.nonlinear import state
     from flexstage.models.nonlinear.paths import critical_load
 else:
-    cases = Late("flexstage.analysis.loaded.load_cases")
-    critical_load = Late("flexstage.models.nonlinear.paths.critical_load")
-    state = Late("flexstage.models.nonlinear.state")
+    cases = LazyModule("flexstage.analysis.loaded.load_cases")
+    critical_load = LazyModule("flexstage.models.nonlinear.paths.critical_load")
+    state = LazyModule("flexstage.models.nonlinear.state")
 
 ROTATION = Quantity("rotation", ANGLE.si, "urad", "244 urad")
 TWISTING = Quantity("rotational stiffness", "N m/rad", "N m/rad", "8e4 N m/rad")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import ANGLE, LENGTH, Quantity
 from flexstage.base.units.unit import parse, quantity_of_unit
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from flexstage.models.nonlinear import stage as nonlinear
     from flexstage.models.nonlinear.paths import load_path as paths
 else:
-    operating_point = Late("flexstage.analysis.loaded.operating_point")
-    strokes = Late("flexstage.analysis.loaded.stroke")
-    equilibrium = Late("flexstage.models.nonlinear.equilibrium")
-    paths = Late("flexstage.models.nonlinear.paths.load_path")
-    nonlinear = Late("flexstage.models.nonlinear.stage")
+    operating_point = LazyModule("flexstage.analysis.loaded.operating_point")
+    strokes = LazyModule("flexstage.analysis.loaded.stroke")
+    equilibrium = LazyModule("flexstage.models.nonlinear.equilibrium")
+    paths = LazyModule("flexstage.models.nonlinear.paths.load_path")
+    nonlinear = LazyModule("flexstage.models.nonlinear.stage")
 
 _SWITCH = {"on": 1.0, "off": 0.0}
 

@@ -13,7 +13,7 @@ from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.loaded.stability import Stability, is_large, prestress
 from flexstage.analysis.loaded.standing import standing, under_load
 from flexstage.base.finding import DesignError, refuse
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.number import Array
 from flexstage.base.record import INNER
 from flexstage.base.session import SESSION
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
     from flexstage.models.nonlinear import stage as nonlinear
     from flexstage.models.nonlinear.paths import critical_load
 else:
-    critical_load = Late("flexstage.models.nonlinear.paths.critical_load")
-    equilibrium = Late("flexstage.models.nonlinear.equilibrium")
-    linearise = Late("flexstage.models.nonlinear.linearise")
-    nonlinear = Late("flexstage.models.nonlinear.stage")
+    critical_load = LazyModule("flexstage.models.nonlinear.paths.critical_load")
+    equilibrium = LazyModule("flexstage.models.nonlinear.equilibrium")
+    linearise = LazyModule("flexstage.models.nonlinear.linearise")
+    nonlinear = LazyModule("flexstage.models.nonlinear.stage")
 
 _BENT = "flexures that are not straight when free"
 _WARM = "its temperatures"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flexstage.base.finding import Finding, require
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.processes.jobs import cores
 from flexstage.control.export.code.precision import Precision
 from flexstage.control.loop_files import file_findings, require_names, write_export, write_hardware, written_files
@@ -40,7 +40,7 @@ from flexstage.show.table import Table
 if TYPE_CHECKING:
     from flexstage.control.show import report as pages
 else:
-    pages = Late("flexstage.control.show.report")  # figures, scenes and sections: thirty modules
+    pages = LazyModule("flexstage.control.show.report")  # figures, scenes and sections: thirty modules
 
 
 @command("report", "export", "hardware")

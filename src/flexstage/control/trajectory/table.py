@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.number import Array
 from flexstage.experiment.records.record import Channel, Record
 from flexstage.experiment.records.unit import in_si, plain_unit
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from flexstage.experiment.formats.table import layout as layouts
     from flexstage.experiment.formats.table import values as tabled
 else:  # slow import: all record formats
-    layouts, tabled = Late("flexstage.experiment.formats.table.layout"), Late("flexstage.experiment.formats.table.values")
+    layouts, tabled = LazyModule("flexstage.experiment.formats.table.layout"), LazyModule("flexstage.experiment.formats.table.values")
 
 
 @dataclass(frozen=True, eq=False)

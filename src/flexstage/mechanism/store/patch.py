@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from flexstage.base.finding import DesignError, Finding, refuse, require
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.mechanism.addresses.address import get, set_text, set_value
 from flexstage.mechanism.addresses.locate import Place, canonical, locate
 from flexstage.mechanism.addresses.path import member, with_mirror
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import tomlkit
     import tomlkit.exceptions
 else:
-    tomlkit = Late("tomlkit")  # not required for reading a file
+    tomlkit = LazyModule("tomlkit")  # not required for reading a file
 
 
 def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:

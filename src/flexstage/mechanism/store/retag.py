@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from flexstage.base.finding import refuse
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.mechanism.addresses.address import tag_of
 from flexstage.mechanism.addresses.locate import locate
 from flexstage.mechanism.grammar.formulas import NUMBERS
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import tomlkit.exceptions
     import tomlkit.items
 else:
-    tomlkit = Late("tomlkit")  # not required for reading a file
+    tomlkit = LazyModule("tomlkit")  # not required for reading a file
 
 
 def set_tags(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:

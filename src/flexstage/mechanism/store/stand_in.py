@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from flexstage.base.finding import Finding, refuse, require
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.mechanism.checks import require_valid
 from flexstage.mechanism.grammar.grammar import TAGS, node_of
 from flexstage.mechanism.mechanism import Mechanism
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import tomlkit
     import tomlkit.exceptions
 else:
-    tomlkit = Late("tomlkit")  # not required for reading a file
+    tomlkit = LazyModule("tomlkit")  # not required for reading a file
 
 KEPT = "-drawn"
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 from flexstage.analysis.loaded.load_effect import LoadEffect, load_effect
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import ANGLE, LENGTH, TEMPERATURE, Quantity
 from flexstage.base.units.unit import parse, quantity_of_unit
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from flexstage.models.nonlinear import stage as displaced
     from flexstage.models.nonlinear.stage import Nonlinear
 else:  # few commands have an operating point
-    operating_points, displaced = Late("flexstage.analysis.loaded.operating_point"), Late("flexstage.models.nonlinear.stage")
+    operating_points, displaced = LazyModule("flexstage.analysis.loaded.operating_point"), LazyModule("flexstage.models.nonlinear.stage")
 
 Load: TypeAlias = Annotated[
     list[str] | None,

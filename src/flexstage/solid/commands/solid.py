@@ -15,7 +15,7 @@ import typer
 from flexstage.analysis.dynamics.pairing import Pair
 from flexstage.analysis.loaded.standing import require_standing
 from flexstage.base.finding import Finding, refuse
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import RATIO, Quantity
 from flexstage.base.units.unit import parse
@@ -62,7 +62,11 @@ if TYPE_CHECKING:
     from flexstage.solid.show import report as reports
     from flexstage.solid.show import sections as pages
 else:  # reports are rare
-    page, reports, pages = Late("flexstage.show.page"), Late("flexstage.solid.show.report"), Late("flexstage.solid.show.sections")
+    page, reports, pages = (
+        LazyModule("flexstage.show.page"),
+        LazyModule("flexstage.solid.show.report"),
+        LazyModule("flexstage.solid.show.sections"),
+    )
 
 
 class Scope(Enum):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexstage.base.finding import refuse
-from flexstage.base.lazy import Late
+from flexstage.base.lazy import LazyModule
 from flexstage.base.number import Array
 from flexstage.base.units.dimension import dimension_of
 from flexstage.base.units.expression import Amount, evaluate, parse_expression
@@ -27,7 +27,7 @@ from flexstage.studies.synthesis.specification import FREQUENCY_KEYS, Specificat
 if TYPE_CHECKING:
     import tomlkit
 else:
-    tomlkit = Late("tomlkit")  # bounds need none of it
+    tomlkit = LazyModule("tomlkit")  # bounds need none of it
 
 _LENGTH, _ANGLE = dimension_of("m"), dimension_of("rad")
 _DIGITS = 7
