@@ -26,7 +26,7 @@ from flexstage.experiment.record_options import RECORD, AcceptFault, Arrays, Cha
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.design import Lumped
-from flexstage.show.command.displaced import Footing, Place, footing
+from flexstage.show.command.displaced import CommandStage, Place, footing
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import (
     FEA,
@@ -101,7 +101,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         _require_comparable(asked, {"--export": bool(exports), "--hardware": hardware is not None})
     models: Models = context.obj
     solid = models.modes("solid")(mechanism, computing=True) if fea else None
-    stands = Footing(mechanism, asked.model) if fea else footing(mechanism, place, asked.model)
+    stands = CommandStage(mechanism, asked.model) if fea else footing(mechanism, place, asked.model)
     model = None if fea else asked.model
     with progress_bar() as shown:
         test = _identified(record, texts, shown.share)
@@ -125,7 +125,7 @@ def _identified(record: list[Path] | None, texts: RecordTexts, tell: ProgressCal
         return identification(usable_measurement(open_records(record, reader), reader.accept_faults))
 
 
-def _compared(rivals: Comparison, asked: forms.LoopSetup, stands: Footing, model: Model | None) -> CommandResult:
+def _compared(rivals: Comparison, asked: forms.LoopSetup, stands: CommandStage, model: Model | None) -> CommandResult:
     """Result of several controllers on one plant."""
     return CommandResult(
         stands.mechanism,
@@ -138,7 +138,7 @@ def _compared(rivals: Comparison, asked: forms.LoopSetup, stands: Footing, model
     )
 
 
-def _closed(found: LoopStudy, stands: Footing, model: Model | None, *, full: bool) -> CommandResult:
+def _closed(found: LoopStudy, stands: CommandStage, model: Model | None, *, full: bool) -> CommandResult:
     """Result of one loop."""
     return CommandResult(
         stands.mechanism,

@@ -89,7 +89,7 @@ class Place:
 
 
 @dataclass(frozen=True, eq=False)
-class Footing:
+class CommandStage:
     """The stage of a command: at an `operating_point`, or in the undeformed configuration with the `effect` of its permanent load.
 
     `model` is the theory; `linear` is the linear model about the operating point, `links` the same with separate links, for lost motion and
@@ -133,17 +133,17 @@ class Footing:
         return () if self.operating_point is None else self.operating_point.warnings
 
 
-def footing(mechanism: Mechanism, place: Place, model: Model = Model.LUMPED) -> Footing:
+def footing(mechanism: Mechanism, place: Place, model: Model = Model.LUMPED) -> CommandStage:
     """The stage at the requested operating point. Refuses an operating point with a model without large displacements."""
     if not place:
-        return Footing(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
+        return CommandStage(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
     if model is not Model.LUMPED:
         raise refuse(place.options, f"the {model.value} model has no operating points", "Leave out --model, or the operating point")
     known = displaced.nonlinear(mechanism)
     there = operating_points.operating_point(
         mechanism, place.brought(known), loads=loads_of(known, place.load or ()), fixed=place.locked, temperature=place.warmth
     )
-    return Footing(mechanism, model, there)
+    return CommandStage(mechanism, model, there)
 
 
 def _operating_point_tables(found: OperatingPoint) -> Iterator[Table]:
