@@ -31,7 +31,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.design import Lumped, known_point
-from flexstage.show.command.displaced import Place, footing
+from flexstage.show.command.displaced import OperatingPointOptions, footing
 from flexstage.show.command.options import ElasticModelName, InputDensities, ModelName, Point, band_option, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.values import band_limits, spectra
@@ -88,7 +88,7 @@ def stiffness(
     model: ElasticModelName = Model.LUMPED,
     point: Point = PLATFORM,
     load_point: Annotated[str, text_option("--load-point", "POINT", "Point of the load. Default: the point of --point.")] = "",
-    place: Place,
+    place: OperatingPointOptions,
 ) -> CommandResult:
     """Compute compliance and stiffness of the platform.
 
@@ -134,7 +134,7 @@ def lost_motion(
     mechanism: Lumped,
     *,
     model: ElasticModelName = Model.LUMPED,
-    place: Place,
+    place: OperatingPointOptions,
 ) -> CommandResult:
     """Compute lost motion by part, crosstalk and correction.
 
@@ -183,7 +183,7 @@ def modes(
         Path | None,
         text_option("--view", "STAGE.HTML", "Animated stage: HTML page (.html) or GLB file (.glb)."),
     ] = None,
-    place: Place,
+    place: OperatingPointOptions,
 ) -> CommandResult:
     """Compute natural frequencies, mode names and shapes.
 
@@ -253,7 +253,7 @@ def response(
     ] = None,
     band: Annotated[tuple[str, str] | None, band_option("1/50 of the first to twice the twelfth natural frequency")] = None,
     input_asd: InputDensities = None,
-    place: Place,
+    place: OperatingPointOptions,
 ) -> CommandResult:
     """Compute frequency responses of outputs to inputs.
 

@@ -30,7 +30,7 @@ from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
 from flexstage.models.nonlinear.state import WEIGHT
 from flexstage.parts.actuator import StrokeActuator
 from flexstage.show.command.answer import CommandResult, command
-from flexstage.show.command.displaced import Load, Place, loads_of
+from flexstage.show.command.displaced import Load, OperatingPointOptions, loads_of
 from flexstage.show.command.options import STEPS, text_option
 from flexstage.show.command.output import announce
 from flexstage.show.displaced import (
@@ -149,7 +149,7 @@ def buckle(
             "Default: the weight at an operating point, else every load case.",
         ),
     ] = None,
-    place: Place,
+    place: OperatingPointOptions,
     post_buckling: Annotated[
         int, typer.Option("--post-buckling", metavar="N", min=0, help="Number of equilibria beyond the lowest critical load.")
     ] = 0,
@@ -189,7 +189,7 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, p
     return Beyond(path, over_stroke(path))
 
 
-def _case(mechanism: Mechanism, place: Place, scaled: Sequence[str]) -> LoadCase:
+def _case(mechanism: Mechanism, place: OperatingPointOptions, scaled: Sequence[str]) -> LoadCase:
     """The load case of the options: the scaled load, else the weight, and the operating point."""
     model = nonlinear(mechanism)
     grows, stays, there = loads_of(model, scaled, "--scale-load"), loads_of(model, place.load or ()), place.brought(model)

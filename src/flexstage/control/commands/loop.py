@@ -26,7 +26,7 @@ from flexstage.experiment.record_options import RECORD, AcceptFault, Arrays, Cha
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.design import Lumped
-from flexstage.show.command.displaced import CommandStage, Place, footing
+from flexstage.show.command.displaced import CommandStage, OperatingPointOptions, footing
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import (
     FEA,
@@ -48,7 +48,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     context: typer.Context,
     mechanism: Lumped,
     options: LoopOptions,
-    place: Place,
+    place: OperatingPointOptions,
     *,
     compare: Annotated[bool, typer.Option("--compare", help="Comparison of PI, PID, integral resonant control and LQG.")] = False,
     fea: Annotated[bool, FEA] = False,
@@ -150,7 +150,7 @@ def _closed(found: LoopStudy, stands: CommandStage, model: Model | None, *, full
     )
 
 
-def _fea_findings(where: Place, model: Model | None) -> Iterator[Finding]:
+def _fea_findings(where: OperatingPointOptions, model: Model | None) -> Iterator[Finding]:
     """Options that contradict a finite-element plant of the nominal stage."""
     if where:
         yield Finding("--fea", f"finite elements need the nominal stage (got {where.options})", "Omit one of them")

@@ -49,7 +49,7 @@ Temperature: TypeAlias = Annotated[str | None, temperature_option("0 K")]
 
 
 @dataclass(frozen=True)
-class Place:
+class OperatingPointOptions:
     """Operating point from the options of a command; true unless it is the undeformed configuration."""
 
     at: At = None
@@ -133,7 +133,7 @@ class CommandStage:
         return () if self.operating_point is None else self.operating_point.warnings
 
 
-def footing(mechanism: Mechanism, place: Place, model: Model = Model.LUMPED) -> CommandStage:
+def footing(mechanism: Mechanism, place: OperatingPointOptions, model: Model = Model.LUMPED) -> CommandStage:
     """The stage at the requested operating point. Refuses an operating point with a model without large displacements."""
     if not place:
         return CommandStage(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
