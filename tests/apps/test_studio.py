@@ -22,7 +22,7 @@ from flexstage.analysis.dynamics.response import response
 from flexstage.analysis.dynamics.solid_modes import FeaModes
 from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.linear_statics.statics import statics
-from flexstage.analysis.loaded.course import Course
+from flexstage.analysis.loaded.course import DrivePath
 from flexstage.analysis.loaded.load_effect import load_effect
 from flexstage.analysis.loaded.stroke import stroke
 from flexstage.analysis.workspace.workspace import workspace
@@ -530,7 +530,7 @@ def test_a_path_counts_from_where_the_stage_rests_and_tells_how_far_it_is():
     assert [each.fraction for each in told] == pytest.approx([0.1, 1.0])
     assert ([each.request for each in told], told[-1].text) == ([7] * 2, "3 of 3 points")
     model = nonlinear(stage)
-    wanted = Course("platform.x", np.linspace(0.0, 1e-3, 3), {}, (), 1.0)
+    wanted = DrivePath("platform.x", np.linspace(0.0, 1e-3, 3), {}, (), 1.0)
     rest = wanted.rest(model)
     whole = stroke(wanted.path(model, rest), rest).along
     curves = {each["name"]: np.frombuffer(base64.b64decode(each["values"]), "<f4") for each in found.motions[0]["course"]["curves"]}

@@ -36,7 +36,7 @@ _SWITCH = {"on": 1.0, "off": 0.0}
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class DrivePath:
     """Load path: `drive` takes the `values` (k,) [SI], relative to the static equilibrium under `loads` and `weight` (0: without).
 
     `locked` coordinates are fixed at their static equilibrium values.
@@ -116,7 +116,7 @@ def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:
     return ANGLE if component.startswith("r") else LENGTH
 
 
-def course(mechanism: Mechanism, name: str) -> Course:
+def course(mechanism: Mechanism, name: str) -> DrivePath:
     """Read a load path of `[paths]`. Raises `DesignError` with all errors of the path.
 
     >>> import flexstage as fs
@@ -145,7 +145,7 @@ def course(mechanism: Mechanism, name: str) -> Course:
             load = _load(assembly, key, at)
             loads[load] = parse(text, drive_quantity(assembly, load, at), where=at)
     require(_contradictions(stated, loads, locked, where))
-    return Course(stated.drive, np.linspace(low, high, stated.points), loads, tuple(locked), weight)
+    return DrivePath(stated.drive, np.linspace(low, high, stated.points), loads, tuple(locked), weight)
 
 
 def _load(assembly: Assembly, key: str, where: str) -> str:

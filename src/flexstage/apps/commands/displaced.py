@@ -11,7 +11,7 @@ import numpy as np
 import typer
 
 from flexstage.analysis.assessment.requirements import asked_factor
-from flexstage.analysis.loaded.course import Course, course, drive_quantity
+from flexstage.analysis.loaded.course import DrivePath, course, drive_quantity
 from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors, LoadCase, buckling_factors, load_cases
 from flexstage.analysis.loaded.misalign import misalign as misaligned
 from flexstage.analysis.loaded.misalign import misalignments
@@ -91,7 +91,7 @@ def _first_path(mechanism: Mechanism) -> str:
     return first
 
 
-def _stated(mechanism: Mechanism, name: str, steps: int | None, loads: dict[str, float]) -> Course:
+def _stated(mechanism: Mechanism, name: str, steps: int | None, loads: dict[str, float]) -> DrivePath:
     """A path of a design, with additional `loads`."""
     if name not in mechanism.paths:
         raise refuse(f"--path {name}", "unknown path", suggest_nearest(name, mechanism.paths))
@@ -100,13 +100,13 @@ def _stated(mechanism: Mechanism, name: str, steps: int | None, loads: dict[str,
     return replace(found, values=values, loads=found.loads | loads)
 
 
-def _asked(model: Nonlinear, drive: str, *, start: str, end: str, steps: int, loads: dict[str, float]) -> Course:
+def _asked(model: Nonlinear, drive: str, *, start: str, end: str, steps: int, loads: dict[str, float]) -> DrivePath:
     quantity = drive_quantity(model.assembly, drive, "--drive")
     low = parse(start, quantity, where="--from") if start else 0.0
     high = parse(end, quantity, where="--to") if end else _end(model, drive, quantity)
     if low == high:
         raise refuse("--to", f"{drive} goes from {start or '0'} to {end or start}: a drive that does nothing", "Name two places")
-    return Course(drive, np.linspace(low, high, steps), loads, (), 1.0)
+    return DrivePath(drive, np.linspace(low, high, steps), loads, (), 1.0)
 
 
 def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from flexstage.analysis.loaded.course import Course, course
+from flexstage.analysis.loaded.course import DrivePath, course
 from flexstage.analysis.loaded.stroke import stroke
 from flexstage.apps.studio.design.reading import design, problems_of
 from flexstage.apps.studio.protocol import Travel, Travelled, Underway
@@ -42,16 +42,16 @@ def travelled(text: str, file: str, revision: int, request: Travel, tell: Callab
     return Travelled(request.id, revision, shown["motions"], problems_of(told.warnings, text, file))
 
 
-def _stated(mechanism: Mechanism, name: str) -> Course:
+def _stated(mechanism: Mechanism, name: str) -> DrivePath:
     if name not in mechanism.paths:
         raise refuse(f"paths.{name}", "unknown path", suggest_nearest(name, mechanism.paths))
     return course(mechanism, name)
 
 
-def _own(model: Nonlinear, request: Travel) -> Course:
+def _own(model: Nonlinear, request: Travel) -> DrivePath:
     """A path defined by the page."""
     if not 2 <= request.points <= _MOST:
         raise refuse("points", f"must be 2 to {_MOST} points (got {request.points})", "Change the number of points")
     quantity = quantity_of(model, request.drive)
     low, high = (parse(value, quantity, where=where) if value else 0.0 for value, where in ((request.start, "from"), (request.end, "to")))
-    return Course(request.drive, np.linspace(low, high, request.points), loads_of(model, request.loads), (), 1.0)
+    return DrivePath(request.drive, np.linspace(low, high, request.points), loads_of(model, request.loads), (), 1.0)
