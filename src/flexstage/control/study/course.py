@@ -35,7 +35,7 @@ _MOST_SAMPLES = 5_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class NamedTrajectory:
     """Named trajectory; `plane` are two coordinates for a plan view.
 
     It is periodic with `period` [s] within the times `repeats` [s] (default: not periodic), and truncated at its `end` [s].
@@ -64,7 +64,7 @@ class Course:
         return isinstance(self.trajectory, Step)
 
 
-def courses(commanded: TrajectorySetup, coordinates: Coordinates) -> tuple[Course, ...]:
+def courses(commanded: TrajectorySetup, coordinates: Coordinates) -> tuple[NamedTrajectory, ...]:
     """Construct the trajectories of a set-up for a loop of these coordinates: for a step, one per motion.
 
     Raises `DesignError` for unknown motions, and for numbers that make no trajectory.
@@ -86,34 +86,34 @@ def courses(commanded: TrajectorySetup, coordinates: Coordinates) -> tuple[Cours
     return found
 
 
-def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[Course]:
+def _courses(commanded: TrajectorySetup, coordinates: Coordinates) -> Iterator[NamedTrajectory]:
     if isinstance(commanded, StepMotion):
         for name, size in (stated_motions(commanded.amplitude) or _default_motions(coordinates.names)).items():
             step = Step({name: size}, limits=_limits(commanded))
-            yield Course(name, step)
+            yield NamedTrajectory(name, step)
     elif isinstance(commanded, RasterMotion):
         pair = (commanded.fast.value, commanded.slow.value)
         sizes = (commanded.length, commanded.pitch, commanded.lines, commanded.speed, commanded.acceleration)
         raster = Raster(*sizes, coordinates=pair)
-        yield Course("raster", raster, pair, raster.period, raster.repeats)
+        yield NamedTrajectory("raster", raster, pair, raster.period, raster.repeats)
     elif isinstance(commanded, SpiralMotion):
         pair = (commanded.first.value, commanded.second.value)
         way = np.pi * commanded.radius**2 / commanded.pitch
         ramp = min(_RAMP, 0.2 * way / commanded.speed)
         spiral = Spiral(commanded.radius, commanded.pitch, commanded.speed, ramp, coordinates=pair)
-        yield Course("spiral", spiral, pair)
+        yield NamedTrajectory("spiral", spiral, pair)
     elif isinstance(commanded, SineMotion):
         sizes = stated_motions(commanded.amplitude) or dict([next(iter(_default_motions(coordinates.names).items()))])
         sine = Sine(sizes, commanded.frequency, fade=_FADED / commanded.frequency)
         period, end = 1.0 / commanded.frequency, commanded.periods / commanded.frequency
-        yield Course("sine", sine, None, period, (_FADED * period, end), end)
+        yield NamedTrajectory("sine", sine, None, period, (_FADED * period, end), end)
     else:
         yield _course_of_file(commanded)
 
 
-def _course_of_file(commanded: FileMotion) -> Course:
+def _course_of_file(commanded: FileMotion) -> NamedTrajectory:
     table = from_file(commanded.file)
-    return Course("file", table, _plane(table.coordinates))
+    return NamedTrajectory("file", table, _plane(table.coordinates))
 
 
 def _plane(names: tuple[str, ...]) -> tuple[str, str] | None:
@@ -140,7 +140,7 @@ def _limits(commanded: StepMotion) -> Limits | None:
     return Limits(commanded.speed, commanded.acceleration, commanded.jerk)
 
 
-def sampled_course(course: Course, coordinates: Coordinates, step: float, seconds: float) -> tuple[Array, Array]:
+def sampled_course(course: NamedTrajectory, coordinates: Coordinates, step: float, seconds: float) -> tuple[Array, Array]:
     """Sample a trajectory every `step` for so many `seconds`: times (n,) [s] and poses (n, f) [m, rad].
 
     Raises `DesignError` for a duration too short or too long to simulate.
@@ -161,7 +161,7 @@ def sampled_course(course: Course, coordinates: Coordinates, step: float, second
     return times, reference(course.trajectory, coordinates.names, times)
 
 
-def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, limits: StrokeLimits) -> list[Finding]:
+def course_findings(course: NamedTrajectory, poses: Array, times: Array, gains: Matrix, limits: StrokeLimits) -> list[Finding]:
     """Findings for a trajectory beyond the strokes; `gains` (strokes by coordinate) map the commanded poses.
 
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -180,7 +180,7 @@ def course_findings(course: Course, poses: Array, times: Array, gains: Matrix, l
 
 
 def course_warnings(
-    course: Course, poses: Array, times: Array, gains: Matrix, slew: Array, *, units: tuple[str, ...] = ()
+    course: NamedTrajectory, poses: Array, times: Array, gains: Matrix, slew: Array, *, units: tuple[str, ...] = ()
 ) -> list[Finding]:
     """Warnings for a trajectory, not a step, that exceeds the amplifiers' speed: they saturate."""
     if course.is_step or not np.any(np.isfinite(slew)):

@@ -14,7 +14,7 @@ from flexstage.control.learning.repeat import Repetition, repeat
 from flexstage.control.learning.shaper import zv, zvd
 from flexstage.control.simulation.result import Simulated
 from flexstage.control.study.choices import Following
-from flexstage.control.study.course import Course
+from flexstage.control.study.course import NamedTrajectory
 from flexstage.control.study.disturbed import DisturbedLoop, part_of
 from flexstage.control.study.setup import FollowSetup
 from flexstage.control.systems.closed import Loop
@@ -24,7 +24,7 @@ _FEWEST = 2.0
 
 
 def follow(
-    asked: FollowSetup, closed: Loop, control: System, path: Array, course: Course, *, noisy: DisturbedLoop
+    asked: FollowSetup, closed: Loop, control: System, path: Array, course: NamedTrajectory, *, noisy: DisturbedLoop
 ) -> tuple[Simulated, dict[str, Any]]:
     """Simulate a path (n, f) by the set-up's tracking method, with rest around it, and return fields of its `Run`.
 
@@ -52,7 +52,7 @@ def follow(
     return seen, {"commanded": commanded, "learned": learned, "repeated": repeated}
 
 
-def _repetition(course: Course, around: int, step: float) -> Repetition:
+def _repetition(course: NamedTrajectory, around: int, step: float) -> Repetition:
     """Period of a trajectory, and its samples in repetition; raises `DesignError` for less than two periods."""
     period, (start, stop) = course.period or np.inf, course.repeats or (0.0, 0.0)
     count = (stop - start) / period

@@ -26,7 +26,7 @@ from flexstage.control.simulation.result import Excursion, Simulated, StepFigure
 from flexstage.control.simulation.run import simulate
 from flexstage.control.study.choices import Compensation
 from flexstage.control.study.control import Control
-from flexstage.control.study.course import Course, course_findings, course_warnings, courses, sampled_course
+from flexstage.control.study.course import NamedTrajectory, course_findings, course_warnings, courses, sampled_course
 from flexstage.control.study.disturbed import DisturbedLoop, rest_time
 from flexstage.control.study.follow import follow
 from flexstage.control.study.resolve import ResolvedSetup
@@ -150,7 +150,7 @@ class Run:
     it.
     """
 
-    course: Course
+    course: NamedTrajectory
     simulated: Simulated
     figures: Annotated[StepFigures | None, INNER]
     tracking: Matrix
@@ -352,12 +352,12 @@ def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
     return RestRms(np.sqrt(mean), low, high, _REPEATED, count * given.step)
 
 
-def _simulated_time(course: Course, rest: float) -> float:
+def _simulated_time(course: NamedTrajectory, rest: float) -> float:
     """Trajectory, plus rest: for a step its settling, for others at most a fifth."""
     return course.duration + (rest if course.is_step else min(rest, 0.2 * course.duration))
 
 
-def _range_warnings(course: Course, found: Simulated, computed: Machine) -> Iterator[Finding]:
+def _range_warnings(course: NamedTrajectory, found: Simulated, computed: Machine) -> Iterator[Finding]:
     """Warnings for gauges beyond their range."""
     for read, share, reach in zip(computed.read(), found.out_of_range, computed.reach, strict=True):
         if share > 0.0:
