@@ -23,7 +23,7 @@ from flexstage.models.nonlinear.paths.critical_load import Critical
 from flexstage.models.nonlinear.paths.load_path import LoadPath
 from flexstage.show.display import DisplayUnit, display_unit_of, format_value, to_typography
 from flexstage.show.viewer.data import StageData, still_data
-from flexstage.show.viewer.motions import Course, Curve, Group, Motion
+from flexstage.show.viewer.motions import Curve, Group, Motion, PathMotion
 from flexstage.spatial.rotation import exponential, logarithm
 
 NODES = 12
@@ -91,7 +91,7 @@ def _along(still: StageData, state: State, drive: str, found: Stroke | Misaligne
     frames = known[np.unique(np.linspace(0, len(known) - 1, min(most, len(known))).round().astype(int))]
     curves = curves_of(found.along)
     numbers = {thing.name: number for number, thing in enumerate(still.things)}
-    course = Course(frames, poses[frames], None, curves, _parts_beyond(found, numbers), limits(found))
+    course = PathMotion(frames, poses[frames], None, curves, _parts_beyond(found, numbers), limits(found))
     return Motion(Group.PATH, drive, f"{drive}  {curves[0].span}", np.zeros((0, 6)), course=course)
 
 
@@ -184,7 +184,7 @@ def _about(still: StageData, state: State, moved: Motions, labels: Sequence[_Lab
         bodies[order] = moved.bodies[number]
         inside = {each: rows[number] for each, rows in moved.lines.items()}
         shape = np.concatenate([bodies, *(_carried(still, carrier, bodies, lines, inside) for carrier in _bending(still))])
-        course = Course(frames=np.zeros(1, dtype=int), poses=poses, shape=shape, curves=(), beyond=((),), said=("",))
+        course = PathMotion(frames=np.zeros(1, dtype=int), poses=poses, shape=shape, curves=(), beyond=((),), said=("",))
         yield Motion(Group.STATE, name, label, np.zeros((0, 6)), remark, frequency, course=course)
 
 

@@ -28,9 +28,9 @@ from flexstage.show.scene.stage import Label, Scene, scene
 from flexstage.show.viewer.bend import Bend, bend_of
 from flexstage.show.viewer.mesh import Mesh, body_names, mesh_of
 from flexstage.show.viewer.motions import (
-    Course,
     Curve,
     Motion,
+    PathMotion,
     Response,
     Skeleton,
     axis_motions,
@@ -234,7 +234,7 @@ def _mesh(mesh: Mesh) -> dict[str, Any]:
     }
 
 
-def _course(course: Course) -> dict[str, Any]:
+def _course(course: PathMotion) -> dict[str, Any]:
     said: dict[str, Any] = {"points": len(course.said), "frames": course.frames.tolist(), "poses": packed(course.poses, "<f4")}
     if course.shape is not None:
         said["shape"] = packed(course.shape, "<f4")

@@ -71,7 +71,7 @@ class Response:
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class PathMotion:
     """Large displacements through the points of a path, or a small motion about one.
 
     `poses` (f, rows, 6) are displacement and rotation vector of each body about its reference, the ground's first, then of the nodes along
@@ -113,7 +113,7 @@ class Motion:
     energy: Mapping[str, float] | None = None
     stress: Mapping[str, float] | None = None
     stressed: str = ""
-    course: Course | None = None
+    course: PathMotion | None = None
     response: Response | None = None
 
 
