@@ -51,7 +51,7 @@ KEPT = 48
 """Number of cached benches of single designs of a batch; each uses about a megabyte."""
 
 
-class Bench:
+class StageResults:
     """Models and results of one stage, computed on first use. `command`: the required strokes as a box."""
 
     def __init__(self, mechanism: Mechanism, command: Mapping[str, float]) -> None:
@@ -60,8 +60,8 @@ class Bench:
         self._corrections: dict[str, Matrix] = {}
         self._force_workspaces: dict[str, ForceWorkspace] = {}
         self._points: dict[tuple[str, float | None], strokes.Points] = {}
-        self._ones: dict[tuple[int, float], Bench] = {}
-        self._along: dict[str, Bench] = {}
+        self._ones: dict[tuple[int, float], StageResults] = {}
+        self._along: dict[str, StageResults] = {}
 
     @cached_property
     def nonlinear(self) -> displaced.Nonlinear:
@@ -76,7 +76,7 @@ class Bench:
         return self._points[name, at]
 
     @staticmethod
-    def all_along(benches: Sequence[Bench], name: str, at: float | None = None) -> None:
+    def all_along(benches: Sequence[StageResults], name: str, at: float | None = None) -> None:
         """Compute `along` for the benches of several designs of one structure, in one run."""
         new = [each for each in benches if (name, at) not in each._points]  # noqa: SLF001
         if not new:
@@ -86,15 +86,15 @@ class Bench:
         for bench, each in zip(new, points, strict=True):
             bench._points[name, at] = each  # noqa: SLF001
 
-    def one(self, place: int, share: float) -> Bench:
+    def one(self, place: int, share: float) -> StageResults:
         """Bench of one design of a batch with a share of its imaginary parts added; the last ones are cached."""
         if (place, share) not in self._ones:
             if len(self._ones) >= KEPT:
                 self._ones.clear()
-            self._ones[place, share] = Bench(design(self.mechanism, place, share), self.command)
+            self._ones[place, share] = StageResults(design(self.mechanism, place, share), self.command)
         return self._ones[place, share]
 
-    def over(self, name: str) -> Bench:
+    def over(self, name: str) -> StageResults:
         """Bench of models linearised about all points of a path, as a batch."""
         if name not in self._along:
             result = course(self.mechanism, name)
@@ -162,7 +162,7 @@ class Bench:
         return load_effect(self.mechanism)
 
     @cached_property
-    def felt(self) -> Bench:
+    def felt(self) -> StageResults:
         """Bench of stiffness, modes, lost motion and drift under a significant permanent load; else this bench."""
         if self.loaded is None or self.loaded.model is None:
             return self
@@ -170,9 +170,9 @@ class Bench:
         other.__dict__ |= {"links": self.loaded.links, "kinematics": self.kinematics}
         return other
 
-    def with_model(self, model: LinearModel) -> Bench:
+    def with_model(self, model: LinearModel) -> StageResults:
         """Return a bench of the same stage with another linear model."""
-        other = Bench(self.mechanism, self.command)
+        other = StageResults(self.mechanism, self.command)
         other.__dict__["model"] = model
         return other
 

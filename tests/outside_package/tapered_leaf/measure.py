@@ -7,13 +7,13 @@ from functools import partial
 import numpy as np
 
 from flexstage.analysis.assessment.measures import Measure, MeasureKind
-from flexstage.analysis.bench import Bench
+from flexstage.analysis.bench import StageResults
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import DISPLACEMENT
 
 
 @partial(MeasureKind, "sag", DISPLACEMENT)
-def sag(bench: Bench, _: Measure) -> Array:
+def sag(bench: StageResults, _: Measure) -> Array:
     """Sag of the first mode if it stood upright.
 
     g / (2 pi f)^2 of the first natural frequency f [m].

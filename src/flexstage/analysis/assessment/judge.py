@@ -8,14 +8,14 @@ import numpy as np
 
 from flexstage.analysis.assessment.measures import Measure, corner, safety_at_strokes, stroke, value_or_bound
 from flexstage.analysis.assessment.requirements import Requirement, Sense, Verdict, requirements
-from flexstage.analysis.bench import Bench
+from flexstage.analysis.bench import StageResults
 from flexstage.analysis.workspace.stops import single_strokes
 from flexstage.base.finding import DesignError, LowerBoundError
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
 
 
-def judge(mechanism: Mechanism, bench: Bench | None = None) -> tuple[Verdict, ...]:
+def judge(mechanism: Mechanism, bench: StageResults | None = None) -> tuple[Verdict, ...]:
     """Evaluate every `[requirements]` line of a description by the lumped model; reuse the results of `bench` if present.
 
     Stiffness, frequencies, lost motion, corrected strokes and drift are for the loaded stage if its permanent load is significant (1 %). An
@@ -26,7 +26,7 @@ def judge(mechanism: Mechanism, bench: Bench | None = None) -> tuple[Verdict, ..
     [True, True, True, True, True, True, True, True]
     """
     lines = requirements(mechanism)
-    bench = bench or Bench(mechanism, _required_strokes(lines))
+    bench = bench or StageResults(mechanism, _required_strokes(lines))
     return tuple(_verdict(bench, line) for line in lines)
 
 
@@ -45,21 +45,21 @@ def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Ar
     return tuple(value_or_reason(bench, each) for each in measures)
 
 
-def bench_of(mechanism: Mechanism) -> Bench:
+def bench_of(mechanism: Mechanism) -> StageResults:
     """Create a bench for one design or a batch; measures of simultaneous strokes use the strokes in `[requirements]`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> bench_of(double_triangle()).command["x"]
     5e-05
     """
-    return Bench(mechanism, _required_strokes(requirements(mechanism)))
+    return StageResults(mechanism, _required_strokes(requirements(mechanism)))
 
 
 def _required_strokes(lines: tuple[Requirement, ...]) -> dict[str, float]:
     return {line.name: line.limit for line in lines if line.kind is stroke}
 
 
-def value_or_reason(bench: Bench, asked: Measure) -> Array | str:
+def value_or_reason(bench: StageResults, asked: Measure) -> Array | str:
     """Compute the value (...) of one measure; the reason if there is none.
 
     >>> from flexstage.analysis.assessment.requirements import measure
@@ -74,7 +74,7 @@ def value_or_reason(bench: Bench, asked: Measure) -> Array | str:
         return str(error)
 
 
-def _verdict(bench: Bench, line: Requirement) -> Verdict:
+def _verdict(bench: StageResults, line: Requirement) -> Verdict:
     felt = line.kind.softening > 0.0 or line.kind.felt
     try:
         drawn = Verdict(line, line.kind.value(bench.felt if felt else bench, line))
@@ -89,7 +89,7 @@ def _verdict(bench: Bench, line: Requirement) -> Verdict:
     return Verdict(line, None, doubt) if doubt else drawn
 
 
-def _large_doubt(bench: Bench, drawn: Verdict) -> str:
+def _large_doubt(bench: StageResults, drawn: Verdict) -> str:
     """Reason why a fulfilled line on motion is unknown: the motion exceeds small displacements; empty if it does not."""
     line = drawn.requirement
     if drawn.value is None or np.ndim(drawn.value) or not drawn.passed:
@@ -107,7 +107,7 @@ def _large_doubt(bench: Bench, drawn: Verdict) -> str:
     return f"withheld: {doubt}" if doubt else ""
 
 
-def _loaded_doubt(bench: Bench, drawn: Verdict) -> str:
+def _loaded_doubt(bench: StageResults, drawn: Verdict) -> str:
     """Reason why the softened loaded stage may violate a line that the nominal stage fulfils; empty if it does not."""
     line = drawn.requirement
     power = line.kind.softening

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy
 
-from flexstage.analysis.bench import KEPT, Bench
+from flexstage.analysis.bench import KEPT, StageResults
 from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.workspace.blocking import platform_lines
 from flexstage.analysis.workspace.force_workspace import bounds_along
@@ -89,7 +89,7 @@ class MeasureKind:
 
     form: str
     quantity: Quantity
-    work: Callable[[Bench, Measure], Array]
+    work: Callable[[StageResults, Measure], Array]
     about: Quantity | None = None
     pointed: bool = False
     extreme: Extreme | None = None
@@ -105,12 +105,12 @@ class MeasureKind:
         first = (inspect.getdoc(self.work) or "").partition(".\n")[0].rstrip(".")
         return first[:1].lower() + first[1:]
 
-    def pieces(self, bench: Bench, asked: Measure) -> Array:
+    def pieces(self, bench: StageResults, asked: Measure) -> Array:
         """Pieces (..., m); a smooth measure has one."""
         found = np.asarray(self.work(bench, asked))
         return found[..., None] if self.extreme is None else found
 
-    def value(self, bench: Bench, asked: Measure) -> Array:
+    def value(self, bench: StageResults, asked: Measure) -> Array:
         """Value (...). Raises `DesignError` if the stage has none."""
         found = np.asarray(self.work(bench, asked))
         return found if self.extreme is None else self.extreme.of(found)
@@ -136,7 +136,7 @@ class Measure:
 
 
 @partial(MeasureKind, "stroke.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, extreme=Extreme.LEAST, felt=True)
-def stroke(bench: Bench, asked: Measure) -> Array:
+def stroke(bench: StageResults, asked: Measure) -> Array:
     """Symmetric stroke along one axis, lost motion corrected by command.
 
     Limits are each actuator and stop in both directions; for force-driven stages the continuous limits of the forces.
@@ -155,19 +155,19 @@ def stroke(bench: Bench, asked: Measure) -> Array:
 
 
 @partial(MeasureKind, "corner", RATIO, extreme=Extreme.LARGEST, felt=True)
-def corner(bench: Bench, _: Measure) -> Array:
+def corner(bench: StageResults, _: Measure) -> Array:
     """Largest ratio of demand to available actuator stroke or stop gap, all required strokes at once."""
     return utilisation(*with_stops(bench.mechanism, bench.kinematics, bench.lost.correction, bench.limits), bench.box()).ratio
 
 
 @partial(MeasureKind, "frequency.<n>", FREQUENCY, softening=0.5)
-def frequency(bench: Bench, asked: Measure) -> Array:
+def frequency(bench: StageResults, asked: Measure) -> Array:
     """N-th natural frequency of the stage."""
     return _nth(bench.modes.frequencies, asked)
 
 
 @partial(MeasureKind, "frequency.platform.<n>", FREQUENCY, softening=0.5)
-def platform_frequency(bench: Bench, asked: Measure) -> Array:
+def platform_frequency(bench: StageResults, asked: Measure) -> Array:
     """N-th natural frequency of the platform."""
     return _nth(bench.modes.platform_frequencies, asked)
 
@@ -180,13 +180,13 @@ def _nth(frequencies: Array, asked: Measure) -> Array:
 
 
 @partial(MeasureKind, "safety", RATIO, extreme=Extreme.LEAST, over_strokes=True)
-def safety(bench: Bench, _: Measure) -> Array:
+def safety(bench: StageResults, _: Measure) -> Array:
     """Yield over peak stress in the worst hinge at the worst corner of the strokes, from zero voltage, or at peak current."""
     return _known_safety(bench.stress)
 
 
 @partial(MeasureKind, "safety.at_strokes", RATIO, extreme=Extreme.LEAST)
-def safety_at_strokes(bench: Bench, _: Measure) -> Array:
+def safety_at_strokes(bench: StageResults, _: Measure) -> Array:
     """Yield over peak stress in the worst hinge at the worst corner of the required strokes."""
     return _known_safety(bench.stress_at_strokes)
 
@@ -199,20 +199,20 @@ def _known_safety(found: HingeStress) -> Array:
 
 
 @partial(MeasureKind, "buckling", RATIO, over_strokes=True)
-def buckling(bench: Bench, _: Measure) -> Array:
+def buckling(bench: StageResults, _: Measure) -> Array:
     """Critical load over compression in the worst part at the worst corner of the strokes."""
     return bench.buckling.min_factor
 
 
 @partial(MeasureKind, "stiffness.<axis>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
-def stiffness(bench: Bench, asked: Measure) -> Array:
+def stiffness(bench: StageResults, asked: Measure) -> Array:
     """Stiffness of the platform along one axis, the others free."""
     index = COMPONENTS.index(asked.name)
     return 1.0 / _compliance(bench, asked)[..., index, index]
 
 
 @partial(MeasureKind, "stiffness.<direction>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
-def directed_stiffness(bench: Bench, asked: Measure) -> Array:
+def directed_stiffness(bench: StageResults, asked: Measure) -> Array:
     """Stiffness of the platform along a direction, or with r about it, all else free."""
     along, start = direction_of(asked.name, asked.key), 3 * asked.name.startswith("r")
     return 1.0 / (along @ _compliance(bench, asked)[..., start : start + 3, start : start + 3] @ along)
@@ -234,7 +234,7 @@ def direction_of(name: str, where: str = "direction") -> Array:
 
 
 @partial(MeasureKind, "stiffness.least", STIFFNESS, pointed=True, softening=1.0)
-def least_stiffness(bench: Bench, asked: Measure) -> Array:
+def least_stiffness(bench: StageResults, asked: Measure) -> Array:
     """Least stiffness of the platform over all directions of force.
 
     Real directions, so that complex-step derivatives apply to a simple eigenvalue.
@@ -244,19 +244,19 @@ def least_stiffness(bench: Bench, asked: Measure) -> Array:
     return 1.0 / np.einsum("...i,...ij,...j->...", worst, block, worst)
 
 
-def _compliance(bench: Bench, asked: Measure) -> Array:
+def _compliance(bench: StageResults, asked: Measure) -> Array:
     return statics(bench.model, load_point=asked.point, read_point=asked.point).compliance.values
 
 
 @partial(MeasureKind, "deflection.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, softening=-1.0)
-def deflection(bench: Bench, asked: Measure) -> Array:
+def deflection(bench: StageResults, asked: Measure) -> Array:
     """Motion under gravity and specified forces, strokes fixed."""
     causes = bench.deflection(asked.point).by_cause
     return magnitude(np.sum(causes.values[..., causes.rows.index(f"{asked.point}.{asked.name}"), :], axis=-1))
 
 
 @partial(MeasureKind, "force.<axis>", FORCE, about=MOMENT)
-def force(bench: Bench, asked: Measure) -> Array:
+def force(bench: StageResults, asked: Measure) -> Array:
     """Blocked force of the platform along one axis.
 
     For force-driven stages: the continuous travel times the stiffness.
@@ -271,40 +271,40 @@ def force(bench: Bench, asked: Measure) -> Array:
 
 
 @partial(MeasureKind, "current.<axis>", CURRENT, extreme=Extreme.LARGEST)
-def current(bench: Bench, asked: Measure) -> Array:
+def current(bench: StageResults, asked: Measure) -> Array:
     """Largest coil current for holding the required stroke along one axis."""
     return _held(bench, asked)[0]
 
 
 @partial(MeasureKind, "voltage.<axis>", VOLTAGE, extreme=Extreme.LARGEST)
-def voltage(bench: Bench, asked: Measure) -> Array:
+def voltage(bench: StageResults, asked: Measure) -> Array:
     """Largest static coil voltage, R i, for holding the required stroke along one axis."""
     currents, coils = _held(bench, asked)
     return currents * _stated(coils, "resistance")
 
 
 @partial(MeasureKind, "thrust.<axis>", FORCE, extreme=Extreme.LARGEST)
-def thrust(bench: Bench, asked: Measure) -> Array:
+def thrust(bench: StageResults, asked: Measure) -> Array:
     """Largest coil force for holding the required stroke along one axis."""
     currents, coils = _held(bench, asked)
     return currents * _stated(coils, "force_constant")
 
 
 @partial(MeasureKind, "power.<axis>", POWER)
-def power(bench: Bench, asked: Measure) -> Array:
+def power(bench: StageResults, asked: Measure) -> Array:
     """Heat of all coils, i^2 R, for holding the required stroke along one axis."""
     currents, coils = _held(bench, asked)
     return np.sum(currents**2 * _stated(coils, "resistance"), axis=-1)
 
 
 @partial(MeasureKind, "heating.<axis>", TEMPERATURE, extreme=Extreme.LARGEST)
-def heating(bench: Bench, asked: Measure) -> Array:
+def heating(bench: StageResults, asked: Measure) -> Array:
     """Largest temperature rise of a coil for holding the required stroke along one axis continuously."""
     currents, coils = _held(bench, asked)
     return currents**2 * _stated(coils, "resistance") * _stated(coils, "thermal_resistance")
 
 
-def _held(bench: Bench, asked: Measure) -> tuple[Array, dict[str, Coil]]:
+def _held(bench: StageResults, asked: Measure) -> tuple[Array, dict[str, Coil]]:
     """Currents (..., c) of all coils that hold the required stroke along an axis, and the coils."""
     found = bench.force_workspace(PLATFORM)
     coils = {name: part for name in bench.assembly.thrusts if isinstance(part := bench.assembly.actuator(name), Coil)}
@@ -327,19 +327,19 @@ def _stated(coils: dict[str, Coil], field: str) -> Array:
 
 
 @partial(MeasureKind, "loss", RATIO, extreme=Extreme.LARGEST, felt=True)
-def loss(bench: Bench, _: Measure) -> Array:
+def loss(bench: StageResults, _: Measure) -> Array:
     """Largest relative lost motion of an actuator."""
     return magnitude(np.diagonal(bench.lost.loss.values, axis1=-2, axis2=-1))
 
 
 @partial(MeasureKind, "loss.<actuator>", RATIO, felt=True)
-def own_loss(bench: Bench, asked: Measure) -> Array:
+def own_loss(bench: StageResults, asked: Measure) -> Array:
     """Relative lost motion of the actuator."""
     return loss.pieces(bench, asked)[..., bench.lost.loss.rows.index(asked.name)]
 
 
 @partial(MeasureKind, "crosstalk", RATIO, extreme=Extreme.LARGEST, felt=True)
-def crosstalk(bench: Bench, _: Measure) -> Array:
+def crosstalk(bench: StageResults, _: Measure) -> Array:
     """Largest apparent stroke of one actuator due to the stroke of another."""
     values = bench.lost.loss.values
     others = values[..., ~np.eye(values.shape[-1], dtype=bool)]
@@ -347,19 +347,19 @@ def crosstalk(bench: Bench, _: Measure) -> Array:
 
 
 @partial(MeasureKind, "map_error.<axis>", FINE, about=FINE_ROTATION, analytic=False)
-def map_error(bench: Bench, asked: Measure) -> Array:
+def map_error(bench: StageResults, asked: Measure) -> Array:
     """Largest error of the linear map over the workspace."""
     return bench.map_error[..., COMPONENTS.index(asked.name)]
 
 
 @partial(MeasureKind, "drift.<axis>", DRIFT, about=TILT_DRIFT, pointed=True, felt=True)
-def drift(bench: Bench, asked: Measure) -> Array:
+def drift(bench: StageResults, asked: Measure) -> Array:
     """Motion per kelvin of uniform temperature, strokes fixed, with the ground's material."""
     return magnitude(bench.drift.motion.at(f"{asked.point}.{asked.name}", "uniform"))
 
 
 @partial(MeasureKind, "mass", MASS)
-def mass(bench: Bench, _: Measure) -> Array:
+def mass(bench: StageResults, _: Measure) -> Array:
     """Mass of the platform without payload."""
     own = bench.assembly.bodies[PLATFORM].mass
     if own is None:
@@ -370,7 +370,7 @@ def mass(bench: Bench, _: Measure) -> Array:
 
 
 @partial(MeasureKind, "mass.total", MASS)
-def total_mass(bench: Bench, _: Measure) -> Array:
+def total_mass(bench: StageResults, _: Measure) -> Array:
     """Mass of all bodies, links and stacks without payload.
 
     Links by their integrals over the profile, including end masses.
@@ -383,19 +383,19 @@ def total_mass(bench: Bench, _: Measure) -> Array:
 
 
 @partial(MeasureKind, "envelope.<dimension>", LENGTH)
-def size(bench: Bench, asked: Measure) -> Array:
+def size(bench: StageResults, asked: Measure) -> Array:
     """Edge of the bounding box."""
     return bench.size[..., COMPONENTS.index(asked.name)]
 
 
 @partial(MeasureKind, "height", LENGTH)
-def height(bench: Bench, _: Measure) -> Array:
+def height(bench: StageResults, _: Measure) -> Array:
     """Edge of the bounding box along z."""
     return bench.size[..., 2]
 
 
 @partial(MeasureKind, "opening", LENGTH, analytic=False)
-def opening(bench: Bench, _: Measure) -> Array:
+def opening(bench: StageResults, _: Measure) -> Array:
     """Largest intrusion into the clear aperture."""
     if bench.mechanism.opening is None:
         raise refuse("opening", "clear aperture missing", 'Add e.g. opening = { size = ["110 mm", "110 mm"] }')
@@ -404,7 +404,7 @@ def opening(bench: Bench, _: Measure) -> Array:
 
 
 @partial(MeasureKind, "resolution.<axis>", FINE, about=FINE_ROTATION, pointed=True)
-def resolution(bench: Bench, asked: Measure) -> Array:
+def resolution(bench: StageResults, asked: Measure) -> Array:
     """Pose error of one resolution step of every gauge, worst signs."""
     seen = pose_resolution(bench.mechanism, bench.kinematics)
     inverse = transport(bench.arm(asked.point)) @ seen.inverse.values
@@ -412,19 +412,19 @@ def resolution(bench: Bench, asked: Measure) -> Array:
 
 
 @partial(MeasureKind, "gauge.range", RATIO, extreme=Extreme.LARGEST)
-def gauge_range(bench: Bench, _: Measure) -> Array:
+def gauge_range(bench: StageResults, _: Measure) -> Array:
     """Largest gauge reading over half its range, all required strokes at once."""
     return gauge_swing(bench.kinematics, bench.box()) / half_ranges(bench.assembly)
 
 
 @partial(MeasureKind, "gauge.range.<gauge>", RATIO)
-def own_gauge_range(bench: Bench, asked: Measure) -> Array:
+def own_gauge_range(bench: StageResults, asked: Measure) -> Array:
     """Gauge reading over half its range, all required strokes at once."""
     return gauge_range.pieces(bench, asked)[..., bench.kinematics.gauges.index(asked.name)]
 
 
 @partial(MeasureKind, "load", RATIO, extreme=Extreme.LARGEST, over_strokes=True)
-def load(bench: Bench, _: Measure) -> Array:
+def load(bench: StageResults, _: Measure) -> Array:
     """Largest ratio of stack load to its limit, in compression or tension, at the worst corner."""
     share, limits = bench.load_share, bench.limits.from_zero
     use = share.use(limits)
@@ -436,23 +436,25 @@ def load(bench: Bench, _: Measure) -> Array:
 
 
 @partial(MeasureKind, "load.<actuator>", FORCE, over_strokes=True)
-def own_load(bench: Bench, asked: Measure) -> Array:
+def own_load(bench: StageResults, asked: Measure) -> Array:
     """Largest compression of the stack at the worst corner of the strokes, with permanent load."""
     share = bench.load_share
     return share.range(bench.limits.from_zero)[1][..., share.actuators.index(asked.name)]
 
 
-Work = Callable[[Bench, Measure], float]
+Work = Callable[[StageResults, Measure], float]
 
 
-def _each_design(work: Work, together: Callable[[Sequence[Bench], Measure], None] | None = None) -> Callable[[Bench, Measure], Array]:
+def _each_design(
+    work: Work, together: Callable[[Sequence[StageResults], Measure], None] | None = None
+) -> Callable[[StageResults, Measure], Array]:
     """Evaluate batches and complex numbers design by design; derivatives by central differences along the imaginary parts.
 
     `together` prepares the benches of many designs in one run.
     """
 
     @wraps(work)
-    def works(bench: Bench, asked: Measure) -> Array:
+    def works(bench: StageResults, asked: Measure) -> Array:
         stage = bench.mechanism
         count, step = designs(stage), step_size(stage)
         if count is None and not step:
@@ -471,7 +473,7 @@ def _each_design(work: Work, together: Callable[[Sequence[Bench], Measure], None
     return works
 
 
-def value_or_bound(work: Callable[[Bench, Measure], Any], bench: Bench, asked: Measure) -> Any:
+def value_or_bound(work: Callable[[StageResults, Measure], Any], bench: StageResults, asked: Measure) -> Any:
     """Return the value of a measure, or its lower bound if only that is known."""
     try:
         return work(bench, asked)
@@ -488,11 +490,11 @@ def _value_and_slope(values: list[float], step: float) -> complex:
     return values[0] if len(values) == 1 else values[0] + 1j * (values[1] - values[2]) / (2.0 * step)
 
 
-def _go_along(benches: Sequence[Bench], asked: Measure) -> None:
-    Bench.all_along(benches, asked.name, asked.place)
+def _go_along(benches: Sequence[StageResults], asked: Measure) -> None:
+    StageResults.all_along(benches, asked.name, asked.place)
 
 
-def _column(bench: Bench, asked: Measure, name: str) -> Array:
+def _column(bench: StageResults, asked: Measure, name: str) -> Array:
     """A column of a stroke, at the requested place or complete. Refuses missing equilibria."""
     found = bench.along(asked.name, asked.place)
     if name not in found.columns:
@@ -512,7 +514,7 @@ def _worst_along(name: str, column: str, quantity: Quantity, meaning: str, about
     worst: Callable[[Array], Any] = np.min if name in _LEAST else _largest
 
     @partial(_each_design, together=_go_along)
-    def work(bench: Bench, asked: Measure) -> float:
+    def work(bench: StageResults, asked: Measure) -> float:
         return float(worst(_column(bench, asked, column)))
 
     work.__doc__ = meaning
@@ -536,20 +538,20 @@ path_frequency = _worst_along("frequency", "f1", FREQUENCY, "Lowest natural freq
 
 @partial(MeasureKind, "buckling.factor", RATIO)
 @_each_design
-def buckling_factor(bench: Bench, _: Measure) -> float:
+def buckling_factor(bench: StageResults, _: Measure) -> float:
     """Critical load factor of weight and payloads, at large displacements."""
     return _least_factor(bench, [cases.LoadCase(state.WEIGHT, cases.REST, {state.WEIGHT: 1.0})])
 
 
 @partial(MeasureKind, "<path>.buckling", RATIO, along=True)
 @_each_design
-def path_buckling(bench: Bench, asked: Measure) -> float:
+def path_buckling(bench: StageResults, asked: Measure) -> float:
     """Least critical load factor of weight and other loads at the ends of a path, at large displacements."""
     places = None if asked.place is None else {"there": asked.place}
     return _least_factor(bench, cases.path_cases(bench.mechanism, asked.name, places))
 
 
-def _least_factor(bench: Bench, load_cases: Iterable[cases.LoadCase]) -> float:
+def _least_factor(bench: StageResults, load_cases: Iterable[cases.LoadCase]) -> float:
     """Least factor of load cases, infinite without buckling. Raises `LowerBoundError` if the least is a lower bound."""
     least, bounded = np.inf, None
     for case in load_cases:
@@ -567,7 +569,7 @@ def _least_factor(bench: Bench, load_cases: Iterable[cases.LoadCase]) -> float:
 
 
 @partial(MeasureKind, "frequency.unwanted", FREQUENCY)
-def unwanted_frequency(bench: Bench, asked: Measure) -> Array:
+def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
     """Lowest natural frequency with the required motions of the platform held.
 
     The null space N of the rows C of these motions gives the constrained stage, N'KN and N'MN. By interlacing it is not above
@@ -589,7 +591,7 @@ def unwanted_frequency(bench: Bench, asked: Measure) -> Array:
 
 
 @partial(MeasureKind, "numbers.<number>", RATIO)
-def named_number(bench: Bench, asked: Measure) -> Array:
+def named_number(bench: StageResults, asked: Measure) -> Array:
     """Value of a named number of the design file."""
     return np.asarray(bench.mechanism.numbers[asked.name].value)
 
@@ -604,7 +606,7 @@ def over(kind: MeasureKind) -> MeasureKind:
         raise refuse(kind.form, "unknown along a path", "Use a frequency or a stiffness over it")
 
     @_each_design
-    def least(bench: Bench, asked: Measure) -> float:
+    def least(bench: StageResults, asked: Measure) -> float:
         along = bench.over(asked.path)
         if kind.quantity is FREQUENCY:
             _require_frequencies(along.modes.frequencies[..., 0], asked.path)

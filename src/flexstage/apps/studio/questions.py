@@ -11,7 +11,7 @@ from flexstage.analysis.assessment.measures import frequency, platform_frequency
 from flexstage.analysis.assessment.requirements import Sense, Verdict
 from flexstage.analysis.assessment.sensitivities import Sensitivities, sensitivities, slope, step_parameters, steppable
 from flexstage.analysis.attempt import Attempts
-from flexstage.analysis.bench import Bench
+from flexstage.analysis.bench import StageResults
 from flexstage.analysis.caveats import part_warnings
 from flexstage.analysis.workspace.strength import sized_links
 from flexstage.analysis.workspace.stroke import stroke_limits
@@ -222,7 +222,7 @@ def _six(link: PlacedLink | None, what: str) -> Matrix:
     return matrix(Labelled(first_design(stiffness(link.part, link.material), 2), wrench, twist, ratio_units(WRENCH_UNITS, TWIST_UNITS)))
 
 
-def _stress(known: Bench, name: str) -> tuple[float | None, float | None, float | None]:
+def _stress(known: StageResults, name: str) -> tuple[float | None, float | None, float | None]:
     """Peak stress over all strokes, its limit, and the safety."""
     found = known.stress
     if name not in found.links:
@@ -231,7 +231,7 @@ def _stress(known: Bench, name: str) -> tuple[float | None, float | None, float 
     return tuple(finite(np.ravel(each)[index]) for each in (found.peak, found.allowed, found.safety))  # type: ignore[return-value]
 
 
-def _shares(known: Bench, name: str) -> dict[str, float]:
+def _shares(known: StageResults, name: str) -> dict[str, float]:
     """Its share of each actuator's lost motion."""
     found = {actuator: float(np.real(each.budget_by_link.get(name, 0.0))) for actuator, each in known.felt.lost.actuators.items()}
     return {actuator: share if abs(share) > NOISE else 0.0 for actuator, share in found.items()}
@@ -250,7 +250,7 @@ def _facts(link: PlacedLink | PlacedSuperelement) -> Iterator[Fact]:
 class Bearing:
     """Stress of links by the strokes and forces of all inputs, from the bias: wrenches are linear in them, stress is a norm of wrenches."""
 
-    def __init__(self, known: Bench) -> None:
+    def __init__(self, known: StageResults) -> None:
         model = known.model
         self._known = sized_links(known.assembly)
         if not self._known:
@@ -273,7 +273,7 @@ class Bearing:
         units = tuple("Pa/m" for _ in self.inputs)
         return Labelled(values, self.links, self.inputs, (units,) * len(self.links))
 
-    def _bias(self, known: Bench) -> Array:
+    def _bias(self, known: StageResults) -> Array:
         """Strokes (m,) at the bias, relative to zero voltage, at which hinges are relaxed."""
         limits = stroke_limits(known.mechanism) if known.assembly.strokes else None
         zero = {} if limits is None else dict(zip(limits.actuators, limits.low if limits.zero is None else limits.zero, strict=True))
@@ -303,12 +303,12 @@ def _bearing(text: str, file: str) -> Bearing:
     return Bearing(bench(text, file))
 
 
-def _inputs(known: Bench) -> Matrix:
+def _inputs(known: StageResults) -> Matrix:
     """Inputs per motion of the platform, corrected for elasticity."""
     return matrix(known.force_workspace("platform").per_motion if known.forced else known.felt.lost.correction)
 
 
-def _ideal(known: Bench) -> Matrix:
+def _ideal(known: StageResults) -> Matrix:
     """The platform's twist per stroke without elasticity: V R_a^+."""
     found = known.kinematics
     mapping = found.mapping
@@ -316,7 +316,7 @@ def _ideal(known: Bench) -> Matrix:
     return matrix(Labelled(values, _PLATFORM, mapping.rows, ratio_units(TWIST_UNITS, ("m",) * len(mapping.rows))))
 
 
-def _beyond_strokes(known: Bench, values: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+def _beyond_strokes(known: StageResults, values: Mapping[str, float]) -> Iterator[tuple[str, str]]:
     if not known.assembly.strokes:
         return
     limits = stroke_limits(known.mechanism)
@@ -325,7 +325,7 @@ def _beyond_strokes(known: Bench, values: Mapping[str, float]) -> Iterator[tuple
             yield name, f"its stroke ends at {format_value(float(low if values[name] < low else high), 'm')}"
 
 
-def _beyond_gauges(known: Bench, readings: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+def _beyond_gauges(known: StageResults, readings: Mapping[str, float]) -> Iterator[tuple[str, str]]:
     for name, reading in readings.items():
         gauge = known.assembly.gauges[name]
         half = finite(0.5 * np.asarray(gauge.gauge.range)) or np.inf
@@ -333,7 +333,7 @@ def _beyond_gauges(known: Bench, readings: Mapping[str, float]) -> Iterator[tupl
             yield name, f"it reads {format_value(reading, gauge.unit)}, its range ends at {format_value(half, gauge.unit)}"
 
 
-def _margin_slopes(known: Bench, worst: Verdict | None, found: Sensitivities) -> dict[str, float | None]:
+def _margin_slopes(known: StageResults, worst: Verdict | None, found: Sensitivities) -> dict[str, float | None]:
     """Change of the worst requirement's margin by one per cent of each number, by complex step if the measure has a derivative."""
     if worst is None:
         return {}
@@ -385,7 +385,7 @@ def _bent(strains: Mapping[str, Array], column: int) -> tuple[str, ...]:
     return tuple(name for name, each in size.items() if each > 1e-6 * most)
 
 
-def _locked(motion_: Array, known: Bench) -> Iterator[Screw]:
+def _locked(motion_: Array, known: StageResults) -> Iterator[Screw]:
     """The motions of the platform that the links lock: a basis of the complement of the ideal motions, at its reference."""
     free = first_design(motion_, 2)
     scale = np.array([1.0] * 3 + [known.kinematics.first_length] * 3)

@@ -20,7 +20,7 @@ from flexstage.analysis.assessment.difference import (
 from flexstage.analysis.assessment.judge import bench_of, judge
 from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.analysis.attempt import Attempts
-from flexstage.analysis.bench import Bench
+from flexstage.analysis.bench import StageResults
 from flexstage.analysis.dynamics.modes import Modes
 from flexstage.analysis.dynamics.response import response
 from flexstage.analysis.linear_statics.lost_motion import LostMotion
@@ -82,7 +82,7 @@ class Timer:
 
 
 @SESSION.keep(8)
-def bench(text: str, file: str) -> Bench:
+def bench(text: str, file: str) -> StageResults:
     """Analysis of a design."""
     return bench_of(design(text, file))
 
@@ -181,7 +181,7 @@ def matrix(found: Labelled) -> Matrix:
     return Matrix(tuple(document["rows"]), tuple(document["columns"]), unit, tuple(map(tuple, document["values"])))
 
 
-def _loading(known: Bench) -> str:
+def _loading(known: StageResults) -> str:
     """Note on figures of the loaded stage; else empty."""
     return known.loaded.text if known.felt is not known and known.loaded is not None else ""
 
@@ -211,7 +211,7 @@ def _reached(text: str, file: str) -> tuple[tuple[SingleAxis | None, HingeStress
     return (corrected or strokes, stress, buckled), attempt.missing
 
 
-def _corrected(known: Bench) -> SingleAxis:
+def _corrected(known: StageResults) -> SingleAxis:
     """Strokes along single axes, lost motion corrected by command."""
     lost = known.felt.lost
     return single_axis(*with_stops(known.mechanism, known.kinematics, lost.correction, known.limits), provenance=lost.provenance)
@@ -221,7 +221,7 @@ def _strokes(found: SingleAxis) -> Iterator[Stroke]:
     return map(Stroke, found.coordinates, np.real(found.low).tolist(), np.real(found.high).tolist(), found.limiting)
 
 
-def _response(known: Bench, choice: Choice) -> Response:
+def _response(known: StageResults, choice: Choice) -> Response:
     inputs, outputs, low, high = choice
     model = known.felt.model
     if low is not None and high is not None and not 0.0 < low < high < np.sqrt(np.finfo(float).max):
@@ -303,7 +303,7 @@ def _stored_figures(kind: str, stored: str, file: str) -> tuple[KeyFigure, ...]:
     return _key_figures(*(attempt.of(name, each) for name, each in _key_results(known)))  # type: ignore[arg-type]
 
 
-def _key_results(known: Bench) -> tuple[tuple[str, Any], ...]:
+def _key_results(known: StageResults) -> tuple[tuple[str, Any], ...]:
     return ("modes", lambda: known.felt.modes), ("stiffness", lambda: statics(known.felt.model)), ("loss", lambda: known.felt.lost)
 
 

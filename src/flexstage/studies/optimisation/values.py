@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.analysis.assessment.judge import bench_of
 from flexstage.analysis.assessment.measures import Extreme, Measure, frequency, platform_frequency
-from flexstage.analysis.bench import Bench
+from flexstage.analysis.bench import StageResults
 from flexstage.base.finding import DesignError
 from flexstage.base.number import Array, Table
 from flexstage.mechanism.checks import require_valid
@@ -144,7 +144,7 @@ class Values:
             rows = rows + 1j * _STEP * np.tile(np.eye(variables), (designs, 1))
         with np.errstate(all="ignore"):
             stepped = self._design(rows)
-            bench = Bench(stepped, self._command)
+            bench = StageResults(stepped, self._command)
             modes = spectra(bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
             columns: list[Sequence[Scalars | Numbered]] = []
             for measure in self.measures:

@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 
 from flexstage.analysis.assessment.measures import Measure, crosstalk
-from flexstage.analysis.bench import Bench
+from flexstage.analysis.bench import StageResults
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import Quantity
@@ -47,7 +47,7 @@ class PoseMeasure(Measure):
     """Motion of the platform along or about one axis per unit of a command along another."""
 
 
-def command(bench: Bench, point: str) -> Command:
+def command(bench: StageResults, point: str) -> Command:
     """The command of a nominal design for motions of a point of the platform.
 
     Raises `DesignError` for stages whose strokes do not determine the platform, and for points of other bodies.
@@ -72,7 +72,7 @@ def command(bench: Bench, point: str) -> Command:
     )
 
 
-def _sensing_inverse(bench: Bench, reference: Array) -> Array | None:
+def _sensing_inverse(bench: StageResults, reference: Array) -> Array | None:
     rows = _gauges(bench, reference, bench.kinematics.first_length)
     weights = np.array([1.0, 1.0, 1.0, *[bench.kinematics.first_length] * 3])
     scaled = rows / weights
@@ -81,7 +81,7 @@ def _sensing_inverse(bench: Bench, reference: Array) -> Array | None:
     return np.linalg.pinv(scaled) / weights[:, None]
 
 
-def _gauges(bench: Bench, reference: Array, length: float) -> Array:
+def _gauges(bench: StageResults, reference: Array, length: float) -> Array:
     """Readings per twist at the point (..., g, 6) of the gauges outside sums; rotations are scaled by a `length`."""
     kinematics, carry = bench.kinematics, transport(bench.assembly.bodies[PLATFORM].reference - reference)
     if not kinematics.sums and set(kinematics.reading_units) <= {"m"}:
@@ -91,7 +91,7 @@ def _gauges(bench: Bench, reference: Array, length: float) -> Array:
     return even * kinematics.sensing[..., rows, :] @ carry
 
 
-def _strokes(bench: Bench) -> list[Array]:
+def _strokes(bench: StageResults) -> list[Array]:
     parts = [bench.assembly.links[link].part for link in bench.assembly.actuators.values()]
     return [np.asarray(cast("Piezo", part.part if isinstance(part, Restricted) else part).stroke) for part in parts]
 
@@ -119,7 +119,7 @@ def _quantity(row: str, column: str) -> Quantity:
     return Quantity("pose per command", si, {"1": "1", "rad/m": "urad/um", "m/rad": "um/rad"}[si], "1")
 
 
-def poses(bench: Bench, asked: Command) -> tuple[Array, ...]:
+def poses(bench: StageResults, asked: Command) -> tuple[Array, ...]:
     """Motion per command (...) of a real stage, or a batch, entry by entry with the names of `pose_measures`.
 
     Open: the voltages for the nominal stage, x = X T (stroke / nominal stroke) C e_j. C corrects the nominal stage's

@@ -12,7 +12,7 @@ import numpy as np
 from flexstage.analysis.assessment.judge import bench_of, value_or_reason
 from flexstage.analysis.assessment.measures import Measure
 from flexstage.analysis.assessment.requirements import Requirement
-from flexstage.analysis.bench import Bench
+from flexstage.analysis.bench import StageResults
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.studies.sweeps.definition import Study
@@ -140,7 +140,7 @@ class Tolerance(Study):
         found = self.measure_on(bench_of(mechanism), tuple(columns[name] for name in (columns if names is None else names)))
         return tuple("no measure" if each is None else each for each in found)
 
-    def measure_on(self, bench: Bench, wanted: tuple[Measure | None, ...]) -> tuple[Array | str | None, ...]:
+    def measure_on(self, bench: StageResults, wanted: tuple[Measure | None, ...]) -> tuple[Array | str | None, ...]:
         """The requested columns of the study, from a bench; the others are left out."""
         requested = any(isinstance(each, PoseMeasure) for each in wanted)
         found = {}

@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.analysis.assessment.judge import bench_of
 from flexstage.analysis.assessment.measures import Measure, frequency, platform_frequency
 from flexstage.analysis.assessment.sensitivities import project
-from flexstage.analysis.bench import Bench
+from flexstage.analysis.bench import StageResults
 from flexstage.base.number import Array
 from flexstage.models.linear.eigen import Eigen
 from flexstage.studies.tolerances.definition import Tolerance
@@ -67,7 +67,7 @@ def _numbers(study: Tolerance, values: Array) -> Array:
     return np.stack(rows, axis=-1)
 
 
-def _mode(bench: Bench, measure: Measure) -> tuple[float, Eigen]:
+def _mode(bench: StageResults, measure: Measure) -> tuple[float, Eigen]:
     """The requested frequency, and its equal modes."""
     modes = bench.modes
     index = int(measure.name) - 1
