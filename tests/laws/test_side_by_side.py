@@ -16,7 +16,7 @@ from flexstage.control.robustness.stability_margins import bandwidths, peaks
 from flexstage.control.show.report import comparison_report
 from flexstage.control.show.tables import comparison_tables
 from flexstage.control.study.choices import ControllerKind, Criterion
-from flexstage.control.study.compare import Comparison, DetunedController, Rival, compare_controllers
+from flexstage.control.study.compare import ComparedController, Comparison, DetunedController, compare_controllers
 from flexstage.control.study.compare import rival as rival_of
 from flexstage.control.study.setup import ControllerSetup, Floor, GoalSetup, LoopSetup, NotchSetup, VibrationSetup
 from flexstage.control.study.study import LoopStudy, loop_study
@@ -32,9 +32,11 @@ VC_D = VibrationSetup(criterion=Criterion.VC_D)
 FLOOR = Floor(VC_D, VC_D, VC_D)
 
 
-def rival(*, rejection: float, noise: float, settling: float, delay: float) -> Rival:
+def rival(*, rejection: float, noise: float, settling: float, delay: float) -> ComparedController:
     ones = np.ones(2)
-    return Rival(("x", "rx"), ("m", "rad"), "so", 1.9, ones * rejection, ones * noise, ones * settling, 0.1 * ones, delay, None)
+    return ComparedController(
+        ("x", "rx"), ("m", "rad"), "so", 1.9, ones * rejection, ones * noise, ones * settling, 0.1 * ones, delay, None
+    )
 
 
 def test_the_front_is_what_no_other_beats_at_once():

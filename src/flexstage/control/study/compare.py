@@ -64,7 +64,7 @@ class DetunedController:
 
 
 @dataclass(frozen=True, eq=False)
-class Rival:
+class ComparedController:
     """Result of one controller, by the loop's `coordinates`; `units` are the units of noise.
 
     `peak` is the coupled peak of S, `rejection` the first crossing of |S| = 1, `noise` the rms in regulation. `settling` is the 2 %
@@ -136,7 +136,7 @@ class Rival:
 class Comparison(InNotebook):
     """Controllers by name, with equal stage, sampling, floor and gauges; failed designs have their `reasons`."""
 
-    controllers: Mapping[str, Rival]
+    controllers: Mapping[str, ComparedController]
     reasons: Mapping[str, str]
 
     @property
@@ -193,8 +193,8 @@ def compare_controllers(
         came[name] = found
         left = ", ".join(each for each in rivals if each not in came)
         said(f"tuning {left}" if left else "tuned", len(came) / len(rivals))
-    found = {name: each for name in rivals if isinstance(each := came[name], Rival)}
-    missed = {name: each for name in rivals if not isinstance(each := came[name], Rival)}
+    found = {name: each for name in rivals if isinstance(each := came[name], ComparedController)}
+    missed = {name: each for name in rivals if not isinstance(each := came[name], ComparedController)}
     if not found:
         raise DesignError(list(missed.values())[-1])
     return Comparison(Table(found), Table({name: "; ".join(map(str, findings)) for name, findings in missed.items()}))
@@ -252,14 +252,14 @@ def _of_kind(asked: LoopSetup, kind: ControllerKind | OfferedKind) -> Controller
     return replace(asked.controller, kind=kind, goal=goal, notches=notches)
 
 
-def rival(study: LoopStudy) -> Rival:
+def rival(study: LoopStudy) -> ComparedController:
     """Summarise a closed loop, simulated in steps of all its motions."""
     names = study.plant.coordinates.names
     steps = {run.course.moved[0]: run.step for run in study.runs if run.step is not None}
     if study.peaks is None or study.bandwidths is None or study.margins is None:
         raise refuse("controller", "the loop is open", "Compare controllers that close it")
     settling = np.array([steps[name].settling for name in names])
-    return Rival(
+    return ComparedController(
         coordinates=names,
         units=study.noise.units,
         tuned=study.controller.tuned or "",
