@@ -134,7 +134,7 @@ def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) ->
 
 
 @dataclass(frozen=True, eq=False)
-class Lesson:
+class LearningSettings:
     """Learning parameters: `passes`, `gain`, mode `spread`; the error is evaluated within `window` of the samples."""
 
     passes: int
@@ -143,7 +143,7 @@ class Lesson:
     window: slice
 
 
-def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: Lesson) -> Learned:
+def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: LearningSettings) -> Learned:
     """Learn a true path (n, f) pass by pass, at rest at both ends: command = path + d, d <- Q (d + gain P^^-1 e) after each.
 
     `run` returns the readings (n, f) of a commanded path in a numbered pass. Raises `DesignError` as `robust_band` does.

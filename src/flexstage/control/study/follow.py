@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.control.learning.learn import Lesson, inverse_path, learn
+from flexstage.control.learning.learn import LearningSettings, inverse_path, learn
 from flexstage.control.learning.repeat import Repetition, repeat
 from flexstage.control.learning.shaper import zv, zvd
 from flexstage.control.simulation.result import Simulated
@@ -39,7 +39,7 @@ def follow(
         repeated = repeat(noisy.begin(len(wanted)), closed, control, wanted, repetition, gain=asked.gain, spread=asked.spread)
         number, commanded = 0, repeated.commanded
     elif asked.method is Following.LEARNING:
-        lesson = Lesson(asked.passes, asked.gain, asked.spread, window)
+        lesson = LearningSettings(asked.passes, asked.gain, asked.spread, window)
         learned = learn(lambda commanded, number: noisy.simulate(commanded, number).pose, closed, control, wanted, lesson)
         commanded = learned.commanded
     elif asked.method is Following.INVERSE:
