@@ -30,7 +30,7 @@ BEYOND = Heading("beyond the band", digits=3)
 
 
 @dataclass(frozen=True, eq=False)
-class Robust:
+class RobustBand:
     """Robust learning band: `band`, and `contraction`, the largest ||Q (I - gain P P^^-1)|| over its frequencies."""
 
     band: Band
@@ -87,7 +87,7 @@ class Learned:
         return self.rms[-1] / self.noise
 
 
-def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Robust:
+def robust_band(closed: Loop, control: System, gain: float, spread: float) -> RobustBand:
     """Find the band of contraction, ||Q (I - gain P P^^-1)|| < 0.8 in lengths, with all modes up to `spread` off.
 
     P are the loop's responses with shifted modes, P^ the model's responses (Norrloef & Gunnarsson, Int. J. Control 75 (2002) 1114: a norm
@@ -109,7 +109,7 @@ def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Ro
         raise refuse("follow", what, "Take a smaller gain or spread")
     end = float(lines[beyond[0] - 1]) if len(beyond) else 0.45 / step
     band = Band(end)
-    return Robust(band, float(np.max(worst[lines <= end] * band.gains(lines[lines <= end]))))
+    return RobustBand(band, float(np.max(worst[lines <= end] * band.gains(lines[lines <= end]))))
 
 
 def line_grid(closed: Loop, spread: float) -> Array:
