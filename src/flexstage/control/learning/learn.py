@@ -38,7 +38,7 @@ class RobustBand:
 
 
 @dataclass(frozen=True, eq=False)
-class Learned:
+class LearningResult:
     """Result of passes over the same path, by the loop's `coordinates` in their `units`.
 
     `rms` (passes, f) is the measured error in the band up to `band` [Hz], before the first and after each learned pass. `noise` (f,) is its
@@ -143,7 +143,7 @@ class LearningSettings:
     window: slice
 
 
-def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: LearningSettings) -> Learned:
+def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: LearningSettings) -> LearningResult:
     """Learn a true path (n, f) pass by pass, at rest at both ends: command = path + d, d <- Q (d + gain P^^-1 e) after each.
 
     `run` returns the readings (n, f) of a commanded path in a numbered pass. Raises `DesignError` as `robust_band` does.
@@ -164,7 +164,7 @@ def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wan
     again = np.array([filter_path(whole, (target - each) * fades)[lesson.window] for each in final])
     every = np.concatenate([filter_path(whole, error)[None, lesson.window], again])
     rms[-1] = np.sqrt(np.mean(every**2, axis=(0, 1)))
-    return Learned(
+    return LearningResult(
         coordinates=closed.plant.coordinates.names,
         units=closed.plant.coordinates.units,
         band=0.75 * robust.band.end,

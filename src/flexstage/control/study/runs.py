@@ -17,7 +17,7 @@ from flexstage.base.labelled import Matrix, ratio_units
 from flexstage.base.number import Array, Table
 from flexstage.base.record import INNER, VIEW, Heading, Layout, Mark, UnitIn
 from flexstage.base.units.quantity import DISPLACEMENT, POWER, SHORT_TIME, SPEED, TEMPERATURE
-from flexstage.control.learning.learn import Learned
+from flexstage.control.learning.learn import LearningResult
 from flexstage.control.learning.repeat import Repeated
 from flexstage.control.plant_models.creep_plant import add_creep
 from flexstage.control.plant_models.plants import ADDED
@@ -155,7 +155,7 @@ class Run:
     figures: Annotated[StepFigures | None, INNER]
     tracking: Matrix
     warnings: Annotated[tuple[Finding, ...], INNER] = ()
-    learned: Learned | None = None
+    learned: LearningResult | None = None
     repeated: Repeated | None = None
     heat: Mapping[str, CoilHeat] = field(default_factory=lambda: Table({}))
     legs: Mapping[str, LegUse] = field(default_factory=lambda: Table({}))
