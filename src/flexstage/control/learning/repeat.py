@@ -114,7 +114,7 @@ def _filters(closed: Loop, control: System, band: Band, gain: float, *, reach: i
 
 
 @dataclass(frozen=True, eq=False)
-class Repeated:
+class RepetitiveResult:
     """Result of repetitive control along a path, by the loop's `coordinates` in their `units`.
 
     `rms` (periods, f) is the measured error of each `period` in the band up to `band` [Hz], the first without correction. `beyond` (f,) is
@@ -181,7 +181,7 @@ def repeat(
     *,
     gain: float = 0.6,
     spread: float = 0.02,
-) -> Repeated:
+) -> RepetitiveResult:
     """Run along a true path (n, f) with the correction from previous periods; `advance` runs on with a command and returns the pose.
 
     Only errors within the window are used; after it the correction fades out. Raises `DesignError` as `repeater` does.
@@ -221,7 +221,9 @@ def _next(found: Repeater, added: Array, error: Array, start: int, stop: int) ->
     return kept + np.stack(taught, axis=-1)
 
 
-def _repeated(found: Repeater, closed: Loop, error: Array, asked: Repetition, *, gain: float, spread: float, commanded: Array) -> Repeated:
+def _repeated(
+    found: Repeater, closed: Loop, error: Array, asked: Repetition, *, gain: float, spread: float, commanded: Array
+) -> RepetitiveResult:
     whole = Band(_WHOLE * found.band.end)
     error = error * fade_ends(len(error), asked.window)[:, None]
     inside = filter_path(whole.gains(frequencies_of(error, closed.step or 1.0)), error)
@@ -229,7 +231,7 @@ def _repeated(found: Repeater, closed: Loop, error: Array, asked: Repetition, *,
     length = round(found.period)
     squares = [np.mean(inside[start : start + length] ** 2, axis=0) for start in starts]
     last = (error - inside)[starts[-1] : starts[-1] + length]
-    return Repeated(
+    return RepetitiveResult(
         coordinates=closed.plant.coordinates.names,
         units=closed.plant.coordinates.units,
         period=asked.period,

@@ -18,7 +18,7 @@ from flexstage.base.number import Array, Table
 from flexstage.base.record import INNER, VIEW, Heading, Layout, Mark, UnitIn
 from flexstage.base.units.quantity import DISPLACEMENT, POWER, SHORT_TIME, SPEED, TEMPERATURE
 from flexstage.control.learning.learn import LearningResult
-from flexstage.control.learning.repeat import Repeated
+from flexstage.control.learning.repeat import RepetitiveResult
 from flexstage.control.plant_models.creep_plant import add_creep
 from flexstage.control.plant_models.plants import ADDED
 from flexstage.control.simulation.machine import Machine, machine
@@ -156,7 +156,7 @@ class Run:
     tracking: Matrix
     warnings: Annotated[tuple[Finding, ...], INNER] = ()
     learned: LearningResult | None = None
-    repeated: Repeated | None = None
+    repeated: RepetitiveResult | None = None
     heat: Mapping[str, CoilHeat] = field(default_factory=lambda: Table({}))
     legs: Mapping[str, LegUse] = field(default_factory=lambda: Table({}))
     commanded: Annotated[Array | None, INNER] = None
