@@ -35,7 +35,7 @@ class Lost:
 
 
 @dataclass(frozen=True, eq=False)
-class Hunt:
+class ModeSearch:
     """Search parameters: modes in `group`, damped at most `highest_damping`; rejected ones are added to `lost`."""
 
     group: Extent
@@ -72,7 +72,7 @@ class Found:
         )
 
 
-def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: Hunt) -> Found | None:
+def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: ModeSearch) -> Found | None:
     """Fit the modes of one group of candidates, remove insignificant ones, and fit again with the residual noise.
 
     `cells` belong to the group's band; candidates next to the group represent the outside. `None` without a mode.
@@ -173,7 +173,7 @@ def _chance(modal: Modal, strength: float) -> float:
     return float(scipy.special.chdtrc(freedoms(modal), strength))
 
 
-def _prune(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:
+def _prune(band: Band, found: Fit, hunt: ModeSearch) -> tuple[Fit, Array]:
     """Remove insignificant modes one at a time, least significant first; returns the significance of the others."""
     while len(found.modal.poles):
         worst, strength = _least_significant(band, found, hunt)
@@ -184,7 +184,7 @@ def _prune(band: Band, found: Fit, hunt: Hunt) -> tuple[Fit, Array]:
     return found, np.zeros(0)
 
 
-def _extend(band: Band, found: Fit, strength: Array, hunt: Hunt) -> tuple[Band, Fit, Array]:
+def _extend(band: Band, found: Fit, strength: Array, hunt: ModeSearch) -> tuple[Band, Fit, Array]:
     """Add modes one at a time while the unexplained data are significant."""
     while len(found.modal.poles) < _MOST_MODES:
         score = excess(band, found.modal)
@@ -199,7 +199,7 @@ def _extend(band: Band, found: Fit, strength: Array, hunt: Hunt) -> tuple[Band, 
     return band, found, strength
 
 
-def _least_significant(band: Band, found: Fit, hunt: Hunt) -> tuple[int | None, Array]:
+def _least_significant(band: Band, found: Fit, hunt: ModeSearch) -> tuple[int | None, Array]:
     """Least significant mode, if rejected, and the significance of each."""
     poles, limit = found.modal.poles, _limit(found.modal)
     ratio = -np.real(poles) / np.abs(poles)

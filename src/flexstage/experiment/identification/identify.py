@@ -19,7 +19,7 @@ from flexstage.experiment.identification.diagnosis.lateness import Delay, bends_
 from flexstage.experiment.identification.diagnosis.peaks import Left, peaks
 from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
 from flexstage.experiment.identification.excitation import Excitation
-from flexstage.experiment.identification.group import ONCE_IN, Found, Hunt, Lost, fit_group, widen_by_parts
+from flexstage.experiment.identification.group import ONCE_IN, Found, Lost, ModeSearch, fit_group, widen_by_parts
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.likelihood import Modal
 from flexstage.experiment.identification.lscf import lscf
@@ -168,7 +168,7 @@ def _fit_groups(
     poles = np.array([candidate.pole for candidate in candidates])
     groups = extents(poles, *band, resolution=known.apart(np.imag(poles)), together=together)
     every = zip(groups, gather_cells(known.lines(), [edges(poles, group.low, group.high) for group in groups]), strict=True)
-    found = [fit_group(known, cells, candidates, Hunt(group, highest_damping, lost)) for group, cells in every]
+    found = [fit_group(known, cells, candidates, ModeSearch(group, highest_damping, lost)) for group, cells in every]
     return [each for each in found if each is not None]
 
 
