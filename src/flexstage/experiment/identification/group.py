@@ -44,7 +44,7 @@ class ModeSearch:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class BandModes:
     """Identified modes of one band, that of `group`, with deviations, noise-only deviations, and significance.
 
     `misfit` is the residual near each relative to noise, `widening` the resulting factor on its deviations.
@@ -58,10 +58,10 @@ class Found:
     misfit: Array
     widening: Array
 
-    def select(self, chosen: Array) -> Found:
+    def select(self, chosen: Array) -> BandModes:
         """Subset of the modes, by index."""
         modal, spread = self.modal, self.deviations
-        return Found(
+        return BandModes(
             self.group,
             self.band,
             Modal(modal.poles[chosen], modal.participation[chosen], modal.shapes[:, chosen]),
@@ -72,7 +72,7 @@ class Found:
         )
 
 
-def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: ModeSearch) -> Found | None:
+def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: ModeSearch) -> BandModes | None:
     """Fit the modes of one group of candidates, remove insignificant ones, and fit again with the residual noise.
 
     `cells` belong to the group's band; candidates next to the group represent the outside. `None` without a mode.
@@ -101,7 +101,7 @@ def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], 
         return None
     beyond = misfits(band, found.modal)
     spread = deviations(found, known.inflation, scatter(band, found.modal))
-    every = Found(
+    every = BandModes(
         group, band, found.modal, spread, strength / _limit(found.modal), beyond, np.maximum(beyond, _hidden_mode_factor(band, found))
     )
     return replace(every, widening=_widening(every, band, found.modal))
@@ -129,7 +129,7 @@ def _hidden_mode_factor(band: Band, found: Fit) -> Array:
     return np.where(factors > _SLIGHT, factors, 1.0)
 
 
-def widen_by_parts(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], found: Found) -> Found:
+def widen_by_parts(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], found: BandModes) -> BandModes:
     """Increase the deviations to include the scatter between parts of the record, if the residual exceeds noise.
 
     `cells` belong to the same band, computed from the parts' transforms. A mode that depends on amplitude or time differs between parts.
@@ -151,7 +151,7 @@ def _band(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], grou
     return Band(cells, variance, background(cells, outside), known.smear, shape, known.rounding, len(known.input_scale))
 
 
-def _widening(found: Found, band: Band, modal: Modal) -> Array:
+def _widening(found: BandModes, band: Band, modal: Modal) -> Array:
     """Inflation factor (k,) on noise deviations, for modes with a residual above noise.
 
     The largest of the residual excess, the scatter between sub-bands, and the scatter between blocks: inputs, records, or parts of records.

@@ -19,7 +19,7 @@ from flexstage.experiment.identification.diagnosis.lateness import Delay, bends_
 from flexstage.experiment.identification.diagnosis.peaks import Left, peaks
 from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
 from flexstage.experiment.identification.excitation import Excitation
-from flexstage.experiment.identification.group import ONCE_IN, Found, Lost, ModeSearch, fit_group, widen_by_parts
+from flexstage.experiment.identification.group import ONCE_IN, BandModes, Lost, ModeSearch, fit_group, widen_by_parts
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.likelihood import Modal
 from flexstage.experiment.identification.lscf import lscf
@@ -162,7 +162,7 @@ def _fit_groups(
     lost: list[Lost],
     *,
     together: float = TOGETHER,
-) -> list[Found]:
+) -> list[BandModes]:
     if not candidates:
         return []
     poles = np.array([candidate.pole for candidate in candidates])
@@ -172,7 +172,7 @@ def _fit_groups(
     return [each for each in found if each is not None]
 
 
-def _widen_doubted(known: Evidence, candidates: tuple[Candidate, ...], fitted: list[Found]) -> list[Found]:
+def _widen_doubted(known: Evidence, candidates: tuple[Candidate, ...], fitted: list[BandModes]) -> list[BandModes]:
     """Bands with the scatter between parts of the record in the deviations of modes with a residual above noise."""
     found = list(fitted)
     poles = np.array([candidate.pole for candidate in candidates])
@@ -184,7 +184,7 @@ def _widen_doubted(known: Evidence, candidates: tuple[Candidate, ...], fitted: l
     return found
 
 
-def _parts(known: Evidence, found: Found) -> int:
+def _parts(known: Evidence, found: BandModes) -> int:
     """Number of parts of a record for a check of stationarity: up to eight, none shorter than their slowest decay to 1/e.
 
     Returns 1 without a residual above noise, for fewer than three parts, or for several records, which are parts.
@@ -196,14 +196,14 @@ def _parts(known: Evidence, found: Found) -> int:
     return parts if parts >= _LEAST_PARTS else 1
 
 
-def _measure_drives(known: Evidence, fitted: list[Found]) -> list[Drive]:
+def _measure_drives(known: Evidence, fitted: list[BandModes]) -> list[Drive]:
     """Test whether recorded inputs excite the modes, band by band. Responses have no information on other excitation."""
     if all(each.band.inputs == each.band.cells.width for each in fitted):
         return [Drive(np.zeros(len(each.modal.poles)), np.zeros(len(each.modal.poles))) for each in fitted]
     return measure_drives([(each.band, each.modal) for each in fitted], known.lines(1))
 
 
-def _keep_driven(fitted: list[Found], drives: list[Drive]) -> tuple[list[Found], list[Lost], Array]:
+def _keep_driven(fitted: list[BandModes], drives: list[Drive]) -> tuple[list[BandModes], list[Lost], Array]:
     """Modes excited by recorded inputs, other resonances, and the unexplained share of each mode's motion.
 
     Rejected resonances stay in the fit, because they represent motion of other modes.
@@ -219,7 +219,7 @@ def _keep_driven(fitted: list[Found], drives: list[Drive]) -> tuple[list[Found],
 
 def _result(
     known: Evidence,
-    found: list[Found],
+    found: list[BandModes],
     share: Array,
     *,
     band: tuple[float, float],
