@@ -50,7 +50,7 @@ from flexstage.control.tuning.find import find
 from flexstage.control.tuning.fit import Bounds
 from flexstage.control.tuning.laws import PI_FAMILY, RESONANT_FAMILY
 from flexstage.control.tuning.objective import TuningObjective
-from flexstage.control.tuning.search import Field, Found, Joint, Variant, beside_one_another, field, loud_enough, search, variants
+from flexstage.control.tuning.search import Field, Joint, SearchResult, Variant, beside_one_another, field, loud_enough, search, variants
 from flexstage.control.tuning.shape import Shape
 from flexstage.control.tuning.spec import Tuning, TuningSpec
 from flexstage.control.tuning.view import view
@@ -97,9 +97,9 @@ def test_notches_that_take_nothing_away_are_left_out():
     """A depth at its bound is no notch: its pole at 4.5 kHz was told as the least stable one of a guide's loop."""
     shape, kept = Shape(2, 1e-4), Notch(106.0, 0.1, 0.7)
     point = shape.point(PI(0.7, 300.0), (kept, Notch(4500.0, 1.0, 0.03)))
-    one = Found((shape,), (point,), (100.0,))
+    one = SearchResult((shape,), (point,), (100.0,))
     assert [each.frequency for each in one.notches[0]] == pytest.approx([106.0])
-    left = Found((Shape(1, 1e-4),), (Shape(1, 1e-4).point(PI(0.7, 300.0), one.notches[0]),), (100.0,))
+    left = SearchResult((Shape(1, 1e-4),), (Shape(1, 1e-4).point(PI(0.7, 300.0), one.notches[0]),), (100.0,))
     frequencies = np.geomspace(3.0, 4900.0, 40)
     assert left.responses(frequencies) == pytest.approx(one.responses(frequencies), rel=1e-12)
 
@@ -124,7 +124,7 @@ def test_what_passes_the_bounds_has_exact_derivatives(count):
         plants(lines)[None],
         rng.normal(size=(60, count, 2)), np.ones((60, count)), tuple(range(count)),
     )  # fmt: skip
-    asked = Joint(field, Found((shape,) * count, points, (0.0,) * count), (Bounds(200.0, 0.01, 0.02, 1.0, 2),) * count, 0.3)
+    asked = Joint(field, SearchResult((shape,) * count, points, (0.0,) * count), (Bounds(200.0, 0.01, 0.02, 1.0, 2),) * count, 0.3)
     point = np.concatenate(points)
     _, gradient, _ = asked.at(point)
     for number, slope in enumerate(gradient):

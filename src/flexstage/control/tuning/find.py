@@ -19,7 +19,7 @@ from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.outcome import Outcome, outcome
 from flexstage.control.tuning.search import (
     Field,
-    Found,
+    SearchResult,
     advance,
     excess,
     farthest,
@@ -161,9 +161,9 @@ def _begun(within: Field, controller: Decentralised | LQG) -> _Candidate | None:
     return _candidate(within, controller, _judge(within, controller), note="; the controller of highest bandwidth, without a better one")
 
 
-def _sought(within: Field, seek: Callable[[Field], Found | None]) -> _Candidate | None:
+def _sought(within: Field, seek: Callable[[Field], SearchResult | None]) -> _Candidate | None:
     """First search result that keeps the peak of S also between frequencies."""
-    begun: Found | None = None
+    begun: SearchResult | None = None
     places: tuple[float, ...] = ()
     for _ in range(_LOOKS):
         for tried, found in _rounds(within, places, begun, seek):
@@ -178,8 +178,8 @@ def _sought(within: Field, seek: Callable[[Field], Found | None]) -> _Candidate 
 
 
 def _rounds(
-    within: Field, places: tuple[float, ...], begun: Found | None, seek: Callable[[Field], Found | None]
-) -> Iterator[tuple[Field, Found]]:
+    within: Field, places: tuple[float, ...], begun: SearchResult | None, seek: Callable[[Field], SearchResult | None]
+) -> Iterator[tuple[Field, SearchResult]]:
     """Results within the peak of S, then within lower ones: continued from the last, and restarted on failure.
 
     Frequencies are dense around `places` [Hz], where an earlier result, `begun`, exceeded the peak between frequencies.
@@ -278,13 +278,13 @@ def _judge(within: Field, controller: Decentralised | LQG) -> Judgement:
     return replace(judged, growth=max(judged.growth, *far)) if far else judged
 
 
-def _controller(within: Field, found: Found) -> Decentralised:
+def _controller(within: Field, found: SearchResult) -> Decentralised:
     notches = found.notches if any(found.notches) else ()
     filters = prefilters(within, found) if within.spec.prefilter else ()
     return Decentralised(within.seen.loops, found.laws, notches, within.spec.feedforward, filters)
 
 
-def prefilters(within: Field, found: Found) -> tuple[Prefilter, ...]:
+def prefilters(within: Field, found: SearchResult) -> tuple[Prefilter, ...]:
     """Select, by loop, the grid prefilter of shortest settling at the worst mode shift, with at most 3 % of overshoot."""
     loops, chosen = one_loops(within, found), dict[int, Prefilter]()
     for loop, first in enumerate(within.alike):

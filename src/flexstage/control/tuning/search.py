@@ -330,7 +330,7 @@ def _heard(seen: View) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class SearchResult:
     """Search result by loop: shape, point, and the frequency `reached` [Hz] for the objective, 0 without one.
 
     `noises` are the rms in regulation with the loops of other blocks open, if known.
@@ -358,7 +358,7 @@ class Found:
         return tuple(tuple(each for each in notches if each.depth < 1.0) for notches in every)
 
 
-def search(within: Field, family: Family) -> Found | None:
+def search(within: Field, family: Family) -> SearchResult | None:
     """Search the best loops: coupled ones together, then all at once; `None` if none is stable.
 
     PID starts from the PI result. The search is deterministic, with starts on a grid.
@@ -369,12 +369,12 @@ def search(within: Field, family: Family) -> Found | None:
     return None if found is None else tighten(within, found)
 
 
-def advance(within: Field, known: Decentralised) -> Found:
+def advance(within: Field, known: Decentralised) -> SearchResult:
     """Improve the loops of a known controller: coupled ones together, then all at once."""
     begun = known_loops(within, known)
     points, reached, noises = list(begun.points), list(begun.reached), list(begun.noises)
     for block in _blocks(within):
-        own = Found(tuple(begun.shapes[loop] for loop in block), tuple(begun.points[loop] for loop in block), (0.0,) * len(block))
+        own = SearchResult(tuple(begun.shapes[loop] for loop in block), tuple(begun.points[loop] for loop in block), (0.0,) * len(block))
         part = _part(within, block)
         if within.spec.objective is TuningObjective.BALANCE:
             part = replace(part, allowed=tuple(_NOISIER * each for each in _noises(part, own)))
@@ -386,21 +386,23 @@ def advance(within: Field, known: Decentralised) -> Found:
         for place, loop in enumerate(block):
             points[loop], reached[loop], noises[loop] = found.points[place], found.reached[place], _noises(part, found)[place]
     points, reached, noises = ([each[first] for first in within.alike] for each in (points, reached, noises))
-    return tighten(within, Found(begun.shapes, tuple(points), tuple(reached), tuple(noises)))
+    return tighten(within, SearchResult(begun.shapes, tuple(points), tuple(reached), tuple(noises)))
 
 
-def resume(within: Field, known: Decentralised) -> Found:
+def resume(within: Field, known: Decentralised) -> SearchResult:
     """All loops at once from a known controller, which has to reach what it reaches here."""
     begun = known_loops(within, known)
     return tighten(within, replace(begun, reached=tuple(_frequencies_of_aim(within, begun))))
 
 
-def known_loops(within: Field, known: Decentralised) -> Found:
+def known_loops(within: Field, known: Decentralised) -> SearchResult:
     """Convert the loops of a controller to points, the first of equal ones."""
     count = len(within.alike)
     notches = known.notches or ((),) * count
     every = [_known_loop(within, cast("PI | PID", known.laws[first]), notches[first]) for first in within.alike]
-    return Found(tuple(shape for shape, _ in every), _shared(within, tuple(point for _, point in every)), (0.0,) * count, (np.inf,) * count)
+    return SearchResult(
+        tuple(shape for shape, _ in every), _shared(within, tuple(point for _, point in every)), (0.0,) * count, (np.inf,) * count
+    )
 
 
 def _known_loop(within: Field, law: PI | PID, notches: tuple[Notch, ...]) -> tuple[Shape, Array]:
@@ -415,12 +417,12 @@ def _known_loop(within: Field, law: PI | PID, notches: tuple[Notch, ...]) -> tup
     return shape, shape.point(PID(plain.proportional, plain.integral, derivative, law.filter), notches)
 
 
-def tighten(within: Field, found: Found) -> Found:
+def tighten(within: Field, found: SearchResult) -> SearchResult:
     """Optimise all loops at once, from the result in the same or a less strict field."""
     return _together(replace(within, allowed=found.noises), found)
 
 
-def _by_blocks(within: Field, family: Family, begun: Found | None) -> Found | None:
+def _by_blocks(within: Field, family: Family, begun: SearchResult | None) -> SearchResult | None:
     """Best loops by coupled blocks, the others open: from a grid of starts, or from the result of another kind."""
     seen, shapes = within.seen, tuple(_shape(within.seen, family, loop, within.fast) for loop in range(len(within.alike)))
     points: list[Array] = [np.zeros(0)] * len(shapes)
@@ -439,14 +441,14 @@ def _by_blocks(within: Field, family: Family, begun: Found | None) -> Found | No
             first = within.alike[loop]
             points[first], reached[first], noises[first] = found.points[place], found.reached[place], quiet[place]
     points, reached, noises = ([each[first] for first in within.alike] for each in (points, reached, noises))
-    return Found(shapes, tuple(points), tuple(reached), tuple(noises))
+    return SearchResult(shapes, tuple(points), tuple(reached), tuple(noises))
 
 
-def _on_from(within: Field, shapes: tuple[Shape, ...], begun: Found, block: tuple[int, ...]) -> Found:
+def _on_from(within: Field, shapes: tuple[Shape, ...], begun: SearchResult, block: tuple[int, ...]) -> SearchResult:
     """Loops continued from a PI result, with a tiny derivative."""
     points = tuple(_with_derivative(shape, begun.shapes[loop], begun.points[loop]) for shape, loop in zip(shapes, block, strict=True))
     reached = [begun.reached[loop] for loop in block]
-    return _climb(within, [Found(shapes, _shared(within, points), tuple(reached))], reached)
+    return _climb(within, [SearchResult(shapes, _shared(within, points), tuple(reached))], reached)
 
 
 def _shared(within: Field, points: tuple[Array, ...]) -> tuple[Array, ...]:
@@ -490,9 +492,11 @@ def _part(within: Field, block: tuple[int, ...]) -> Field:
     )
 
 
-def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]], least: list[float]) -> Found | None:
+def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]], least: list[float]) -> SearchResult | None:
     """Best of a grid of starts: those of highest rejection are damped, and the first successful one is improved."""
-    starts = [start for points in grid if (start := _highest_stable(within, Found(shapes, points, (0.0,) * len(points)))) is not None]
+    starts = [
+        start for points in grid if (start := _highest_stable(within, SearchResult(shapes, points, (0.0,) * len(points)))) is not None
+    ]
     if not starts:
         return None
     far = sorted(starts, key=lambda each: -_far(within, each))[:_STARTS]
@@ -504,7 +508,7 @@ def _best(within: Field, shapes: tuple[Shape, ...], grid: list[tuple[Array, ...]
     return _climb(within, [*calm, *far], _wanted(within, calm[0], least))
 
 
-def _calmed(within: Field, starts: list[Found], share: float) -> list[Found]:
+def _calmed(within: Field, starts: list[SearchResult], share: float) -> list[SearchResult]:
     """Quiet starts with a share of their rejection; first those that meet the bounds, by rejection."""
     calm = [
         _fit_together(within, each, _all_bounds(within, [share * far for far in rejections(within, each)]), _CALM)[0] for each in starts
@@ -512,39 +516,39 @@ def _calmed(within: Field, starts: list[Found], share: float) -> list[Found]:
     return sorted(calm, key=lambda each: (not _is_calm(within, each), -_far(within, each)))
 
 
-def rejections(within: Field, found: Found) -> list[float]:
+def rejections(within: Field, found: SearchResult) -> list[float]:
     """Compute the sensitivity crossover of each loop [Hz]."""
     return [each.rejection for each in one_loops(within, found)]
 
 
-def _frequencies_of_aim(within: Field, found: Found) -> list[float]:
+def _frequencies_of_aim(within: Field, found: SearchResult) -> list[float]:
     """Objective frequency [Hz] already reached by each loop: of rejection, or of settling within six periods."""
     loops, aim = one_loops(within, found), within.spec.objective
     far, soon = [each.rejection for each in loops], [SETTLED / each.settling for each in loops]
     return soon if aim is TuningObjective.SETTLING else list(map(min, far, soon)) if aim is TuningObjective.BALANCE else far
 
 
-def _is_calm(within: Field, found: Found) -> bool:
+def _is_calm(within: Field, found: SearchResult) -> bool:
     """Whether the bounds independent of the objective are nearly met."""
     return excess(within, found) <= _NEARLY
 
 
-def _noises(within: Field, found: Found) -> list[float]:
+def _noises(within: Field, found: SearchResult) -> list[float]:
     """Rms in regulation of each loop."""
     return [each.rms for each in one_loops(within, found)]
 
 
-def _wanted(within: Field, found: Found, least: list[float]) -> list[float]:
+def _wanted(within: Field, found: SearchResult, least: list[float]) -> list[float]:
     """Target near the present rejection, or a part of the required one at `least` [Hz]."""
     return [max(_BACK * each, 0.3 * lowest) for each, lowest in zip(rejections(within, found), least, strict=True)]
 
 
-def _far(within: Field, found: Found) -> float:
+def _far(within: Field, found: SearchResult) -> float:
     """Geometric mean of the loops' rejection."""
     return float(np.exp(np.mean(np.log(rejections(within, found)))))
 
 
-def _climb(within: Field, starts: list[Found], wanted: list[float]) -> Found:
+def _climb(within: Field, starts: list[SearchResult], wanted: list[float]) -> SearchResult:
     """Increase the target from the first start that meets it: all loops together, then individually, by decreasing ratios."""
     within, best = loud_enough(within, starts, wanted)
     for _ in range(_LEVELS - 1):
@@ -567,7 +571,7 @@ def _climb(within: Field, starts: list[Found], wanted: list[float]) -> Found:
     return replace(best, reached=tuple(reached))
 
 
-def loud_enough(within: Field, starts: list[Found], wanted: list[float]) -> tuple[Field, Found | None]:
+def loud_enough(within: Field, starts: list[SearchResult], wanted: list[float]) -> tuple[Field, SearchResult | None]:
     """First start that meets the frequency targets; if only noise prevents it, with a raised noise limit.
 
     A loop of high rejection with a tiny gain is quiet but never settles: its noise is no reference for a balance.
@@ -584,7 +588,7 @@ def loud_enough(within: Field, starts: list[Found], wanted: list[float]) -> tupl
     return louder, _first_kept(louder, [calm, found], wanted)
 
 
-def _first_kept(within: Field, starts: Iterable[Found], wanted: list[float]) -> Found | None:
+def _first_kept(within: Field, starts: Iterable[SearchResult], wanted: list[float]) -> SearchResult | None:
     """First start that meets the frequency targets."""
     for start in starts:
         found, passed = _fit_together(within, start, _all_bounds(within, wanted), _KEEP)
@@ -593,7 +597,7 @@ def _first_kept(within: Field, starts: Iterable[Found], wanted: list[float]) -> 
     return None
 
 
-def _around(found: Found) -> Iterator[Found]:
+def _around(found: SearchResult) -> Iterator[SearchResult]:
     """A point and some around it, which may converge if the point does not."""
     yield found
     for number in range(1, _KICKS // len(set(map(id, found.points))) + 1):
@@ -605,7 +609,7 @@ def _all_bounds(within: Field, frequencies: Iterable[float]) -> list[Bounds]:
     return [replace(_bounds(within.spec, frequency), noise=noise) for frequency, noise in zip(frequencies, allowed, strict=True)]
 
 
-def _together(within: Field, found: Found) -> Found:
+def _together(within: Field, found: SearchResult) -> SearchResult:
     """Optimise all loops at once: the largest common share of their results, and with it the least noise."""
     tried, last = found, np.inf
     for share in _SHARES:
@@ -616,7 +620,7 @@ def _together(within: Field, found: Found) -> Found:
     return tried
 
 
-def _fit_together(within: Field, found: Found, bounds: list[Bounds], effort: Effort) -> tuple[Found, float]:
+def _fit_together(within: Field, found: SearchResult, bounds: list[Bounds], effort: Effort) -> tuple[SearchResult, float]:
     """Fit all loops' parameters at once from the given ones, and return the worst violation of bounds."""
     joint = Joint(within, found, tuple(bounds), effort.quiet)
     start = np.concatenate([found.points[loop] for loop in joint.parts])
@@ -632,7 +636,7 @@ class Joint:
     """Joint problem of all loops: violated bounds and the coupled peak of S. Equal loops share their parameters."""
 
     within: Field
-    found: Found
+    found: SearchResult
     bounds: tuple[Bounds, ...]
     quiet: float
 
@@ -649,7 +653,7 @@ class Joint:
         begun = one_loops(self.within, self.found)
         return {loop: (begun[loop], self.quiet / begun[loop].rms) for loop in self.parts}
 
-    def moved(self, point: Array) -> Found:
+    def moved(self, point: Array) -> SearchResult:
         """Loops at a point."""
         return replace(self.found, points=tuple(point[self.parts[first]] for first in self.within.alike))
 
@@ -672,12 +676,12 @@ class Joint:
             terms += one.misfits(bounds, quiet, (whole[:count, :, loop, loop], own), (following, late))
         return sum_squares(terms, len(point))
 
-    def _responses(self, found: Found, frequencies: Array) -> tuple[Array, Mapping[int, Array]]:
+    def _responses(self, found: SearchResult, frequencies: Array) -> tuple[Array, Mapping[int, Array]]:
         """Responses C (v, f, k) of all loops and, for each different one, d ln C (p, v, f) by its parameters."""
         each = {loop: found.shapes[loop].response(found.points[loop], frequencies) for loop in self.parts}
         return np.stack([each[first][0] for first in self.within.alike], axis=-1), {loop: slopes for loop, (_, slopes) in each.items()}
 
-    def passed(self, found: Found) -> float:
+    def passed(self, found: SearchResult) -> float:
         """Largest relative violation."""
         within = self.within
         whole = coupled_sensitivities(within.plants, found, within.frequencies)
@@ -707,7 +711,7 @@ def _is_stable(whole: Array) -> bool:
     return bool(np.all(np.abs(turned[:, -1] - turned[:, 0] + begun) < 3.0))
 
 
-def one_loops(within: Field, found: Found, whole: Array | None = None) -> list[OneLoop]:
+def one_loops(within: Field, found: SearchResult, whole: Array | None = None) -> list[OneLoop]:
     """Evaluate each loop with the others closed: C g = 1/S_ii - 1, and S_ij/S_ii for disturbances of loop j, independent of C."""
     whole = coupled_sensitivities(within.plants, found, within.frequencies) if whole is None else whole
     slow = coupled_sensitivities(within.slow[:, 1:], found, within.lines[1:])
@@ -790,7 +794,7 @@ def _grid(shape: Shape, places: list[float], first: float) -> Iterator[Array]:
                 yield shape.point(law, notches)
 
 
-def _highest_stable(within: Field, found: Found) -> Found | None:
+def _highest_stable(within: Field, found: SearchResult) -> SearchResult | None:
     """Loops at the highest gains with a common factor, near the peak limit; `None` without any.
 
     Searched from above: gains beyond a mode may be stable where lower ones are not.
@@ -816,7 +820,7 @@ def _bounds(spec: TuningSpec, frequency: float) -> Bounds:
     )
 
 
-def coupled_sensitivities(plants: Array, found: Found, frequencies: Array) -> Array:
+def coupled_sensitivities(plants: Array, found: SearchResult, frequencies: Array) -> Array:
     """Compute S (v, f, k, k) of all loops together."""
     return closed_by(plants, found.responses(frequencies))
 
@@ -848,6 +852,6 @@ def _coupled_peak(within: Field, whole: Array) -> float:
     return max(highest_gain(each)[0] / one.limit for each, one in zip(whole, within.variants, strict=True))
 
 
-def excess(within: Field, found: Found) -> float:
+def excess(within: Field, found: SearchResult) -> float:
     """Compute the largest relative excess over the requirements."""
     return Joint(within, found, tuple(_all_bounds(within, [0.0] * len(within.alike))), 0.0).passed(found)
