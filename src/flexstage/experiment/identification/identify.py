@@ -16,7 +16,7 @@ from flexstage.experiment.identification.diagnosis.adequacy import Reach, few_li
 from flexstage.experiment.identification.diagnosis.data_warnings import Modes, data_warnings
 from flexstage.experiment.identification.diagnosis.driven import Drive, measure_drives
 from flexstage.experiment.identification.diagnosis.lateness import Delay, bends_modes, common_delay, late_channels, take_out_delay
-from flexstage.experiment.identification.diagnosis.peaks import Left, peaks
+from flexstage.experiment.identification.diagnosis.peaks import ResidualResponses, peaks
 from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
 from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.group import ONCE_IN, BandModes, Lost, ModeSearch, fit_group, widen_by_parts
@@ -260,7 +260,7 @@ def _result(
         band=band,
         noise=np.median(known.density[inside], axis=0) * 2.0 / known.rate,
         data_warnings=data_warnings(known, Modes(poles, close, share[order], widening[order]), reach),
-        peaks=peaks(known, Left(lines, rest, poles), refused, lost),
+        peaks=peaks(known, ResidualResponses(lines, rest, poles), refused, lost),
         provenance=f"identified from {known.where}: pLSCF, then maximum likelihood",
     )
 

@@ -90,7 +90,7 @@ class Peak:
 
 
 @dataclass(frozen=True, eq=False)
-class Left:
+class ResidualResponses:
     """Residual responses, `rest` (f, p, m), after modes at `poles` (k,) in Hz, at `lines` (f,) in Hz."""
 
     lines: Array
@@ -98,7 +98,7 @@ class Left:
     poles: Array
 
 
-def peaks(known: Evidence, left: Left, refused: Sequence[Lost], lost: Sequence[Lost]) -> tuple[Peak, ...]:
+def peaks(known: Evidence, left: ResidualResponses, refused: Sequence[Lost], lost: Sequence[Lost]) -> tuple[Peak, ...]:
     """List all peaks that are not modes, by ascending frequency.
 
     Includes removed tones; resonances `refused` for lack of excitation; resonances `lost` because noise is as strong in one of a thousand
@@ -162,7 +162,7 @@ def tone_peaks(tones: Iterable[Tone], resolution: float, outputs: Sequence[Chann
     ]
 
 
-def narrow_peaks(responses: Responses, left: Left) -> list[Peak]:
+def narrow_peaks(responses: Responses, left: ResidualResponses) -> list[Peak]:
     """List prominent single lines of the residual responses.
 
     Each line is compared with a cubic through its neighbours from the 2nd to the 12th on both sides, with the variance of their residual
