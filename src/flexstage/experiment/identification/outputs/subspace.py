@@ -30,7 +30,7 @@ _SINGULAR = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
-class Shaken:
+class AmbientMode:
     """Mode of a stage under floor excitation: `pole` in Hz (rad/s over 2 pi), its `shape` (p,), largest component 1.
 
     `width_deviation` and `deviation` belong to the pole's real and imaginary part, `shape_deviation` (p,) to the shape.
@@ -160,7 +160,7 @@ def _roots(covariances: Array, rows: int) -> tuple[Array, Array]:
     return (vectors / sizes) @ turned, (vectors * sizes) @ turned
 
 
-def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, list[Shaken]]:
+def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, list[AmbientMode]]:
     """Identify the modes of a band, with the stabilisation diagram: H = O Z of increasing order, poles by O(shifted) = O A.
 
     H is weighted with the roots of the future and past covariances, W H V, so that its singular values are canonical
@@ -178,7 +178,7 @@ def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, lis
     return _with_rows(band, longer, highest_damping) if longer > 1.5 * _rows(outputs, np.inf) else (diagram, found)
 
 
-def _with_rows(band: Band, rows: int, highest_damping: float) -> tuple[Stabilisation, list[Shaken]]:
+def _with_rows(band: Band, rows: int, highest_damping: float) -> tuple[Stabilisation, list[AmbientMode]]:
     mean = np.mean(band.covariances, axis=0)
     (weight, inverse), (before, _) = _roots(mean, rows), _roots(np.conj(mean.swapaxes(1, 2)), rows)
     left, values, right = np.linalg.svd(weight @ hankel(mean, rows, _SKIPPED) @ before)
@@ -223,7 +223,7 @@ class _Estimate:
         return np.concatenate([np.real(shape), np.imag(shape)]), np.concatenate([np.real(changes), np.imag(changes)], axis=1)
 
 
-def _perturbed(band: Band, left: Array, right: Array, candidates: Sequence[Candidate]) -> list[Shaken]:
+def _perturbed(band: Band, left: Array, right: Array, candidates: Sequence[Candidate]) -> list[AmbientMode]:
     """Candidates as modes, each at its order of lowest error."""
     rows = len(left) // band.covariances.shape[2]
     blocks = [(hankel(each, rows, _SKIPPED) @ right, hankel(each, rows, _SKIPPED + 1) @ right) for each in band.covariances]
@@ -257,14 +257,14 @@ def _of_order(band: Band, left: Array, blocks: Sequence[tuple[Array, Array]], ca
     return found
 
 
-def _select_order(track: Sequence[_Estimate]) -> Shaken:
+def _select_order(track: Sequence[_Estimate]) -> AmbientMode:
     """Mode at the order, ascending, of lowest variance plus squared bias, with the bias from higher orders."""
     chosen = int(np.argmin([np.sum(_risk(index, [each.poles() for each in track])[0]) for index in range(len(track))]))
     width, deviation = np.sqrt(np.sum(_risk(chosen, [each.poles() for each in track]), axis=0))
     best = track[chosen]
     largest = int(np.argmax(np.abs(best.shape)))
     parts = np.sum(_risk(chosen, [each.shapes(largest) for each in track]), axis=0).reshape(2, -1)
-    return Shaken(best.pole, best.shape / best.shape[largest], float(width), float(deviation), np.sqrt(np.mean(parts, axis=0)))
+    return AmbientMode(best.pole, best.shape / best.shape[largest], float(width), float(deviation), np.sqrt(np.mean(parts, axis=0)))
 
 
 def _risk(index: int, track: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:

@@ -13,7 +13,7 @@ from flexstage.experiment.identification.cluster import vector_assurance
 from flexstage.experiment.identification.diagnosis.peaks import Doubt, Peak, tone_peaks
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, close_groups, identify
-from flexstage.experiment.identification.outputs.subspace import BLOCKS, Shaken, band_covariances, searched_from, shaken_modes
+from flexstage.experiment.identification.outputs.subspace import BLOCKS, AmbientMode, band_covariances, searched_from, shaken_modes
 from flexstage.experiment.identification.outputs.tones import remove_tones
 from flexstage.experiment.records.record import Channel, Record, Responses, Role
 
@@ -69,16 +69,16 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     return replace(found, stabilisation=tuple(each for each, _ in every), peaks=tuple(sorted(peaks, key=lambda each: each.frequency)))
 
 
-def _without_doubles(modes: Iterable[Shaken]) -> list[Shaken]:
+def _without_doubles(modes: Iterable[AmbientMode]) -> list[AmbientMode]:
     """Modes by ascending frequency; of duplicates, from two bands or one, the more certain."""
-    kept: list[Shaken] = []
+    kept: list[AmbientMode] = []
     for mode in sorted(modes, key=_certainty, reverse=True):
         if not any(_is_double(mode, other) for other in kept):
             kept.append(mode)
     return sorted(kept, key=lambda each: abs(each.pole))
 
 
-def _is_double(first: Shaken, second: Shaken) -> bool:
+def _is_double(first: AmbientMode, second: AmbientMode) -> bool:
     near = abs(first.pole - second.pole) < max(-first.pole.real, -second.pole.real)
     return near and vector_assurance(first.shape, second.shape) > _SAME
 
@@ -135,11 +135,11 @@ def _largest(record: Record) -> int:
     return int(np.argmax(np.sum((values / np.where(size > 0.0, size, 1.0)) ** 2, axis=1)))
 
 
-def _certainty(mode: Shaken) -> float:
+def _certainty(mode: AmbientMode) -> float:
     return -mode.pole.real / max(mode.width_deviation, 1e-300)
 
 
-def _result(record: Record, modes: Sequence[Shaken], density: Responses, band: tuple[float, float]) -> Identified:
+def _result(record: Record, modes: Sequence[AmbientMode], density: Responses, band: tuple[float, float]) -> Identified:
     outputs = record.outputs
     poles = np.array([mode.pole for mode in modes], dtype=complex)
     sizes = np.abs(poles)
@@ -168,11 +168,11 @@ def _result(record: Record, modes: Sequence[Shaken], density: Responses, band: t
     )
 
 
-def _none(modes: Sequence[Shaken]) -> list[str]:
+def _none(modes: Sequence[AmbientMode]) -> list[str]:
     return [] if len(modes) else ["no mode exceeds the noise of floor and gauges: record longer, or excite more."]
 
 
-def _peak(mode: Shaken, doubt: Doubt, outputs: Sequence[Channel], resolution: float) -> Peak:
+def _peak(mode: AmbientMode, doubt: Doubt, outputs: Sequence[Channel], resolution: float) -> Peak:
     largest = np.abs(mode.shape) > 0.5
     named = tuple(channel.name for channel, is_large in zip(outputs, largest, strict=True) if is_large)
     chance = float(scipy.special.erfc(_certainty(mode) / np.sqrt(2.0)))
