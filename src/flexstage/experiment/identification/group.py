@@ -26,7 +26,7 @@ _MOST_MODES = 24
 
 
 @dataclass(frozen=True, eq=False)
-class Lost:
+class RejectedResonance:
     """Rejected resonance: its `pole` in Hz, `shape` (p,), and the probability (`chance`) of noise of that strength."""
 
     pole: complex
@@ -40,7 +40,7 @@ class ModeSearch:
 
     group: Extent
     highest_damping: float
-    lost: list[Lost]
+    lost: list[RejectedResonance]
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,7 +179,9 @@ def _prune(band: Band, found: Fit, hunt: ModeSearch) -> tuple[Fit, Array]:
         worst, strength = _least_significant(band, found, hunt)
         if worst is None:
             return found, strength
-        hunt.lost.append(Lost(complex(found.modal.poles[worst]), found.modal.shapes[:, worst], _chance(found.modal, strength[worst])))
+        hunt.lost.append(
+            RejectedResonance(complex(found.modal.poles[worst]), found.modal.shapes[:, worst], _chance(found.modal, strength[worst]))
+        )
         found = fit(band, found.modal.without(worst))
     return found, np.zeros(0)
 

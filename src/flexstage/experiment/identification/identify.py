@@ -19,7 +19,7 @@ from flexstage.experiment.identification.diagnosis.lateness import Delay, bends_
 from flexstage.experiment.identification.diagnosis.peaks import ResidualResponses, peaks
 from flexstage.experiment.identification.evidence import Evidence, choose_segments, evidence, whole_segment
 from flexstage.experiment.identification.excitation import Excitation
-from flexstage.experiment.identification.group import ONCE_IN, BandModes, Lost, ModeSearch, fit_group, widen_by_parts
+from flexstage.experiment.identification.group import ONCE_IN, BandModes, ModeSearch, RejectedResonance, fit_group, widen_by_parts
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.likelihood import Modal
 from flexstage.experiment.identification.lscf import lscf
@@ -105,7 +105,7 @@ def _without_delay(known: Evidence, search: Search, found: Identified) -> Identi
 def _identify_once(known: Evidence, search: Search) -> Identified:
     band = _band(known, search)
     diagrams, candidates, reach = _candidates(known, band, search)
-    lost: list[Lost] = []
+    lost: list[RejectedResonance] = []
     fitted = _fit_groups(known, candidates, band, search.highest_damping, lost)
     drives = _measure_drives(known, fitted)
     if len(fitted) > 1 and any(np.any(each.elsewhere > _UNRECORDED) for each in drives):
@@ -159,7 +159,7 @@ def _fit_groups(
     candidates: tuple[Candidate, ...],
     band: tuple[float, float],
     highest_damping: float,
-    lost: list[Lost],
+    lost: list[RejectedResonance],
     *,
     together: float = TOGETHER,
 ) -> list[BandModes]:
@@ -203,13 +203,13 @@ def _measure_drives(known: Evidence, fitted: list[BandModes]) -> list[Drive]:
     return measure_drives([(each.band, each.modal) for each in fitted], known.lines(1))
 
 
-def _keep_driven(fitted: list[BandModes], drives: list[Drive]) -> tuple[list[BandModes], list[Lost], Array]:
+def _keep_driven(fitted: list[BandModes], drives: list[Drive]) -> tuple[list[BandModes], list[RejectedResonance], Array]:
     """Modes excited by recorded inputs, other resonances, and the unexplained share of each mode's motion.
 
     Rejected resonances stay in the fit, because they represent motion of other modes.
     """
     refused = [
-        Lost(complex(each.modal.poles[mode]), each.modal.shapes[:, mode], float(drive.chance[mode]))
+        RejectedResonance(complex(each.modal.poles[mode]), each.modal.shapes[:, mode], float(drive.chance[mode]))
         for each, drive in zip(fitted, drives, strict=True)
         for mode in np.flatnonzero(drive.chance > ONCE_IN)
     ]
@@ -225,8 +225,8 @@ def _result(
     band: tuple[float, float],
     reach: Reach,
     diagrams: tuple[Stabilisation, ...],
-    refused: list[Lost],
-    lost: list[Lost],
+    refused: list[RejectedResonance],
+    lost: list[RejectedResonance],
 ) -> Identified:
     inputs, outputs = len(known.input_scale), len(known.output_scale)
     modal = _join([part.modal for part in found], inputs, outputs)

@@ -14,7 +14,7 @@ from flexstage.base.number import Array
 from flexstage.base.record import VIEW, Heading, Layout
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.experiment.identification.evidence import Evidence, is_even
-from flexstage.experiment.identification.group import Lost
+from flexstage.experiment.identification.group import RejectedResonance
 from flexstage.experiment.identification.outputs.tones import Tone
 from flexstage.experiment.records.record import Channel, Responses
 
@@ -98,7 +98,9 @@ class ResidualResponses:
     poles: Array
 
 
-def peaks(known: Evidence, left: ResidualResponses, refused: Sequence[Lost], lost: Sequence[Lost]) -> tuple[Peak, ...]:
+def peaks(
+    known: Evidence, left: ResidualResponses, refused: Sequence[RejectedResonance], lost: Sequence[RejectedResonance]
+) -> tuple[Peak, ...]:
     """List all peaks that are not modes, by ascending frequency.
 
     Includes removed tones; resonances `refused` for lack of excitation; resonances `lost` because noise is as strong in one of a thousand
