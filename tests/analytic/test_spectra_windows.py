@@ -14,7 +14,7 @@ from flexstage.experiment.identification.lscf import lscf
 from flexstage.experiment.records.record import Channel, Responses, Role, in_memory
 from flexstage.experiment.spectral.cross_spectra import Segments, Window, independent_averages, spectra
 from flexstage.experiment.spectral.lines import edges, legendre_coefficients, nodes
-from flexstage.experiment.spectral.smear import Smear
+from flexstage.experiment.spectral.smear import WindowLeakage
 from tests.models.identification_study import assurance, bound
 from tests.models.synthetic_records import WIDE, Truth, record, truth
 
@@ -65,10 +65,10 @@ def test_smeared_resonance_is_the_transform_of_the_windowed_impulse_response(win
     weight = np.full(size, 2.0 * np.pi / size)
     weight[0] *= 0.5
     kernel = np.exp(2j * np.pi * np.outer(-1j * pole - lines, time))
-    smeared, slope = Smear(window, 1.0).functions(lines, np.array([pole]))
+    smeared, slope = WindowLeakage(window, 1.0).functions(lines, np.array([pole]))
     np.testing.assert_allclose(smeared[:, 0], kernel @ (weight * own), rtol=2e-5, atol=2e-5 * np.max(np.abs(smeared)))
     small = 1e-5
-    ahead, behind = (Smear(window, 1.0).functions(lines, np.array([pole + step]))[0] for step in (small, -small))
+    ahead, behind = (WindowLeakage(window, 1.0).functions(lines, np.array([pole + step]))[0] for step in (small, -small))
     np.testing.assert_allclose(slope, (ahead - behind) / (2.0 * small), rtol=1e-5, atol=1e-6 * np.max(np.abs(slope)))
 
 
@@ -77,7 +77,7 @@ def test_windows_overstate_damping():
     found = []
     for share in (5.0, 8.0, 16.0):
         lines = np.linspace(95.0, 105.0, 20_001)
-        peak = np.abs(Smear(Window.HANN, share / 2.0).functions(lines, np.array([-1.0 + 100j]))[0][:, 0]) ** 2
+        peak = np.abs(WindowLeakage(Window.HANN, share / 2.0).functions(lines, np.array([-1.0 + 100j]))[0][:, 0]) ** 2
         found.append(np.ptp(lines[peak > 0.5 * np.max(peak)]) / 2.0 - 1.0)
     np.testing.assert_allclose(found, [0.097, 0.04, 0.01], atol=0.003)
 
@@ -136,7 +136,7 @@ def test_an_analysers_window_is_divided_out():
     """One resonance five lines wide: as it stands its damping would come out 5 % too large."""
     lines = np.arange(80.0, 120.0, 0.4)
     pole = 100.0 * (-0.01 + 1j)
-    values = Smear(Window.HANN, 2.5).functions(lines, np.array([pole]))[0][:, :, None]
+    values = WindowLeakage(Window.HANN, 2.5).functions(lines, np.array([pole]))[0][:, :, None]
     noise = np.random.default_rng(1).standard_normal((2, *values.shape))
     values = values + 1e-3 * np.max(np.abs(values)) * (noise[0] + 1j * noise[1])
     channels = ((Channel("y", "um"),), (Channel("u", "V"),))

@@ -17,7 +17,7 @@ from flexstage.experiment.records.record import Channel, Record, Responses, risi
 from flexstage.experiment.spectral.cross_spectra import Segments, Spectra, Window, pool, spectra
 from flexstage.experiment.spectral.growth import noise_growth
 from flexstage.experiment.spectral.lines import Cells, Lines, block_count, record_lines
-from flexstage.experiment.spectral.smear import SMEARING, Smear
+from flexstage.experiment.spectral.smear import SMEARING, WindowLeakage
 from flexstage.experiment.spectral.transfer import h1, multiple_coherence, noise_density
 
 _Result = TypeVar("_Result")
@@ -56,7 +56,7 @@ class Evidence:
     inflation: float = 1.0
     coherence: Array | None = None
     averages: float = 0.0
-    smear: Smear | None = None
+    smear: WindowLeakage | None = None
     rounding: Array | float = 0.0
     resolution: float = 0.0
     tones: tuple[Tone, ...] = ()
@@ -265,7 +265,7 @@ def _of_responses(known: Responses) -> Evidence:
         unstated=not known.window,
         inflation=1.0 if window is None else _INFLATION[window],
         averages=float(known.averages or 0),
-        smear=Smear(window, 1.0 / step) if even and window in SMEARING else None,
+        smear=WindowLeakage(window, 1.0 / step) if even and window in SMEARING else None,
         rounding=_rounding(known.outputs, size),
         resolution=step,
         shaped=_shape(known, output_scale),

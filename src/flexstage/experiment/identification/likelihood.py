@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array
 from flexstage.experiment.spectral.lines import Cells, legendre_coefficients, nodes
-from flexstage.experiment.spectral.smear import Smear
+from flexstage.experiment.spectral.smear import WindowLeakage
 
 _CHUNK = 4_000_000
 _FREE, _SMALL = 1e-9, 1e-4
@@ -49,7 +49,7 @@ class Band:
     cells: Cells
     variance: Array
     background: Array
-    smear: Smear | None = None
+    smear: WindowLeakage | None = None
     shape: Array | float = 1.0
     rounding: Array | float = 0.0
     inputs: int | None = None

@@ -17,7 +17,7 @@ SMEARING = (Window.BOXCAR, Window.HANN)
 
 
 @dataclass(frozen=True)
-class Smear:
+class WindowLeakage:
     """Segments of `seconds` under a window.
 
     For white noise the estimate's impulse response is the true one times the window's autocorrelation r(t/T). The fit accounts for it by
