@@ -35,7 +35,7 @@ from flexstage.control.tuning.search import (
 from flexstage.control.tuning.spec import Judgement, Tuning, TuningSpec, spec_findings
 from flexstage.control.tuning.tune import tune
 from flexstage.control.tuning.view import View, view
-from flexstage.control.tuning.weigh import Regulated, merit, weigh, worth
+from flexstage.control.tuning.weigh import RegulatorSpace, merit, weigh, worth
 
 _TIGHTER = (1.0, 0.97, 0.93)
 """Target peaks of S in the rounds, above 1, as shares of the limit: peaks may occur between frequencies."""
@@ -201,7 +201,7 @@ def _weighed(within: Field, known: LQG) -> _Candidate | None:
     against = outcome(within, known.system(within.seen.step))
     for tighter in _tighter(spec, (_TIGHTER[0], _TIGHTER[-1])):
         tried = replace(within, spec=tighter, variants=variants(tighter))
-        regulated = Regulated(tried, spec.expected or Disturbances(_EXPECTED, {}), spec.feedforward)
+        regulated = RegulatorSpace(tried, spec.expected or Disturbances(_EXPECTED, {}), spec.feedforward)
         controller = weigh(regulated, against, known, within.fast)
         if (kept := _candidate(within, controller, _judge(within, controller))) is not None:
             return kept

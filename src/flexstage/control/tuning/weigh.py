@@ -40,7 +40,7 @@ _UNSTABLE = 1e3
 
 
 @dataclass(frozen=True, eq=False)
-class Regulated:
+class RegulatorSpace:
     """Search space: points are logarithms of the loops' bandwidths [Hz], the strokes' noise [m/Hz^0.5], the weights of the pose.
 
     Equal loops share their parameters.
@@ -80,7 +80,7 @@ class Regulated:
         return None if max(growths) >= 0.0 else outcome(self.within, system)
 
 
-def weigh(searched: Regulated, against: Outcome, begun: LQG, bandwidth: float) -> LQG:
+def weigh(searched: RegulatorSpace, against: Outcome, begun: LQG, bandwidth: float) -> LQG:
     """Optimise the weights relative to a known outcome: maximise the smallest improvement of the objective's quantities.
 
     Downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308; its coefficients by dimension after Gao & Han, Computational
@@ -109,7 +109,7 @@ def weigh(searched: Regulated, against: Outcome, begun: LQG, bandwidth: float) -
     return searched.controller(start)
 
 
-def _grid_around(searched: Regulated, begun: LQG, bandwidth: float) -> Iterator[Array]:
+def _grid_around(searched: RegulatorSpace, begun: LQG, bandwidth: float) -> Iterator[Array]:
     """Weights of a known controller with a tiny pose weight, then those of slower ones, all scaled by the roll-off."""
     seen, firsts = searched.within.seen, list(searched.firsts)
     weights, expected = begun.weights or Weights(bandwidth), begun.expected or searched.expected
@@ -124,7 +124,7 @@ def _grid_around(searched: Regulated, begun: LQG, bandwidth: float) -> Iterator[
 
 
 def _grid(
-    searched: Regulated, first: float, shares: tuple[float, ...], trusts: tuple[float, ...], poses: tuple[float, ...]
+    searched: RegulatorSpace, first: float, shares: tuple[float, ...], trusts: tuple[float, ...], poses: tuple[float, ...]
 ) -> Iterator[Array]:
     count = len(searched.firsts)
     for share in shares:
@@ -133,7 +133,7 @@ def _grid(
                 yield np.log([share * first] * count + [trust * searched.expected.strokes] + [pose] * count)
 
 
-def _cost(searched: Regulated, against: Outcome, point: Array) -> float:
+def _cost(searched: RegulatorSpace, against: Outcome, point: Array) -> float:
     found = searched.outcome(point)
     if found is None:
         return _UNSTABLE
