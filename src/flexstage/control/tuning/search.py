@@ -118,7 +118,7 @@ _CLOSE = np.linspace(-0.06, 0.06, 25)
 
 
 @dataclass(frozen=True)
-class Effort:
+class SearchSettings:
     """Search parameters: weight of noise `quiet`, maximum steps, and half sum of squares that is `enough`."""
 
     quiet: float
@@ -126,7 +126,7 @@ class Effort:
     enough: float = 0.0
 
 
-_CALM, _KEEP, _LAST = Effort(1.0, 60), Effort(0.05, 60, 0.005), Effort(0.3, 20)
+_CALM, _KEEP, _LAST = SearchSettings(1.0, 60), SearchSettings(0.05, 60, 0.005), SearchSettings(0.3, 20)
 """Three searches: to make starts quiet; to meet bounds, with noise to rank equals, until no bound is violated; and for all loops at
 once."""
 
@@ -620,7 +620,7 @@ def _together(within: Field, found: SearchResult) -> SearchResult:
     return tried
 
 
-def _fit_together(within: Field, found: SearchResult, bounds: list[Bounds], effort: Effort) -> tuple[SearchResult, float]:
+def _fit_together(within: Field, found: SearchResult, bounds: list[Bounds], effort: SearchSettings) -> tuple[SearchResult, float]:
     """Fit all loops' parameters at once from the given ones, and return the worst violation of bounds."""
     joint = Joint(within, found, tuple(bounds), effort.quiet)
     start = np.concatenate([found.points[loop] for loop in joint.parts])
