@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from flexstage.analysis.assessment.requirements import Requirement, Sense, requirements
-from flexstage.studies.sweeps.definition import Asked, Study
+from flexstage.studies.sweeps.definition import RequestedMeasure, Study
 
 
 class Aim(Enum):
@@ -22,7 +22,7 @@ class Aim(Enum):
 
 
 @dataclass(frozen=True)
-class Objective(Asked):
+class Objective(RequestedMeasure):
     """A response by name, its measure, and its direction."""
 
     direction: Aim

@@ -25,7 +25,7 @@ from flexstage.studies.sweeps.variable import Variable, apply_columns
 
 
 @dataclass(frozen=True)
-class Asked:
+class RequestedMeasure:
     """A requested measure of a study, by its name in the file."""
 
     name: str

@@ -14,7 +14,7 @@ from flexstage.base.labelled import NOISE
 from flexstage.base.notebook import InNotebook
 from flexstage.base.record import INNER, VIEW, Called, Heading, Layout, UnitIn
 from flexstage.base.units.quantity import RATIO
-from flexstage.studies.sweeps.definition import Asked, Study
+from flexstage.studies.sweeps.definition import RequestedMeasure, Study
 from flexstage.studies.sweeps.effects import Effects
 from flexstage.studies.sweeps.execution.store import Failure, Results
 from flexstage.studies.sweeps.plan import Sampling
@@ -39,7 +39,7 @@ class PairShare:
 
 
 @dataclass(frozen=True)
-class ResponseEffects(Asked):
+class ResponseEffects(RequestedMeasure):
     """A response over the designs with values [SI], and the effects of variables.
 
     By variable the first-order and total shares of its variance; the latter are absent unless the plan is Saltelli's. The largest

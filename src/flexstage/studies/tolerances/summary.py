@@ -14,7 +14,7 @@ from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Called, Graded, Heading, Layout, UnitIn
 from flexstage.base.units.quantity import RATIO, SHARE
 from flexstage.spatial.frame import COMPONENTS
-from flexstage.studies.sweeps.definition import Asked
+from flexstage.studies.sweeps.definition import RequestedMeasure
 from flexstage.studies.sweeps.execution.store import Results
 from flexstage.studies.tolerances.crosstalk import HELD, OPEN
 from flexstage.studies.tolerances.definition import Tolerance
@@ -48,7 +48,7 @@ class Spread:
 
 
 @dataclass(frozen=True)
-class ResponseSpread(Asked):
+class ResponseSpread(RequestedMeasure):
     """A response over the samples with values [SI].
 
     Its `percentiles`; the deviation by first-order propagation, and its validity (`linear`). By entry of `[scatter]` the shares
