@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from flexstage.studies.optimisation.problem import Aim, Objective, OptimisationProblem
+from flexstage.studies.optimisation.problem import Objective, ObjectiveDirection, OptimisationProblem
 from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.file import loads_study
 
@@ -23,4 +23,4 @@ def leaf_study() -> tuple[Study, OptimisationProblem]:
     'f1'
     """
     study = loads_study(_TEXT)
-    return study, OptimisationProblem((Objective("f1", study.responses["f1"], Aim.MAXIMISE),), starts=2)
+    return study, OptimisationProblem((Objective("f1", study.responses["f1"], ObjectiveDirection.MAXIMISE),), starts=2)

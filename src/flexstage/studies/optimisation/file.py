@@ -6,7 +6,7 @@ from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, require, suggest_nearest
 from flexstage.mechanism.store.lines import with_lines
 from flexstage.studies.form import OptimiseTable, study_file
-from flexstage.studies.optimisation.problem import Aim, Objective, OptimisationProblem
+from flexstage.studies.optimisation.problem import Objective, ObjectiveDirection, OptimisationProblem
 from flexstage.studies.sweeps.definition import Study
 
 _MOST = 2
@@ -29,7 +29,7 @@ def load_optimisation(study: Study, where: str = "text") -> OptimisationProblem:
 
 def _objectives(table: OptimiseTable, study: Study, findings: list[Finding]) -> tuple[Objective, ...]:
     found: list[Objective] = []
-    for aim, names in ((Aim.MAXIMISE, table.maximise), (Aim.MINIMISE, table.minimise)):
+    for aim, names in ((ObjectiveDirection.MAXIMISE, table.maximise), (ObjectiveDirection.MINIMISE, table.minimise)):
         for name in names or ():
             at = f"optimise.{aim.value}"
             if name not in study.responses:

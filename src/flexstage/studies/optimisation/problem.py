@@ -9,7 +9,7 @@ from flexstage.analysis.assessment.requirements import Requirement, Sense, requi
 from flexstage.studies.sweeps.definition import RequestedMeasure, Study
 
 
-class Aim(Enum):
+class ObjectiveDirection(Enum):
     """Direction of an objective."""
 
     MAXIMISE = "maximise"
@@ -18,14 +18,14 @@ class Aim(Enum):
     @property
     def sense(self) -> Sense:
         """Better side of a limit."""
-        return Sense.AT_LEAST if self is Aim.MAXIMISE else Sense.AT_MOST
+        return Sense.AT_LEAST if self is ObjectiveDirection.MAXIMISE else Sense.AT_MOST
 
 
 @dataclass(frozen=True)
 class Objective(RequestedMeasure):
     """A response by name, its measure, and its direction."""
 
-    direction: Aim
+    direction: ObjectiveDirection
 
 
 @dataclass(frozen=True)
