@@ -39,7 +39,7 @@ from flexstage.show.viewer.motions import (
     mode_motions,
     stroke_motions,
 )
-from flexstage.show.viewer.parts import Describer, Thing
+from flexstage.show.viewer.parts import Describer, DrawnEntry
 
 FORMAT = 1
 _Found = TypeVar("_Found")
@@ -63,7 +63,7 @@ class StageData:
     centre: Array
     bodies: tuple[str, ...]
     bones: Skeleton
-    things: tuple[Thing, ...]
+    things: tuple[DrawnEntry, ...]
     labels: tuple[Label, ...]
     mesh: Mesh
     motions: tuple[Motion, ...]
@@ -209,7 +209,7 @@ def _attempt(what: str, work: Callable[[], _Found], notes: list[str]) -> _Found 
         return None
 
 
-def _part(thing: Thing) -> dict[str, Any]:
+def _part(thing: DrawnEntry) -> dict[str, Any]:
     said: dict[str, Any] = {"name": thing.name, "kind": thing.kind.value, "what": thing.what, "address": thing.address}
     if thing.unit:
         said["unit"] = thing.unit

@@ -22,7 +22,7 @@ Fact = tuple[str, str]
 
 
 @dataclass(frozen=True)
-class Thing:
+class DrawnEntry:
     """A drawn entry: `what` it is, its `unit`, its `address` in a design file, its `line` there.
 
     `facts` are pairs of a name and a value with its unit.
@@ -51,12 +51,12 @@ class Describer:
         self._links = {**assembly.links, **assembly.superelements}
         self._facts: dict[int, tuple[Fact, ...]] = {}
 
-    def thing(self, name: str, kind: Kind, first: int, second: int) -> Thing:
+    def thing(self, name: str, kind: Kind, first: int, second: int) -> DrawnEntry:
         """The entry of that name in scene and description, and the numbers of the bodies that it joins."""
         what, address, facts = self._description(name)
         unit = name.rpartition("/")[0]
         line = line_of(address, self._lines) if address else None
-        return Thing(name, kind, (first, second), what, unit if unit in self._copies else "", address, line, facts)
+        return DrawnEntry(name, kind, (first, second), what, unit if unit in self._copies else "", address, line, facts)
 
     def _description(self, name: str) -> tuple[str, str, tuple[Fact, ...]]:
         """Its kind, address and facts."""

@@ -14,7 +14,7 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.scene.skin import Kind
 from flexstage.show.viewer.data import StageData, stage_data
 from flexstage.show.viewer.motions import Motion
-from flexstage.show.viewer.parts import Thing
+from flexstage.show.viewer.parts import DrawnEntry
 
 if TYPE_CHECKING:
     from flexstage.solid.exchange.gltf import Surface
@@ -68,7 +68,7 @@ def _surfaces(data: StageData, motions: Sequence[Motion]) -> Iterator[tuple[str,
             yield name, Surface(mesh.points[used], corners.reshape(-1, 3), shifts[:, used], name in data.bodies)
 
 
-def _owner(data: StageData, thing: Thing) -> str:
+def _owner(data: StageData, thing: DrawnEntry) -> str:
     """The body of a drawn entry, else the entry's own name."""
     first, second = thing.bodies
     return data.bodies[first] if first == second and thing.kind in _RIGID else thing.name
