@@ -32,7 +32,15 @@ from flexstage.solid.fea.meshing.fineness import WARPS
 from flexstage.solid.fea.solver.casing import casing, end_face_twist
 from flexstage.solid.fea.solver.component import Component, Interface, Joint, groups, is_elastic
 from flexstage.solid.fea.solver.superelement import Superelement
-from flexstage.solid.fea.solver.ties import Tie, in_words, inner_coordinates, link_tie, stated_links, stated_of, superelement_tie
+from flexstage.solid.fea.solver.ties import (
+    ShapelessContribution,
+    in_words,
+    inner_coordinates,
+    link_tie,
+    stated_links,
+    stated_of,
+    superelement_tie,
+)
 from flexstage.spatial.frame import COMPONENTS, Frame, rigid_inertia, spatial_rotation, transport, twist_transform
 
 _SINGULAR = 1e-13
@@ -79,7 +87,7 @@ class _Model:
         return twist_transform(frame, point) @ twist
 
     @cached_property
-    def ties(self) -> dict[str, Tie]:
+    def ties(self) -> dict[str, ShapelessContribution]:
         """The parts without a shape, links before superelements."""
         links = {name: (link, stated_of(link)) for name, link in self.assembly.links.items()}
         found = {

@@ -34,7 +34,7 @@ class End:
 
 
 @dataclass(frozen=True, eq=False)
-class Tie:
+class ShapelessContribution:
     """Contribution of a part without a shape: stiffness over its `strain`, `inertia` over the motion of its ends and inner coordinates.
 
     `carried` (r, 6) is that motion when everything moves rigidly about the stage's origin. `passed` (w, s) maps the forces (s,) of its
@@ -89,7 +89,7 @@ Twist = Callable[[str, str, Frame], Array]
 """The twist (6, N) of a tie's end, by the end's name and its body, at a frame's origin in its axes."""
 
 
-def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float) -> Tie:
+def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float) -> ShapelessContribution:
     """The tie of a link of two bodies.
 
     >>> spring = Stated(np.eye(6), np.zeros((12, 12)))
@@ -101,7 +101,7 @@ def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float)
     """
     first, second = (twist(f"{link.name}:{body}", body, link.frame) for body in link.joins)
     carry = twist_transform(link.frame, np.zeros(3))
-    return Tie(
+    return ShapelessContribution(
         strain=Contribution(second - first, np.real(stated.stiffness), loss_factor),
         inertia=Contribution(np.vstack([first, second]), np.real(stated.mass)),
         carried=np.vstack([carry, carry]),
@@ -110,7 +110,7 @@ def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float)
     )
 
 
-def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) -> Tie:
+def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) -> ShapelessContribution:
     """The tie of a superelement: the twists of its ports against the body of the first, and its modes, rows `inner` (m, N)."""
     found = _condensed(element)
     names = [f"{element.name}.{name}:{port.body}" for name, port in element.ports.items()]
@@ -122,7 +122,7 @@ def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) ->
     relative = [own - _carry(ports[0].frame, port.frame) @ moved[0] for own, port in zip(moved[1:], ports[1:], strict=True)]
     loss = element.part.loss_factor
     carried = [twist_transform(port.frame, np.zeros(3)) for port in ports]
-    return Tie(
+    return ShapelessContribution(
         strain=Contribution(np.vstack([*relative, inner]), law, 0.0 if loss is None else float(np.real(loss))),
         inertia=Contribution(np.vstack([*moved, inner]), found.inertia),
         carried=np.vstack([*carried, np.zeros((modes, 6))]),
