@@ -121,13 +121,13 @@ def hdf(path: Path) -> Hdf:
 
 
 @dataclass(frozen=True)
-class Opaque:
+class MatlabObject:
     """Object of a class in a MAT file, readable only by MATLAB."""
 
     kind: str
 
 
-def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | Opaque]]:
+def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | MatlabObject]]:
     """Read arrays, texts and objects of a MAT file of version 4 or 5; structures by path (`test.u`). Raises `DesignError`.
 
     >>> import scipy.io, tempfile
@@ -389,16 +389,16 @@ def _some_texts(path: Path, name: str, column: str) -> list[str]:
     return _texts(values[column] if column else values)
 
 
-def _mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | Opaque]]:
+def _mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | MatlabObject]]:
     content = scipy.io.loadmat(path, appendmat=False)
     flat = [each for name, value in content.items() if not name.startswith("__") for each in _flatten(name, value)]
-    return [(name, value if isinstance(value, (tuple, Opaque)) else _numbers(value)) for name, value in flat]
+    return [(name, value if isinstance(value, (tuple, MatlabObject)) else _numbers(value)) for name, value in flat]
 
 
-def _opaque(name: str, value: Any) -> tuple[str, Opaque]:
+def _opaque(name: str, value: Any) -> tuple[str, MatlabObject]:
     """An object by its name (stored within it for a variable), and its class."""
     inner, _, kind = (bytes(value.ravel()[0][key]).decode("latin-1") if key in value.dtype.names else "" for key in ("s0", "s1", "s2"))
-    return inner if name == "None" and inner else name, Opaque(kind)
+    return inner if name == "None" and inner else name, MatlabObject(kind)
 
 
 def _flatten(name: str, value: Any) -> Iterator[tuple[str, Any]]:

@@ -12,7 +12,7 @@ import scipy
 
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
-from flexstage.base.storage.files import Hdf, HdfArray, Opaque, hdf, mat
+from flexstage.base.storage.files import Hdf, HdfArray, MatlabObject, hdf, mat
 from flexstage.base.storage.store import atomic_write
 from flexstage.experiment.formats.arrays import Contents, Variable, describe, held_array, read_arrays, response_arrays
 from flexstage.experiment.formats.format import Format
@@ -52,17 +52,17 @@ def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
         start = stream.read(_HEAD + 8)
     found = list(_version_73(path) if start.startswith(b"MATLAB 7.3") or is_hdf(start[_HEAD:], "") else _version_5(path))
     said = {name: value for name, value in found if isinstance(value, tuple)}
-    objects = {name: value.kind for name, value in found if isinstance(value, Opaque)}
-    arrays = tuple(value for _, value in found if not isinstance(value, (tuple, Opaque)))
+    objects = {name: value.kind for name, value in found if isinstance(value, MatlabObject)}
+    arrays = tuple(value for _, value in found if not isinstance(value, (tuple, MatlabObject)))
     return read_arrays(Contents(str(path), arrays, said, objects), options)
 
 
-def _version_5(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | Opaque]]:
+def _version_5(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | MatlabObject]]:
     for name, value in mat(path):
-        yield name, value if isinstance(value, (tuple, Opaque)) else held_array(name, value)
+        yield name, value if isinstance(value, (tuple, MatlabObject)) else held_array(name, value)
 
 
-def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | Opaque]]:
+def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | MatlabObject]]:
     """Arrays and texts of MATLAB's HDF5 files: reversed axes, texts as numbers, cells as references."""
     file = hdf(path)
     for array in file.arrays.values():
@@ -70,7 +70,7 @@ def _version_73(path: Path) -> Iterator[tuple[str, Variable | tuple[str, ...] | 
         if array.name.startswith(_REFERENCES):
             continue
         if "MATLAB_object_decode" in array.attributes:
-            yield name, Opaque(str(array.attributes.get("MATLAB_class", "")))
+            yield name, MatlabObject(str(array.attributes.get("MATLAB_class", "")))
         elif array.kind == "r":
             yield name, tuple(" ".join(_characters(file, file.arrays[each])) for each in array.references if each in file.arrays)
         elif array.attributes.get("MATLAB_class") == "char":
