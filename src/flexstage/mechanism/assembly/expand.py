@@ -286,10 +286,10 @@ def lay_out(mechanism: Mechanism) -> Assembly:
     >>> len(lay_out(double_triangle()).bodies)
     19
     """
-    return _assembly(Same(mechanism))
+    return _assembly(IdentityKey(mechanism))
 
 
-class Same:
+class IdentityKey:
     """Cache key of a description by identity, cheaper than a digest."""
 
     def __init__(self, mechanism: Mechanism) -> None:
@@ -299,11 +299,11 @@ class Same:
         return id(self.mechanism)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Same) and self.mechanism is other.mechanism
+        return isinstance(other, IdentityKey) and self.mechanism is other.mechanism
 
 
 @SESSION.keep(2)
-def _assembly(key: Same) -> Assembly:
+def _assembly(key: IdentityKey) -> Assembly:
     """The assembly, cached by description."""
     mechanism = key.mechanism
     require([*place_findings(mechanism), *unknown_names(mechanism), *compound_findings(mechanism)])
