@@ -25,7 +25,7 @@ KEPT = "-drawn"
 
 
 @dataclass(frozen=True, eq=False)
-class StandIn:
+class ReplacementPart:
     """A `compliance_matrix` part that replaces the drawn part named in its `replaces`, at the `links` (drawn addresses)."""
 
     given: ComplianceMatrix
@@ -41,7 +41,7 @@ class StandIn:
         return self.given.replaces.removesuffix(KEPT)
 
 
-def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where: str = "text") -> str:
+def write_stand_ins(text: str, parts: Mapping[str, ReplacementPart], tag: str, *, where: str = "text") -> str:
     """Return the text of a design file with compliance matrices by name instead of drawn parts, renamed `<name>-drawn`.
 
     The new matrices have the tag `tag`. Raises `DesignError` if links override such a part, or the file's layout does not allow it.
@@ -72,7 +72,7 @@ def write_stand_ins(text: str, parts: Mapping[str, StandIn], tag: str, *, where:
     return after
 
 
-def _clashes(mechanism: Mechanism, parts: Mapping[str, StandIn]) -> list[Finding]:
+def _clashes(mechanism: Mechanism, parts: Mapping[str, ReplacementPart]) -> list[Finding]:
     drawn = {part.drawn_name for part in parts.values()}
     taken = {name + KEPT: name for name in drawn} | {name: part.drawn_name for name, part in parts.items() if name != part.drawn_name}
     results = [
@@ -91,7 +91,7 @@ def _clashes(mechanism: Mechanism, parts: Mapping[str, StandIn]) -> list[Finding
     return results
 
 
-def _stand_in(document: Any, name: str, part: StandIn, tag: str) -> None:
+def _stand_in(document: Any, name: str, part: ReplacementPart, tag: str) -> None:
     node = node_of(Mechanism).fields["parts"].node.child(None, name)
     table = tomlkit.table()
     values = plain(node, part.given, f"parts.{name}")

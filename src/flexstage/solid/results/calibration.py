@@ -20,7 +20,7 @@ from flexstage.mechanism.checks.orientation import is_axisymmetric
 from flexstage.mechanism.drawn import calibrated_parts
 from flexstage.mechanism.mechanism import Link, Mechanism
 from flexstage.mechanism.store import loads
-from flexstage.mechanism.store.stand_in import KEPT, StandIn, write_stand_ins
+from flexstage.mechanism.store.stand_in import KEPT, ReplacementPart, write_stand_ins
 from flexstage.parts.compliance_matrix import ComplianceMatrix, Origin
 from flexstage.parts.compound import Compound
 from flexstage.solid.fea.geometry.piece import is_mirrored, medium
@@ -63,7 +63,7 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
     found = solid_hinges(mechanism, compute)
     parts = stand_ins(found)
     errors = max(hinge.found.error for hinge in found.values())
-    stands = {name: StandIn(part, found[name].links) for name, part in parts.items()}
+    stands = {name: ReplacementPart(part, found[name].links) for name, part in parts.items()}
     return Calibration(found, parts, write_stand_ins(text, stands, f"{TAG} within {100.0 * errors:.2g} %", where=where))
 
 
