@@ -28,7 +28,7 @@ from flexstage.mechanism.addresses.address import set_value
 from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.show.display import to_typography
-from flexstage.show.page import Abreast, Folded
+from flexstage.show.page import BlockRow, Folded
 from flexstage.show.render import fold, to_html, to_rich
 from flexstage.show.table import Column, Mark, Table, make_table, record_table, result_table, row_table
 from flexstage.show.tables.description import value_tables
@@ -187,7 +187,7 @@ def test_groups_hold_tables() -> None:
     from flexstage.show.page import Head, Section, page
 
     table = Table("inner", (), ())
-    nested = Folded("outer", (Abreast((Abreast((table,)),)),))
+    nested = Folded("outer", (BlockRow((BlockRow((table,)),)),))
     assert "inner" in page(Head("t", "k", ()), [Section("s", (nested,))])
 
 

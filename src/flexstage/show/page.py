@@ -76,7 +76,7 @@ class Facts:
 
 
 @dataclass(frozen=True)
-class Abreast:
+class BlockRow:
     """Blocks side by side if the width allows: `narrow` in columns of a third, else of a half."""
 
     blocks: tuple[Block, ...]
@@ -98,7 +98,7 @@ class Legend:
     entries: tuple[tuple[str, str], ...]
 
 
-Block: TypeAlias = Prose | Picture | Viewer | Joined | Facts | Abreast | Folded | Legend | Table
+Block: TypeAlias = Prose | Picture | Viewer | Joined | Facts | BlockRow | Folded | Legend | Table
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from flexstage.experiment.show.tables import (
 from flexstage.show.display import number
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.style import THIRD
-from flexstage.show.page import Abreast, Block, Picture, Prose, Section, fold, section
+from flexstage.show.page import Block, BlockRow, Picture, Prose, Section, fold, section
 from flexstage.show.scene.pictures import mode_picture
 from flexstage.show.sections.dynamics import SHAPES
 from flexstage.show.sections.stage import joined_viewers, platform_modes
@@ -117,7 +117,7 @@ def measured_shape_section(found: Identified, shapes: StageShapes, data: StageDa
         f"From {', '.join(shapes.used)}, through the inverse of the ideal stage's mapping; bodies move as ideal hinges let them. "
         f"{motion_explained_text(shapes.explained)} {SHAPES}"
     )
-    return section("Shapes on the stage", [Abreast(tuple(_pictures(found, data)), narrow=True), Prose(note)])
+    return section("Shapes on the stage", [BlockRow(tuple(_pictures(found, data)), narrow=True), Prose(note)])
 
 
 def measured_motions(found: Identified, shapes: StageShapes, bones: Skeleton) -> tuple[Motion, ...]:

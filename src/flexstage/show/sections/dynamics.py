@@ -13,7 +13,7 @@ from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.reading import Spot, reading
 from flexstage.show.figures.response import response_figure
 from flexstage.show.figures.style import THIRD
-from flexstage.show.page import Abreast, Folded, Picture, Prose, Section, section
+from flexstage.show.page import BlockRow, Folded, Picture, Prose, Section, section
 from flexstage.show.scene.pictures import mode_picture
 from flexstage.show.table import first_design
 from flexstage.show.tables.modes import mode_table
@@ -46,7 +46,7 @@ def mode_section(analysis: Analysis, data: StageData) -> Section | None:
         "near the platform modes are listed too."
     )
     shapes = tuple(_shapes(modes, data))
-    gallery = [Abreast(shapes, narrow=True), Prose(SHAPES)] if shapes else []
+    gallery = [BlockRow(shapes, narrow=True), Prose(SHAPES)] if shapes else []
     return section("Modes", [Prose(text), mode_table(modes), *gallery])
 
 

@@ -7,7 +7,7 @@ from flexstage.models.linear.kinematics import Kinematics
 from flexstage.show.figures.budget import energy_figure, loss_figure
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Abreast, Block, Folded, Picture, Prose, Section, fold, section
+from flexstage.show.page import Block, BlockRow, Folded, Picture, Prose, Section, fold, section
 from flexstage.show.table import result_table
 from flexstage.show.tables.deflection import deflection_table
 from flexstage.show.tables.kinematics import (
@@ -93,7 +93,7 @@ def stiffness_section(analysis: Analysis) -> Section | None:
             stiffness_table(statics),
             *([] if analysis.freedoms is None else [freedom_stiffness_table(analysis.freedoms)]),
             principal_table(statics),
-            Abreast((Picture(polar, caption), Abreast((centre_table(statics), *sag)))),
+            BlockRow((Picture(polar, caption), BlockRow((centre_table(statics), *sag)))),
             result_table(analysis.units or {}),
             fold(
                 "Compliance, stiffness by angle, mass, springs of the lever units",

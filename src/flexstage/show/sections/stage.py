@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Abreast, Joined, Legend, Picture, Prose, Section, Viewer, fold, section
+from flexstage.show.page import BlockRow, Joined, Legend, Picture, Prose, Section, Viewer, fold, section
 from flexstage.show.plan import plan_figure, rings
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.view import Side, legend
@@ -89,7 +89,7 @@ def drawing_section(mechanism: Mechanism, data: StageData) -> Section | None:
     return section(
         "Drawings and composition",
         [
-            Abreast((first, Abreast(tuple(others)))),
+            BlockRow((first, BlockRow(tuple(others)))),
             Picture(plan, " ".join(["Plan, dimensions in mm.", *_ring_texts(mechanism)])),
             composition_table(mechanism),
             fold("Links in the design file", link_table(mechanism)),

@@ -15,7 +15,7 @@ from flexstage.models.lumped import lumped
 from flexstage.show.display import number
 from flexstage.show.figures.directional import directional_figure
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Abreast, Block, Folded, Headline, Picture, Prose, Section, section
+from flexstage.show.page import Block, BlockRow, Folded, Headline, Picture, Prose, Section, section
 from flexstage.show.sections.stage import joined_viewers
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import centre_table, direction_table, principal_table, stiffness_table
@@ -67,7 +67,7 @@ def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
         picture = Picture(to_svg(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), f"unit-{name}", caption), caption)
         stress = stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
         tables = (command_table(name, unit), *(() if stress is None else (stress,)))
-        blocks += [Abreast((picture, *tables))] if stress is not None else list(tables)
+        blocks += [BlockRow((picture, *tables))] if stress is not None else list(tables)
     return section("Isolated units", blocks)
 
 
@@ -91,7 +91,7 @@ def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
     )
     polar = to_svg(directional_figure(stage.statics), "solid-polar", "Stiffness by direction in the plane")
     table = stress_table("Highest stress", stage.stress)
-    stress = [] if table is None else [Abreast((_stress_picture(stage), table))]
+    stress = [] if table is None else [BlockRow((_stress_picture(stage), table))]
     return section(
         "The whole stage",
         [
@@ -101,7 +101,7 @@ def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
             Picture(polar, "Stiffness in the plane by direction of the force."),
             Folded("Stiffness by angle, centre of stiffness", (direction_table(stage.statics), centre_table(stage.statics))),
             mode_table(stage.modes),
-            Abreast(tuple(_mode_pictures(stage)), narrow=True),
+            BlockRow(tuple(_mode_pictures(stage)), narrow=True),
             block_table(stage),
             *stress,
         ],

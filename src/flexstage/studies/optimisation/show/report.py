@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.analysis.assessment.requirements import Verdict
 from flexstage.show.display import format_value
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import Abreast, Headline, Legend, Picture, Prose, Section, Viewer, page, section
+from flexstage.show.page import BlockRow, Headline, Legend, Picture, Prose, Section, Viewer, page, section
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.view import legend
 from flexstage.show.sections.caveats import caveat_section
@@ -55,7 +55,7 @@ def _stage(stages: Mapping[str, StageData]) -> Section | None:
         return stage_section(stages["stage"])
     drawn = {"nominal": stages["before"], "optimum": stages["stage"]}
     pictures = [_still(each, f"stage{place}", f"The stage, {name}.") for place, (name, each) in enumerate(drawn.items())]
-    viewer = Viewer("stage", (Abreast(tuple(pictures)),), first_motion(stages["stage"]), "before")
+    viewer = Viewer("stage", (BlockRow(tuple(pictures)),), first_motion(stages["stage"]), "before")
     caption = "The optimum; in the viewer, the outline behind it is the nominal design."
     return section("The stage", [viewer, Legend(legend(stages["stage"])), Prose(caption)])
 

@@ -7,7 +7,7 @@ from typing import Any
 from flexstage.base.version import __version__
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.style import FULL, SERIES, Margins, canvas, panels, style_context
-from flexstage.show.page import Abreast, Head, Headline, Picture, page, section
+from flexstage.show.page import BlockRow, Head, Headline, Picture, page, section
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.viewer.data import still_data
 from flexstage.studies.synthesis.search import Answer, Answers
@@ -32,7 +32,7 @@ def answer_report(found: Answers) -> str:
     said = Headline(f"{count} stage{'' if count == 1 else 's'} meet{'s' if count == 1 else ''} the specification.", count > 0)
     sections = [
         section("Answers", [tables[0], picture]),
-        section("Stages", [Abreast(tuple(stages[place : place + 2])) for place in range(0, count, 2)]),
+        section("Stages", [BlockRow(tuple(stages[place : place + 2])) for place in range(0, count, 2)]),
         section("Excluded pairs", tables[1:]),
     ]
     head = Head(found.specification.name, "Answers to a specification", (("flexstage", __version__),), said)
