@@ -52,7 +52,7 @@ class Viewer:
 
 
 @dataclass(frozen=True)
-class Joined:
+class JoinedViewers:
     """Two viewers side by side: a motion chosen in one plays its counterpart in the other."""
 
     viewers: tuple[Viewer, Viewer]
@@ -98,7 +98,7 @@ class Legend:
     entries: tuple[tuple[str, str], ...]
 
 
-Block: TypeAlias = Prose | Picture | Viewer | Joined | Facts | BlockRow | Folded | Legend | Table
+Block: TypeAlias = Prose | Picture | Viewer | JoinedViewers | Facts | BlockRow | Folded | Legend | Table
 
 
 @dataclass(frozen=True)

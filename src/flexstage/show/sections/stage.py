@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.show.figures.export import to_svg
-from flexstage.show.page import BlockRow, Joined, Legend, Picture, Prose, Section, Viewer, fold, section
+from flexstage.show.page import BlockRow, JoinedViewers, Legend, Picture, Prose, Section, Viewer, fold, section
 from flexstage.show.plan import plan_figure, rings
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.scene.view import Side, legend
@@ -49,7 +49,7 @@ def platform_modes(data: StageData) -> tuple[Motion, ...]:
     return tuple(each for each in data.motions if each.group is Group.MODE and each.remark.startswith(PLATFORM_MODE))
 
 
-def joined_viewers(partners: Sequence[tuple[str, str]]) -> Joined | None:
+def joined_viewers(partners: Sequence[tuple[str, str]]) -> JoinedViewers | None:
     """Two viewers of the stage with paired motions, beginning with the first pair; `None` without any.
 
     >>> joined_viewers([]) is None
@@ -58,7 +58,7 @@ def joined_viewers(partners: Sequence[tuple[str, str]]) -> Joined | None:
     if not partners:
         return None
     one, other = partners[0]
-    return Joined((Viewer("stage", (), one), Viewer("stage", (), other)), tuple(partners))
+    return JoinedViewers((Viewer("stage", (), one), Viewer("stage", (), other)), tuple(partners))
 
 
 def first_motion(data: StageData) -> str:
