@@ -349,7 +349,7 @@ class Imported(Solid):
 
 
 @dataclass(frozen=True, eq=False)
-class Pierced(Solid):
+class SolidWithHoles(Solid):
     """A `solid` with `holes` by other solids of its body, in the frame of its centre."""
 
     solid: Solid
@@ -424,7 +424,7 @@ def pierce(solids: Mapping[str, PlacedSolid]) -> dict[str, PlacedSolid]:
 def _pierced(item: PlacedSolid, holes: list[PlacedSolid]) -> PlacedSolid:
     solid, frame = item.solid, item.frame
     own = [_seen_from(hole, frame) for hole in holes if hole.solid.material == solid.material and _meet(item, hole)]
-    return PlacedSolid(Pierced(solid, tuple(own)), frame) if own and not isinstance(solid, Imported) else item
+    return PlacedSolid(SolidWithHoles(solid, tuple(own)), frame) if own and not isinstance(solid, Imported) else item
 
 
 def _meet(one: PlacedSolid, other: PlacedSolid) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexstage.base.number import Array, Number, stack
 from flexstage.base.session import SESSION
-from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Imported, Inertia, Pierced, Solid, Sphere
+from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Imported, Inertia, Solid, SolidWithHoles, Sphere
 from flexstage.parts.material import Material
 from flexstage.parts.union import Drawn, Moments, common_moments, polygon_moments
 from flexstage.spatial.frame import Frame, identity
@@ -136,7 +136,7 @@ def solid_properties(solid: Solid, density: Number) -> MassProperties:
     >>> float(solid_properties(Cylinder("steel", diameter=2.0, length=1.0), 1.0).mass.round(12))
     3.14159265359
     """
-    if isinstance(solid, Pierced):
+    if isinstance(solid, SolidWithHoles):
         return union_properties([Drawn("", each, density, frame) for each, frame in solid.drawn])
     if isinstance(solid, Imported):
         own = MassProperties(np.asarray(solid.mass), stack(solid.centre) - stack(solid.middle), tensor(solid.inertia))

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array, first_design
-from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere, triangles
+from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Solid, SolidWithHoles, Sphere, triangles
 from flexstage.parts.profile import single
 from flexstage.spatial.convex import Convex, cuboid, frustum
 
@@ -96,5 +96,5 @@ _SOLIDS: Mapping[type[Solid], Callable[[Any], Iterable[Convex]]] = {
     Extrusion: _wedges,
     Sphere: _ball,
     Imported: lambda _: (),
-    Pierced: lambda form: solid_pieces(form.solid),
+    SolidWithHoles: lambda form: solid_pieces(form.solid),
 }

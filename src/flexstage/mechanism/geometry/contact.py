@@ -23,7 +23,7 @@ from flexstage.mechanism.geometry.near import near_pairs
 from flexstage.mechanism.geometry.outline import Outline, outlines
 from flexstage.mechanism.geometry.pieces import SAGITTA, Form, form_of, is_flat, pieces
 from flexstage.mechanism.mechanism import GROUND, Mechanism
-from flexstage.parts.body import Imported, Pierced, Solid, within_polygon
+from flexstage.parts.body import Imported, Solid, SolidWithHoles, within_polygon
 from flexstage.parts.section import Section
 from flexstage.parts.shape import Shaped
 from flexstage.spatial.convex import Convex, distance, polytope_corners, separation
@@ -73,7 +73,7 @@ class _Thing:
     @cached_property
     def holes(self) -> tuple[_Hole, ...]:
         """Holes of the body in this solid."""
-        own = self.form.holes if isinstance(self.form, Pierced) else ()
+        own = self.form.holes if isinstance(self.form, SolidWithHoles) else ()
         return tuple(_Hole(hole, _first(hole.frame).within(self.frame)) for hole in own)
 
     def trim(self, margin: float) -> tuple[Convex, ...]:

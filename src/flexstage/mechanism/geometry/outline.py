@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.base.number import Array, stack
 from flexstage.mechanism.assembly.expand import Assembly, PlacedLink
-from flexstage.parts.body import Block, Cylinder, Extrusion, Pierced, PlacedSolid, Sphere
+from flexstage.parts.body import Block, Cylinder, Extrusion, PlacedSolid, SolidWithHoles, Sphere
 from flexstage.parts.part import inner
 from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import Frame
@@ -72,7 +72,7 @@ def outlines(assembly: Assembly) -> tuple[Outline, ...]:
 
 
 def _solid(name: str, placed: PlacedSolid) -> Outline:
-    solid = placed.solid.solid if isinstance(placed.solid, Pierced) else placed.solid
+    solid = placed.solid.solid if isinstance(placed.solid, SolidWithHoles) else placed.solid
     if isinstance(solid, Cylinder):
         return Outline(name, placed.frame, solid.sides, is_cylinder=True, bore=None if solid.bore is None else np.asarray(solid.bore))
     if isinstance(solid, Extrusion):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flexstage.base.number import Array, Number, first_design
-from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere, triangles
+from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Solid, SolidWithHoles, Sphere, triangles
 from flexstage.parts.part import Part, inner
 from flexstage.parts.profile import single
 from flexstage.parts.section import Rectangle
@@ -97,7 +97,7 @@ def simplification(solid: Solid) -> str:
     >>> simplification(Block("steel", (0.1, 0.1, 0.01)))
     ''
     """
-    return "without holes" if isinstance(solid, Pierced) else "as the box around it" if isinstance(solid, Imported) else ""
+    return "without holes" if isinstance(solid, SolidWithHoles) else "as the box around it" if isinstance(solid, Imported) else ""
 
 
 def solid_skin(solid: Solid) -> DrawnSurface:
@@ -106,7 +106,7 @@ def solid_skin(solid: Solid) -> DrawnSurface:
     >>> len(solid_skin(Block("steel", (0.1, 0.1, 0.01))).triangles)
     12
     """
-    if isinstance(solid, Pierced):
+    if isinstance(solid, SolidWithHoles):
         holes = [solid_skin(hole).placed(first_frame(hole.frame)) for hole in solid.holes]
         return join([solid_skin(solid.solid), *(replace(each, triangles=each.triangles[:0]) for each in holes)])
     if isinstance(solid, Imported):  # shown as the box around it

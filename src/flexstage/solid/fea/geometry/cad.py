@@ -11,7 +11,7 @@ from netgen import occ
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
 from flexstage.base.session import SESSION
-from flexstage.parts.body import Cylinder, Imported, Pierced, Sphere
+from flexstage.parts.body import Cylinder, Imported, SolidWithHoles, Sphere
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.draw import draw_form, move_solid
 from flexstage.solid.fea.geometry.mirror import MIRRORS, Mirrors, cut_at_mirrors, is_symmetric
@@ -110,7 +110,7 @@ def _is_mirrored(component: Component, axis: int) -> bool:
 
 def _is_round(form: Form) -> bool:
     """Whether it is round, and thick enough to affect the size of its elements."""
-    if isinstance(form, Pierced):
+    if isinstance(form, SolidWithHoles):
         return any(map(_is_round, (form.solid, *form.holes)))
     if isinstance(form, Cylinder):
         return float(np.real(form.length)) > _PLATE * float(np.real(form.diameter if form.bore is None else form.bore))

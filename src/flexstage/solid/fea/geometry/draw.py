@@ -17,7 +17,7 @@ from netgen import occ
 from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.base.register import Register
-from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Pierced, Solid, Sphere
+from flexstage.parts.body import Block, Cylinder, Extrusion, Imported, Solid, SolidWithHoles, Sphere
 from flexstage.parts.cruciform import Cruciform
 from flexstage.parts.leaf import Leaf
 from flexstage.parts.neck import Neck
@@ -126,7 +126,7 @@ def _prism(corners: list[occ.Pnt], along: occ.Vec) -> occ.Solid:
     return occ.Face(occ.Wire(sides)).Extrude(along)
 
 
-def _pierced(form: Pierced) -> occ.Solid:
+def _pierced(form: SolidWithHoles) -> occ.Solid:
     drawn = draw_form(form.solid)
     for hole in form.holes:
         drawn = drawn - move_solid(draw_form(hole), hole.frame)
@@ -139,7 +139,7 @@ _SOLIDS: Mapping[type[Solid], Callable[[Any], occ.Solid]] = {
     Extrusion: _extrusion,
     Sphere: lambda form: occ.Sphere(occ.Pnt(0, 0, 0), 0.5 * millimetres(form.diameter)),
     Imported: imported_shape,
-    Pierced: _pierced,
+    SolidWithHoles: _pierced,
 }
 
 
