@@ -9,7 +9,7 @@ import numpy as np
 
 from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors
 from flexstage.analysis.loaded.misalign import Misaligned, Misalignments
-from flexstage.analysis.loaded.stroke import Beyond, Stroke
+from flexstage.analysis.loaded.stroke import PostBuckling, Stroke
 from flexstage.base.labelled import NOISE_RULE, Matrix, quiet
 from flexstage.base.number import Array
 from flexstage.base.storage.digest import digest
@@ -64,7 +64,7 @@ def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
     return make_table(title, heads, rows, notes=[*notes, *noise])
 
 
-def buckling_report(mechanism: Mechanism, found: CaseFactors, after: Beyond | None = None) -> str:
+def buckling_report(mechanism: Mechanism, found: CaseFactors, after: PostBuckling | None = None) -> str:
     """Buckling in every load case as an HTML page: the buckling mode at the last stable state, the lowest factor first.
 
     `after` is the post-buckling path of the lowest factor.
@@ -93,7 +93,7 @@ def _buckling_text(found: CaseFactors) -> str:
     return text if len(found.cases) == 1 else f"{text}, the lowest of {len(found.cases)} load cases and stroke ends"
 
 
-def buckling_tables(found: CaseFactors, after: Beyond | None = None) -> list[Table | None]:
+def buckling_tables(found: CaseFactors, after: PostBuckling | None = None) -> list[Table | None]:
     """Load cases and stroke ends with their factors; the buckling mode of the lowest, and equilibria `after` it."""
     table = result_table(found.cases)
     least = found.least

@@ -57,7 +57,7 @@ class Stroke(Result):
 
 
 @dataclass(frozen=True, eq=False)
-class Beyond:
+class PostBuckling:
     """The post-buckling path and its characteristics."""
 
     path: LoadPath

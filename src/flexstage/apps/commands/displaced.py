@@ -16,7 +16,7 @@ from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors, 
 from flexstage.analysis.loaded.misalign import misalign as misaligned
 from flexstage.analysis.loaded.misalign import misalignments
 from flexstage.analysis.loaded.operating_point import require_consistent
-from flexstage.analysis.loaded.stroke import Beyond
+from flexstage.analysis.loaded.stroke import PostBuckling
 from flexstage.analysis.loaded.stroke import stroke as over_stroke
 from flexstage.apps.words import BranchSide
 from flexstage.base.finding import Finding, refuse, require, suggest_nearest
@@ -176,7 +176,7 @@ def buckle(
     )
 
 
-def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, points: int) -> Beyond:
+def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, points: int) -> PostBuckling:
     """The post-buckling path of the lowest critical case; refused if it requires prescribed coordinates."""
     least = found.least
     if least is None or least.found is None:
@@ -186,7 +186,7 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, p
         raise refuse("--post-buckling", what, "Leave out --at")
     grows = next(case.grows for case, told in zip(cases, found.cases, strict=True) if told is least)
     path = follow(least.found, grows, side=1.0 if branch is BranchSide.ALONG else -1.0, points=points)
-    return Beyond(path, over_stroke(path))
+    return PostBuckling(path, over_stroke(path))
 
 
 def _case(mechanism: Mechanism, place: OperatingPointOptions, scaled: Sequence[str]) -> LoadCase:
@@ -265,7 +265,7 @@ def _axis(rotation: str, translation: str) -> str:
     return axis if translation else f"r{axis}"
 
 
-def _buckling(found: CaseFactors, after: Beyond | None) -> Buckling:
+def _buckling(found: CaseFactors, after: PostBuckling | None) -> Buckling:
     first, along = found.cases[0], None if after is None else after.stroke.along
     link = "" if first.found is None else first.found.link
     return Buckling(first.load, first.factor, first.kind, link, shape_of(first), found.cases, along)

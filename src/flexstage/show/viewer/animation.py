@@ -12,7 +12,7 @@ from flexstage.analysis.dynamics.modes import Modes
 from flexstage.analysis.loaded.load_cases import REST, CaseFactor
 from flexstage.analysis.loaded.misalign import Misaligned
 from flexstage.analysis.loaded.operating_point import OperatingPoint
-from flexstage.analysis.loaded.stroke import Beyond, Stroke
+from flexstage.analysis.loaded.stroke import PostBuckling, Stroke
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
 from flexstage.base.number import Array
@@ -57,7 +57,7 @@ def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
     return replace(still, motions=(motion,), notes=tuple(str(each) for each in found.warnings))
 
 
-def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: Beyond | None = None) -> StageData:
+def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: PostBuckling | None = None) -> StageData:
     """Buckling modes of a stage, about its last stable state in each load case: one motion for each case, and the path `after` one."""
     still = still_data(mechanism)
     motions = [
