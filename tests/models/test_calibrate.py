@@ -12,7 +12,7 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.caveats import defaults
 from flexstage.analysis.linear_statics.units import units
-from flexstage.analysis.trust import Trust
+from flexstage.analysis.trust import TheoryCheck
 from flexstage.base.finding import DesignError
 from flexstage.base.record import walk
 from flexstage.base.storage.digest import digest
@@ -197,7 +197,7 @@ def test_refusals() -> None:
 def test_rows_that_calibrated_parts_touch_are_not_independent() -> None:
     stage = fs.loads(fs.solid.calibrate(fs.dumps(parallelogram()), softened(1.1)).text)
     rows = list(hinge_rows(stage, solid_hinges(stage, softened(1.1))))
-    assert {row.trust for row in rows} == {Trust.DEPENDENT}
+    assert {row.trust for row in rows} == {TheoryCheck.DEPENDENT}
     assert max(abs(row.difference) for row in rows) < 1e-5
     assert verdict(tuple(rows)).startswith("Not independent")
 
@@ -212,20 +212,20 @@ def test_with_matrices_is_what_the_file_says(stage: fs.Mechanism) -> None:
 @pytest.mark.parametrize(
     ("theory", "calibrated_value", "error", "trust"),
     [
-        (101.0, None, 0.001, Trust.THEORY),
-        (101.0, None, 0.015, Trust.EITHER),
-        (101.0, None, 0.2, Trust.UNCLEAR),
-        (110.0, None, 0.001, Trust.FEA),
-        (110.0, 101.0, 0.001, Trust.CALIBRATED),
-        (110.0, 102.5, 0.01, Trust.CALIBRATED),
-        (110.0, 108.0, 0.001, Trust.FEA),
-        (110.0, 101.0, 0.06, Trust.UNCLEAR),
+        (101.0, None, 0.001, TheoryCheck.THEORY),
+        (101.0, None, 0.015, TheoryCheck.EITHER),
+        (101.0, None, 0.2, TheoryCheck.UNCLEAR),
+        (110.0, None, 0.001, TheoryCheck.FEA),
+        (110.0, 101.0, 0.001, TheoryCheck.CALIBRATED),
+        (110.0, 102.5, 0.01, TheoryCheck.CALIBRATED),
+        (110.0, 108.0, 0.001, TheoryCheck.FEA),
+        (110.0, 101.0, 0.06, TheoryCheck.UNCLEAR),
     ],
 )
-def test_trust(theory: float, calibrated_value: float | None, error: float, trust: Trust) -> None:
+def test_trust(theory: float, calibrated_value: float | None, error: float, trust: TheoryCheck) -> None:
     row = Row("stage", "mode 1", "Hz", theory, 100.0, error, calibrated=calibrated_value)
     assert row.trust is trust
-    assert replace(row, calibration=("neck",)).trust is Trust.DEPENDENT
+    assert replace(row, calibration=("neck",)).trust is TheoryCheck.DEPENDENT
 
 
 def test_a_loss_is_known_as_well_as_the_gain_that_it_is_the_rest_of() -> None:

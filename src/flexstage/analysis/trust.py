@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum
 
 
-class Trust(Enum):
+class TheoryCheck(Enum):
     """Outcome of a comparison of theory and FEA."""
 
     DEPENDENT = "not independent"

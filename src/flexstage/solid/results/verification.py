@@ -12,7 +12,7 @@ from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.dynamics.pairing import RELIABLE, Moving, Pair, pair_modes
 from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.linear_statics.units import UnitResult, driven_units, unit_alone, units
-from flexstage.analysis.trust import Trust
+from flexstage.analysis.trust import TheoryCheck
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
 from flexstage.base.notebook import InNotebook
@@ -41,12 +41,12 @@ from flexstage.spatial.frame import COMPONENTS
 
 _CLOSE = 0.02
 _GRADES = {
-    Trust.DEPENDENT: Mark.FAINT,
-    Trust.EITHER: Mark.PASS,
-    Trust.THEORY: Mark.PASS,
-    Trust.CALIBRATED: Mark.WARN,
-    Trust.UNCLEAR: Mark.WARN,
-    Trust.FEA: Mark.FAIL,
+    TheoryCheck.DEPENDENT: Mark.FAINT,
+    TheoryCheck.EITHER: Mark.PASS,
+    TheoryCheck.THEORY: Mark.PASS,
+    TheoryCheck.CALIBRATED: Mark.WARN,
+    TheoryCheck.UNCLEAR: Mark.WARN,
+    TheoryCheck.FEA: Mark.FAIL,
 }
 _TIMES = 1.5
 """Smallest ratio for differences printed as factors."""
@@ -109,22 +109,22 @@ class Row:
         return not self.calibration
 
     @property
-    def trust(self) -> Annotated[Trust | None, VIEW, Heading(absent="no verdict", mark=_GRADES.__getitem__)]:
+    def trust(self) -> Annotated[TheoryCheck | None, VIEW, Heading(absent="no verdict", mark=_GRADES.__getitem__)]:
         """The more reliable of them; absent without a verdict."""
         if self.calibration:
-            return Trust.DEPENDENT
+            return TheoryCheck.DEPENDENT
         if self.difference is None or self.fea_error is None:
             return None
         away = abs(self.difference)
         if self.fea_error > max(0.5 * away, _CLOSE):
-            return Trust.UNCLEAR
+            return TheoryCheck.UNCLEAR
         if away <= self.fea_error:
-            return Trust.EITHER
+            return TheoryCheck.EITHER
         if away <= _CLOSE:
-            return Trust.THEORY
+            return TheoryCheck.THEORY
         if self.calibrated is not None and abs(_relative(self.calibrated, self.fea)) <= _CLOSE + self.fea_error:
-            return Trust.CALIBRATED
-        return Trust.FEA
+            return TheoryCheck.CALIBRATED
+        return TheoryCheck.FEA
 
 
 def _relative(value: float, reference: float) -> float:
@@ -151,7 +151,7 @@ class Verification(InNotebook):
     def headline(self) -> str:
         """Largest differences between theory and finite elements in the widest compared group, and the number of agreeing figures."""
         name, rows = list(self.groups.items())[-1]
-        good = sum(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows)
+        good = sum(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows)
         words = departures(rows)
         return f"{words[:1].upper()}{words[1:]}{'. ' if words else ''}Theory suffices for {good} of {len(rows)} figures of the {name}."
 
@@ -435,7 +435,7 @@ def departures(rows: Iterable[Row]) -> str:
     """
     worst: dict[str, Row] = {}
     for row in rows:
-        if row.trust in {Trust.FEA, Trust.CALIBRATED} and _factor(row) > _factor(worst.get(row.unit)):
+        if row.trust in {TheoryCheck.FEA, TheoryCheck.CALIBRATED} and _factor(row) > _factor(worst.get(row.unit)):
             worst[row.unit] = row
     return "; ".join(f"{row.figure}: theory {_departure(row)}" for row in worst.values())
 
@@ -450,7 +450,7 @@ def _departure(row: Row) -> str:
     above, factor = (row.difference or 0.0) > 0.0, _factor(row)
     more, less = _WORDS.get(row.unit, ("large", "small"))
     size = f"{factor:.2g} times" if factor >= _TIMES else _percent(_size_of_difference(row))
-    rigid = above and more in {"stiff", "high"} and row.trust is Trust.FEA and row.calibrated is not None
+    rigid = above and more in {"stiff", "high"} and row.trust is TheoryCheck.FEA and row.calibrated is not None
     return f"{size} too {more if above else less}{' (rigid bodies bend)' if rigid else ''}"
 
 
@@ -463,17 +463,17 @@ def _verdict_of_known(rows: tuple[Row, ...]) -> str:
         names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))
         return f"Not independent: the theory contains the FEA 6x6 of {names}. It is {off}: the residual is not from the hinges."
     name = "Beam theory" if worst.group.startswith("hinge") else "Lumped theory"
-    if all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows):
+    if all(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows):
         return f"{name} is {off}, FEA's own error {_percent(least)}: trust the theory."
     known = departures(rows)
-    if any(row.trust is Trust.UNCLEAR for row in rows):
+    if any(row.trust is TheoryCheck.UNCLEAR for row in rows):
         text = f"{name} is {off}, but FEA's own error is up to {_percent(least)}: increase the accuracy."
         return f"{known[:1].upper()}{known[1:]}. {text}" if known else text
     better = [abs(row.calibrated_difference) for row in rows if row.calibrated_difference is not None]
     if not better:
         return f"{name} is {off}, FEA's own error {_percent(least)}: trust FEA, or calibrate."
     after = f"with calibrated hinges {_percent(max(better))}"
-    if all(row.trust is not Trust.FEA for row in rows):
+    if all(row.trust is not TheoryCheck.FEA for row in rows):
         return f"{name} is {off}; {after}: calibrate, then trust the lumped model."
     rest = "the residual is the elasticity of bodies and joints, only in the solid model. Trust FEA."
     return f"{known[:1].upper()}{known[1:]}; {after}: {rest}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.dynamics.pairing import Moving, Pair, pair_modes
-from flexstage.analysis.trust import Trust
+from flexstage.analysis.trust import TheoryCheck
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.lumped import lumped
 from flexstage.show.display import number
@@ -125,7 +125,7 @@ def _stress_picture(stage: SolidStage) -> Picture:
 def verification_headline(found: Verification) -> Headline:
     """The headline of a verification, and whether theory is sufficient for all of the widest group."""
     rows = list(found.groups.values())[-1]
-    return Headline(found.headline, all(row.trust in {Trust.EITHER, Trust.THEORY} for row in rows))
+    return Headline(found.headline, all(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows))
 
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
