@@ -33,7 +33,7 @@ from flexstage.models.linear.block_elimination import eliminate_blocks
 from flexstage.models.linear.blockage import Blockage, blockage
 from flexstage.models.linear.channels import reading
 from flexstage.models.linear.elimination import Elimination, echelon, eliminate_each, null_space, unlike
-from flexstage.models.linear.kinematics import Idle, Kinematics, Redundant
+from flexstage.models.linear.kinematics import FreeInternalMode, Kinematics, Redundant
 from flexstage.models.linear.large import least_strain
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.spatial.frame import COMPONENTS
@@ -221,17 +221,17 @@ def _least_deformed(graph: _Graph, motion: Array, strokes: Array) -> Array | Non
     return None if others is None else np.concatenate([motion, over[:, None] * others])
 
 
-def _named_idle(graph: _Graph, idle: Any, strained: Any) -> tuple[Idle, ...]:
+def _named_idle(graph: _Graph, idle: Any, strained: Any) -> tuple[FreeInternalMode, ...]:
     """Bodies and links that move or strain in each free internal mode."""
     if strained is None:
         return ()
     links = tuple(graph.assembly.links)
-    result: list[Idle] = []
+    result: list[FreeInternalMode] = []
     moving, deforming = idle.tocsc(), strained.tocsc()
     for place in range(idle.shape[1]):
         size = np.max(np.abs(moving.data[moving.indptr[place] : moving.indptr[place + 1]]), initial=0.0)
         named = [_owners(matrix, place, _NEGLIGIBLE * size, names) for matrix, names in ((moving, graph.order.bodies), (deforming, links))]
-        result.append(Idle(*named))
+        result.append(FreeInternalMode(*named))
     return tuple(result)
 
 
@@ -495,14 +495,14 @@ def _gauge_row(graph: _Graph, name: str, bodies: Array, motion: Array) -> Array:
     return row @ bodies @ np.linalg.solve(weighted @ motion, weighted)
 
 
-def _idle(graph: _Graph, motions: Array) -> tuple[Idle, ...]:
+def _idle(graph: _Graph, motions: Array) -> tuple[FreeInternalMode, ...]:
     scale = first_design(graph.scale, 1)[: graph.order.size, None]
     vectors = echelon((motions / scale).T).T * scale
     strains = np.real(first_design(graph.strain, 2)) @ vectors
     threshold = _NEGLIGIBLE * np.max(np.abs(vectors), axis=0, initial=0.0)
     moving, deforming = (np.max(np.abs(_by_link(parts)), axis=1) > threshold for parts in (vectors, strains))
     return tuple(
-        Idle(tuple(itertools.compress(graph.order.bodies, moved)), tuple(itertools.compress(graph.assembly.links, strained)))
+        FreeInternalMode(tuple(itertools.compress(graph.order.bodies, moved)), tuple(itertools.compress(graph.assembly.links, strained)))
         for moved, strained in zip(moving.T, deforming.T, strict=True)
     )
 

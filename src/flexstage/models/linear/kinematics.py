@@ -20,7 +20,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 
 @dataclass(frozen=True)
-class Idle:
+class FreeInternalMode:
     """Free internal mode, independent of strokes and platform (a strut that spins): `bodies` that move, `links` that deform."""
 
     TABLE: ClassVar[Layout] = Layout("Free internal modes (zero stiffness)", "bodies links")
@@ -63,7 +63,7 @@ class Kinematics(Result):
     bodies: Array
     strains: Mapping[str, Array]
     free: Mapping[str, tuple[Freedom, ...]]
-    idle: tuple[Idle, ...]
+    idle: tuple[FreeInternalMode, ...]
     redundant: tuple[Redundant, ...]
     length: Annotated[Number, LENGTH]
     provenance: str
