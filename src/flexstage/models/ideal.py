@@ -33,7 +33,7 @@ from flexstage.models.linear.block_elimination import eliminate_blocks
 from flexstage.models.linear.blockage import Blockage, blockage
 from flexstage.models.linear.channels import reading
 from flexstage.models.linear.elimination import Elimination, echelon, eliminate_each, null_space, unlike
-from flexstage.models.linear.kinematics import FreeInternalMode, Kinematics, Redundant
+from flexstage.models.linear.kinematics import FreeInternalMode, Kinematics, RedundantConstraint
 from flexstage.models.linear.large import least_strain
 from flexstage.parts.freedom import ALL, Freedom
 from flexstage.spatial.frame import COMPONENTS
@@ -174,7 +174,7 @@ def _ideal_of_large(mechanism: Mechanism) -> Kinematics | None:
         strains=dict(zip(assembly.links, _by_link(strains), strict=True)),
         free={name: free_freedoms(link) for name, link in assembly.links.items()},
         idle=_named_idle(graph, idle, strained),
-        redundant=tuple(Redundant(tuple(names[place] for place in state)) for state in solved.redundant),
+        redundant=tuple(RedundantConstraint(tuple(names[place] for place in state)) for state in solved.redundant),
         length=length,
         provenance=f"ideal model of {digest(mechanism, physics=True)[:16]}",
         thrusts=tuple(assembly.thrusts),
@@ -507,7 +507,9 @@ def _idle(graph: _Graph, motions: Array) -> tuple[FreeInternalMode, ...]:
     )
 
 
-def _redundant(graph: _Graph) -> tuple[Redundant, ...]:
+def _redundant(graph: _Graph) -> tuple[RedundantConstraint, ...]:
     """Self-stress states of the locked DOFs: left null vectors of the constraints."""
     states = echelon(null_space(_comparable(graph).T).T)
-    return tuple(Redundant(tuple(graph.names[place] for place in np.flatnonzero(np.abs(state) > _NEGLIGIBLE))) for state in states)
+    return tuple(
+        RedundantConstraint(tuple(graph.names[place] for place in np.flatnonzero(np.abs(state) > _NEGLIGIBLE))) for state in states
+    )

@@ -30,7 +30,7 @@ class FreeInternalMode:
 
 
 @dataclass(frozen=True)
-class Redundant:
+class RedundantConstraint:
     """Redundant constraint: a set of locked DOFs (`B1/left.y`) with one superfluous member."""
 
     TABLE: ClassVar[Layout] = Layout("Redundant constraints", "constraints")
@@ -64,7 +64,7 @@ class Kinematics(Result):
     strains: Mapping[str, Array]
     free: Mapping[str, tuple[Freedom, ...]]
     idle: tuple[FreeInternalMode, ...]
-    redundant: tuple[Redundant, ...]
+    redundant: tuple[RedundantConstraint, ...]
     length: Annotated[Number, LENGTH]
     provenance: str
     blocked: Annotated[Mapping[str, Blockage], INNER] = field(default_factory=dict)
