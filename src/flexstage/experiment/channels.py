@@ -45,7 +45,7 @@ class Residues:
 
 
 @dataclass(frozen=True, eq=False)
-class Doubt:
+class SuspectedFault:
     """Suspected fault of outputs; corrected, output i is `factors[i]` times the channel `order[i]`."""
 
     what: str
@@ -58,12 +58,14 @@ class Doubt:
         """Values (p, ...) of the outputs after correction."""
         return self.factors[:, None] * values[self.order]
 
-    def then(self, other: Doubt) -> Doubt:
+    def then(self, other: SuspectedFault) -> SuspectedFault:
         """Both corrections in sequence."""
-        return Doubt(f"{self.what} and {other.what}", "put right", self.order[other.order], other.factors * self.factors[other.order])
+        return SuspectedFault(
+            f"{self.what} and {other.what}", "put right", self.order[other.order], other.factors * self.factors[other.order]
+        )
 
 
-def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Callable[[], Array] | None = None) -> Doubt | None:
+def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Callable[[], Array] | None = None) -> SuspectedFault | None:
     """Find the correction that makes shapes similar: two outputs exchanged, one or two inverted, or all divided by `scales` (p,).
 
     If none suffices, two corrections together are tried, with an almost complete match required. Of several equal ones the first counts; of
@@ -95,7 +97,7 @@ def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: C
     return replace(chosen, text=text)
 
 
-def _best(tried: list[Doubt], shapes: Array, score: Score, *, sole: bool = False) -> tuple[Doubt | None, float]:
+def _best(tried: list[SuspectedFault], shapes: Array, score: Score, *, sole: bool = False) -> tuple[SuspectedFault | None, float]:
     """First of the best; with `sole` None if equally good ones differ in effect."""
     scores = np.array([score(unit_length(each.put_right(shapes))) for each in tried])
     best = np.flatnonzero(scores > np.max(scores) - 1e-6)
@@ -104,7 +106,7 @@ def _best(tried: list[Doubt], shapes: Array, score: Score, *, sole: bool = False
     return tried[best[0]], float(scores[best[0]])
 
 
-def _same(one: Doubt, other: Doubt) -> bool:
+def _same(one: SuspectedFault, other: SuspectedFault) -> bool:
     """Whether two corrections are equal, up to a common sign."""
     sign = np.sign(one.factors[0] * other.factors[0])
     return bool(np.all(one.order == other.order) and np.allclose(one.factors, sign * other.factors))
@@ -119,23 +121,23 @@ def unit_length(shapes: Array) -> Array:
     return shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300)
 
 
-def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[Doubt]:
+def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[SuspectedFault]:
     """Corrections: one or two outputs inverted, two exchanged, all scaled."""
     as_is, one = np.arange(len(outputs)), np.ones(len(outputs))
     pairs = list(combinations(range(len(outputs)), 2))
     for chosen in (*combinations(range(len(outputs)), 1), *pairs):
         names = " and ".join(outputs[index] for index in chosen)
         words = ("looks inverted", "with its sign changed") if len(chosen) == 1 else _BOTH_INVERTED
-        yield Doubt(f"{names} {words[0]}", words[1], as_is, np.where(np.isin(as_is, chosen), -1.0, 1.0))
+        yield SuspectedFault(f"{names} {words[0]}", words[1], as_is, np.where(np.isin(as_is, chosen), -1.0, 1.0))
     for first, second in pairs:
         order = as_is.copy()
         order[[first, second]] = second, first
-        yield Doubt(f"{outputs[first]} and {outputs[second]} look exchanged", "the other way round", order, one)
+        yield SuspectedFault(f"{outputs[first]} and {outputs[second]} look exchanged", "the other way round", order, one)
     wrong = [] if scales is None else [index for index, scale in enumerate(scales) if not 1.0 / _SCALED < scale < _SCALED]
     if wrong and scales is not None:
         listed = ", ".join(f"{outputs[index]} ({scales[index]:.3g} times)" for index in wrong)
         look = "looks" if len(wrong) == 1 else "look"
-        yield Doubt(f"{listed} {look} scaled against the others", "divided by that", as_is, 1.0 / scales)
+        yield SuspectedFault(f"{listed} {look} scaled against the others", "divided by that", as_is, 1.0 / scales)
 
 
 def output_scales(theory: Array, measured: Array) -> Array:

@@ -19,7 +19,7 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array, first_design
 from flexstage.base.record import INNER, VIEW, Graded, Heading, Layout
 from flexstage.base.units.quantity import ANGLE, FREQUENCY, RATIO
-from flexstage.experiment.channels import Doubt, Residues, gain_doubts, normalise, output_scales, shape_doubt, unit_length
+from flexstage.experiment.channels import Residues, SuspectedFault, gain_doubts, normalise, output_scales, shape_doubt, unit_length
 from flexstage.experiment.identification.identified import (
     INFLATION,
     DampingInterval,
@@ -341,7 +341,7 @@ def _residues(
     sensors: Sequence[str],
     *,
     matched: list[tuple[list[int], list[int]]],
-    doubt: Doubt | None,
+    doubt: SuspectedFault | None,
 ) -> Residues:
     """Modal gains of model and test between shared sensors and inputs: repeated modes together, independent of the basis.
 
