@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flexstage.experiment.identification.confidence import NORMAL_95
-from flexstage.experiment.identification.diagnosis.peaks import Doubt
+from flexstage.experiment.identification.diagnosis.peaks import PeakCause
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.identification.outputs.tones import remove_tones
@@ -52,7 +52,7 @@ def undriven(known: Truth, seed: int, level: float = 1.0) -> Record:
     return replace(made, samples=InMemory(values)).select([name for name in made.names if name != f"u{hidden + 1}"])
 
 
-def peaks(found: Identified, doubt: Doubt) -> list[float]:
+def peaks(found: Identified, doubt: PeakCause) -> list[float]:
     return [peak.frequency for peak in found.peaks if peak.doubt is doubt]
 
 
@@ -63,7 +63,7 @@ def test_a_tone_is_taken_out_wherever_it_is_and_no_mode_is_lost(place: int) -> N
         frequency, gauges = places(seed)[place], tuple(range(6)) if seed % 3 == 0 else (seed % 6,)
         found = identify(shaken(record(known, seed, seconds=30.0), frequency, level, gauges, phase=float(seed)))
         np.testing.assert_allclose(found.frequencies, known.frequencies, rtol=1e-3)
-        np.testing.assert_allclose(peaks(found, Doubt.TONE), [frequency], atol=1e-3)
+        np.testing.assert_allclose(peaks(found, PeakCause.TONE), [frequency], atol=1e-3)
 
 
 @pytest.mark.parametrize("seed", [9, *range(SEEDS - 1)])
@@ -72,7 +72,7 @@ def test_the_mains_and_a_pump(seed: int) -> None:
     known, made = truth(seed=1000 + seed), record(truth(seed=1000 + seed), seed, seconds=30.0)
     found = identify(shaken(shaken(made, 50.0, 0.3 / 2.0**0.5, tuple(range(6))), 150.02, 3.0 / 2.0**0.5, (2,), phase=0.0))
     np.testing.assert_allclose(found.frequencies, known.frequencies, rtol=2e-4)
-    assert [peak.outputs for peak in found.peaks if peak.doubt is Doubt.TONE] == [("y1", "y2", "y3", "y4", "y5", "y6"), ("y3",)]
+    assert [peak.outputs for peak in found.peaks if peak.doubt is PeakCause.TONE] == [("y1", "y2", "y3", "y4", "y5", "y6"), ("y3",)]
     assert "the mains?" in found.peaks[0].reason
 
 
@@ -124,7 +124,7 @@ def test_a_drive_that_is_not_recorded_gives_no_mode_and_hides_none(seed: int) ->
     assert len(found.frequencies) == 6
     np.testing.assert_allclose(found.frequencies, known.frequencies, rtol=4e-3)
     assert np.all(np.abs(found.frequencies - known.frequencies) < 5.0 * found.frequency_deviations)
-    assert not [peak for peak in found.peaks if peak.doubt in (Doubt.UNDRIVEN, Doubt.WEAK)]
+    assert not [peak for peak in found.peaks if peak.doubt in (PeakCause.UNDRIVEN, PeakCause.WEAK)]
     assert not found.delay
     assert not [each for each in found.data_warnings if "looks" in each]
 
@@ -145,7 +145,7 @@ def test_intervals_hold_the_truth_where_a_drive_is_not_recorded() -> None:
 def test_a_mode_that_is_hardly_driven_by_inputs_is_listed() -> None:
     """The actuator that is not recorded drives the mode at 166 Hz four times as strongly as all others together."""
     found = identify(undriven(truth(seed=1165), 165, 1.5))
-    assert [round(frequency) for frequency in peaks(found, Doubt.UNDRIVEN)] == [166]
+    assert [round(frequency) for frequency in peaks(found, PeakCause.UNDRIVEN)] == [166]
 
 
 @pytest.mark.full

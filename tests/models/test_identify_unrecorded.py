@@ -11,7 +11,7 @@ import pytest
 from flexstage.base.finding import DesignError
 from flexstage.cases.double_triangle import double_triangle
 from flexstage.experiment.identification.confidence import NORMAL_95
-from flexstage.experiment.identification.diagnosis.peaks import Doubt
+from flexstage.experiment.identification.diagnosis.peaks import PeakCause
 from flexstage.experiment.identification.excitation import Excitation
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search
@@ -164,22 +164,22 @@ def test_modes_ten_decibels_above_the_noise_are_found_in_half_an_hour(seed: int)
 
 @pytest.mark.parametrize(
     ("frequency", "level", "wander", "doubt"),
-    [(34.4, 0.7, 0.0, Doubt.TONE), (36.1, 2.0, 0.0, Doubt.TONE), (34.4, 0.7, 0.005, Doubt.NARROW)],
+    [(34.4, 0.7, 0.0, PeakCause.TONE), (36.1, 2.0, 0.0, PeakCause.TONE), (34.4, 0.7, 0.005, PeakCause.NARROW)],
 )
-def test_a_tone_beside_a_mode_is_none(frequency: float, level: float, wander: float, doubt: Doubt) -> None:
+def test_a_tone_beside_a_mode_is_none(frequency: float, level: float, wander: float, doubt: PeakCause) -> None:
     """A steady one is taken out; one that wanders is narrower than the record resolves."""
     made = with_tone(white_floor(THREE, 900.0, 4, noise=1.0), frequency, level, wander)
     found = identification((made,), Search(excitation=Excitation.FLOOR)).found
     assert found.frequencies.round(0).tolist() == [14.0, 36.0, 52.0]
     np.testing.assert_allclose(found.frequencies, THREE.frequencies, rtol=4e-3)
-    assert [(round(peak.frequency, 1), peak.doubt, peak.width) for peak in found.peaks if peak.doubt in (Doubt.TONE, Doubt.NARROW)] == [
-        (frequency, doubt, None)
-    ]
+    assert [
+        (round(peak.frequency, 1), peak.doubt, peak.width) for peak in found.peaks if peak.doubt in (PeakCause.TONE, PeakCause.NARROW)
+    ] == [(frequency, doubt, None)]
 
 
 def test_no_peak_is_called_noise_that_is_only_unsure() -> None:
     found = identification((white_floor(THREE, 150.0, 1, noise=30.0),), Search(excitation=Excitation.FLOOR)).found
-    assert {peak.doubt for peak in found.peaks} <= {Doubt.UNSURE}
+    assert {peak.doubt for peak in found.peaks} <= {PeakCause.UNSURE}
 
 
 def test_intervals_from_outputs_alone_hold_as_often_as_they_state() -> None:

@@ -12,7 +12,7 @@ import scipy.io
 
 from flexstage.base.finding import DesignError
 from flexstage.experiment.formats.read import read
-from flexstage.experiment.identification.diagnosis.peaks import Doubt
+from flexstage.experiment.identification.diagnosis.peaks import PeakCause
 from flexstage.experiment.identification.identify import identify
 from flexstage.experiment.records.options import Arrays, Options
 from flexstage.experiment.records.record import Record, Responses
@@ -108,11 +108,13 @@ def test_modes_of_a_blow_by_the_analyser_and_by_its_time_frame() -> None:
     np.testing.assert_allclose(frame.damping[-2:], found.damping[1:], rtol=0.1)
     # Not resolved, and told so: 66.9 Hz, and multiples of the mains of 60 Hz; in the frame 66.8 Hz does not fade,
     # and 34.05 Hz so little that it is told as either.
-    assert [(round(peak.frequency, 1), peak.doubt) for peak in found.peaks] == [(each, Doubt.NARROW) for each in (60.0, 66.9, 120.0, 360.0)]
+    assert [(round(peak.frequency, 1), peak.doubt) for peak in found.peaks] == [
+        (each, PeakCause.NARROW) for each in (60.0, 66.9, 120.0, 360.0)
+    ]
     assert [("mains" in peak.reason) for peak in found.peaks] == [True, False, True, True]
     peaks = [(round(peak.frequency, 1), peak.doubt) for peak in frame.peaks]
     first = [round(each, 1) for each in frame.frequencies[:-2]]
-    assert (first, peaks) in (([34.1], [(66.8, Doubt.TONE)]), ([], [(34.1, Doubt.FREE), (66.8, Doubt.TONE)]))
+    assert (first, peaks) in (([34.1], [(66.8, PeakCause.TONE)]), ([], [(34.1, PeakCause.FREE), (66.8, PeakCause.TONE)]))
 
 
 def _standing_out(averaged: Responses, peak: float) -> float:

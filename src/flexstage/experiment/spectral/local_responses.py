@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexstage.base.number import Array
-from flexstage.experiment.identification.diagnosis.peaks import Doubt
+from flexstage.experiment.identification.diagnosis.peaks import PeakCause
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.outputs.tones import remove_tones
 from flexstage.experiment.records.record import Record
@@ -48,7 +48,7 @@ def local_responses(records: Sequence[Record], found: Identified) -> LocalRespon
     >>> round(float(seen.frequencies[np.argmax(abs(seen.values[:, 0, 0]))]), 1)
     10.0
     """
-    hums = any(peak.doubt is Doubt.TONE for peak in found.peaks)
+    hums = any(peak.doubt is PeakCause.TONE for peak in found.peaks)
     names = [each.name for each in (*found.inputs, *found.outputs)]
     chosen = [record.select([each.name for each in record.channels if each.name in names]) for record in records]
     least = max(_least_reach(record) * block_count(record) / record.duration for record in chosen)

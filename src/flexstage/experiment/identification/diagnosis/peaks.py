@@ -29,7 +29,7 @@ _PART, _LITTLE = 0.3, 0.03
 _MOST = 20
 
 
-class Doubt(Enum):
+class PeakCause(Enum):
     """Reason why a peak is not a mode."""
 
     TONE = "tone"
@@ -62,7 +62,7 @@ class Peak:
     )
 
     frequency: Annotated[float, FREQUENCY, Heading(digits=5)]
-    doubt: Doubt
+    doubt: PeakCause
     chance: Annotated[float, Heading("probability by chance", digits=2)]
     width: Annotated[float | None, FREQUENCY, Heading(digits=3, absent="below a line")]
     resolution: Annotated[float, FREQUENCY, Heading("line spacing", digits=3)]
@@ -75,15 +75,15 @@ class Peak:
         >>> Peak(120.0, Doubt.NARROW, 1e-6, None, 0.3125, ("y",)).reason
         'one line, 0.3125 Hz from the next: a narrower resonance or a tone (2 x 60 Hz: the mains?). Measure with finer lines.'
         """
-        if self.doubt is Doubt.TONE:
+        if self.doubt is PeakCause.TONE:
             return f"a tone absent from the inputs{_mains(self)}, or an oscillation without decay in the record. It is removed."
-        if self.doubt is Doubt.FREE:
+        if self.doubt is PeakCause.FREE:
             return "a free oscillation with too little decay in the record to determine its damping. Record longer."
-        if self.doubt is Doubt.UNDRIVEN:
+        if self.doubt is PeakCause.UNDRIVEN:
             return "the recorded inputs do not drive it: an unrecorded force does, or an unsteady tone. Record all excitation of the stage."
-        if self.doubt is Doubt.UNSURE:
+        if self.doubt is PeakCause.UNSURE:
             return "its damping is too uncertain: noise or a neighbouring mode could cause it. Record longer."
-        if self.doubt is Doubt.WEAK:
+        if self.doubt is PeakCause.WEAK:
             return "noise could be as strong. Record longer, or increase the drive."
         lines = f"one line, {self.resolution:.4g} Hz from the next"
         return f"{lines}: a narrower resonance or a tone{_mains(self)}. Measure with finer lines."
@@ -116,10 +116,10 @@ def peaks(
     step = known.resolution
     free = [tone for tone in known.tones if not (tone.fades and _is_listed(complex(0.0, tone.frequency), left.poles, (), step))]
     found = tone_peaks(free, step, known.responses.outputs, known.output_scale)
-    for doubt, group in ((Doubt.UNDRIVEN, refused), (Doubt.WEAK, sorted(lost, key=lambda each: each.chance))):
+    for doubt, group in ((PeakCause.UNDRIVEN, refused), (PeakCause.WEAK, sorted(lost, key=lambda each: each.chance))):
         for each in group:
-            modes = () if doubt is Doubt.UNDRIVEN else left.poles
-            if (doubt is Doubt.UNDRIVEN or each.chance < _NOTICED) and not _is_listed(each.pole, modes, found, step):
+            modes = () if doubt is PeakCause.UNDRIVEN else left.poles
+            if (doubt is PeakCause.UNDRIVEN or each.chance < _NOTICED) and not _is_listed(each.pole, modes, found, step):
                 size = np.abs(each.shape)
                 seen = _names(known.responses.outputs, size > _PART * np.max(size))
                 found.append(Peak(abs(each.pole), doubt, each.chance, -2.0 * each.pole.real, step, seen))
@@ -154,7 +154,7 @@ def tone_peaks(tones: Iterable[Tone], resolution: float, outputs: Sequence[Chann
     return [
         Peak(
             tone.frequency,
-            Doubt.FREE if tone.fades else Doubt.TONE,
+            PeakCause.FREE if tone.fades else PeakCause.TONE,
             tone.chance,
             None,
             resolution,
@@ -191,7 +191,7 @@ def narrow_peaks(responses: Responses, left: ResidualResponses) -> list[Peak]:
             break
         if all(abs(lines[line] - other.frequency) > 1.5 * step for other in found):
             seen = _names(responses.outputs, np.min(chance[line], axis=1) < _ONE_IN)
-            found.append(Peak(float(lines[line]), Doubt.NARROW, float(least[line]), None, step, seen))
+            found.append(Peak(float(lines[line]), PeakCause.NARROW, float(least[line]), None, step, seen))
     return found
 
 

@@ -10,7 +10,7 @@ import scipy
 
 from flexstage.base.finding import Finding, require
 from flexstage.experiment.identification.cluster import vector_assurance
-from flexstage.experiment.identification.diagnosis.peaks import Doubt, Peak, tone_peaks
+from flexstage.experiment.identification.diagnosis.peaks import Peak, PeakCause, tone_peaks
 from flexstage.experiment.identification.identified import Identified
 from flexstage.experiment.identification.identify import Search, close_groups, identify
 from flexstage.experiment.identification.outputs.subspace import BLOCKS, AmbientMode, band_covariances, searched_from, shaken_modes
@@ -63,8 +63,8 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     size = np.sqrt(found.noise * (high - low))
     peaks = [
         *tone_peaks(tones, 1.0 / record.duration, record.outputs, np.where(size > 0.0, size, 1.0)),
-        *(_peak(mode, Doubt.NARROW, record.outputs, resolution) for mode in narrow),
-        *(_peak(mode, Doubt.UNSURE, record.outputs, resolution) for mode in unsure),
+        *(_peak(mode, PeakCause.NARROW, record.outputs, resolution) for mode in narrow),
+        *(_peak(mode, PeakCause.UNSURE, record.outputs, resolution) for mode in unsure),
     ]
     return replace(found, stabilisation=tuple(each for each, _ in every), peaks=tuple(sorted(peaks, key=lambda each: each.frequency)))
 
@@ -172,8 +172,8 @@ def _none(modes: Sequence[AmbientMode]) -> list[str]:
     return [] if len(modes) else ["no mode exceeds the noise of floor and gauges: record longer, or excite more."]
 
 
-def _peak(mode: AmbientMode, doubt: Doubt, outputs: Sequence[Channel], resolution: float) -> Peak:
+def _peak(mode: AmbientMode, doubt: PeakCause, outputs: Sequence[Channel], resolution: float) -> Peak:
     largest = np.abs(mode.shape) > 0.5
     named = tuple(channel.name for channel, is_large in zip(outputs, largest, strict=True) if is_large)
     chance = float(scipy.special.erfc(_certainty(mode) / np.sqrt(2.0)))
-    return Peak(abs(mode.pole), doubt, chance, None if doubt is Doubt.NARROW else -2.0 * mode.pole.real, resolution, named)
+    return Peak(abs(mode.pole), doubt, chance, None if doubt is PeakCause.NARROW else -2.0 * mode.pole.real, resolution, named)
