@@ -13,7 +13,7 @@ from flexstage.control.simulation.machine import Machine
 
 
 @dataclass(frozen=True, eq=False)
-class Inflow:
+class ExternalInputs:
     """External inputs: `disturbances` (n, w) of the plant, and additions to `readings` (n, g) [m] and `strokes` (n, m) [m]."""
 
     disturbances: Array
@@ -21,7 +21,7 @@ class Inflow:
     strokes: Array
 
 
-def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> Inflow:
+def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> ExternalInputs:
     """Arrange named series (n,) of `count` samples in a machine's order; others are zero.
 
     Names are the plant's further inputs (`ground.x`, `platform.fz`) and `noise.<gauge>`, `noise.<actuator>` [m]. Raises `DesignError` for
@@ -38,7 +38,7 @@ def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> Inf
     readings, strokes = ([f"noise.{name}" for name in names] for names in (given.gauges, given.actuators))
     groups = [channel.name for channel in given.disturbances], readings, strokes
     require(_findings(named, [name for names in groups for name in names], count, readings))
-    return Inflow(*(np.array([named.get(name, np.zeros(count)) for name in names]).reshape(-1, count).T for names in groups))
+    return ExternalInputs(*(np.array([named.get(name, np.zeros(count)) for name in names]).reshape(-1, count).T for names in groups))
 
 
 def _findings(named: Mapping[str, Array], known: list[str], count: int, readings: list[str]) -> Iterator[Finding]:
