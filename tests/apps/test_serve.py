@@ -22,7 +22,7 @@ from flexstage.cases.parallelogram import parallelogram
 from flexstage.control.serve.controller import StageController
 from flexstage.control.serve.errors import Code, CommandError
 from flexstage.control.serve.gcs import COMMANDS, LONGEST, Session, spelled
-from flexstage.control.serve.server import CLIENTS, HOST, Served
+from flexstage.control.serve.server import CLIENTS, HOST, ServedStage
 from flexstage.control.serve.waves import segment
 from flexstage.control.simulation.noise import noise_series
 from flexstage.control.simulation.run import simulate
@@ -46,7 +46,7 @@ def stage() -> StageController:
 @pytest.fixture(scope="module")
 def port(stage) -> Iterator[int]:
     """A server in a thread of its own, as fast as it goes."""
-    loop, served = asyncio.new_event_loop(), Served(stage, 0, paced=False)
+    loop, served = asyncio.new_event_loop(), ServedStage(stage, 0, paced=False)
     thread = threading.Thread(target=loop.run_forever)
     thread.start()
     asyncio.run_coroutine_threadsafe(served.start(), loop).result()
@@ -464,7 +464,7 @@ def test_the_command_serves_until_it_is_interrupted(tmp_path):
 
 def test_a_port_that_is_taken_is_a_finding(port, stage):
     with pytest.raises(DesignError, match=f"--port {port}"):
-        asyncio.run(Served(stage, port).start())
+        asyncio.run(ServedStage(stage, port).start())
 
 
 def test_the_documentation_lists_every_command():

@@ -21,8 +21,8 @@ LOCAL = ("file:", "data:", "blob:", "about:", "http://127.0.0.1:", "ws://127.0.0
 PATIENCE = 120.0  # s: a busy machine is slow, not wrong
 EDITOR = "#editor .cm-content"
 
-Served = tuple[str, Path]
-Serve = Callable[[str], Served]
+ServedStage = tuple[str, Path]
+Serve = Callable[[str], ServedStage]
 
 
 def until(page: Page, expression: str, patience: float = PATIENCE) -> object:
@@ -60,7 +60,7 @@ def serve(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serve]:
     """Starts a studio on a text: its address, and the file."""
     with ExitStack() as stack:
 
-        def start(text: str) -> Served:
+        def start(text: str) -> ServedStage:
             file = tmp_path_factory.mktemp("studio") / "stage.toml"
             file.write_text(text, encoding="utf-8")
             studio, _ = stack.enter_context(served_studio(file))
@@ -70,12 +70,12 @@ def serve(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serve]:
 
 
 @pytest.fixture(scope="module")
-def served(serve: Serve) -> Served:
+def served(serve: Serve) -> ServedStage:
     return serve(fs.dumps(fs.case("parallelogram")))
 
 
 @pytest.fixture(scope="module")
-def page(browser: Browser, served: Served) -> Iterator[Page]:
+def page(browser: Browser, served: ServedStage) -> Iterator[Page]:
     """The studio's page on a guide of two leaves, drawn and settled; no error and no foreign request until its end."""
     watch = Watch(LOCAL)
     context = browser.new_context(viewport={"width": 1440, "height": 900})
@@ -113,7 +113,7 @@ def test_the_token_leaves_the_address_bar_and_figures_stand_there(page: Page) ->
     assert page.locator("#problems .error").count() == 0
 
 
-def test_figures_after_a_slider_are_the_librarys_and_undo_and_save_keep_the_file_byte_for_byte(page: Page, served: Served) -> None:
+def test_figures_after_a_slider_are_the_librarys_and_undo_and_save_keep_the_file_byte_for_byte(page: Page, served: ServedStage) -> None:
     file = served[1]
     original, before = file.read_bytes(), page.evaluate("() => studio.state.value.revision")
     slide(page, LEAF, 0.7)
@@ -221,7 +221,7 @@ def test_a_file_with_an_error_in_its_requirements_opens_with_it_at_its_line(brow
 
 
 @pytest.mark.full
-def test_two_pages_show_the_same_text_and_one_may_close_in_the_middle(page: Page, served: Served) -> None:
+def test_two_pages_show_the_same_text_and_one_may_close_in_the_middle(page: Page, served: ServedStage) -> None:
     other = page.context.new_page()
     other.goto(served[0])
     settled(other)
@@ -237,7 +237,7 @@ def test_two_pages_show_the_same_text_and_one_may_close_in_the_middle(page: Page
 @pytest.mark.full
 @pytest.mark.parametrize("dark", [False, True])
 @pytest.mark.parametrize(("width", "height"), [(1440, 900), (1024, 768), (390, 844)])
-def test_nothing_is_wider_than_the_window(browser: Browser, served: Served, width: int, height: int, dark: bool) -> None:
+def test_nothing_is_wider_than_the_window(browser: Browser, served: ServedStage, width: int, height: int, dark: bool) -> None:
     made = browser.new_page(viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light")
     made.goto(served[0])
     settled(made)
@@ -251,7 +251,7 @@ def test_nothing_is_wider_than_the_window(browser: Browser, served: Served, widt
 
 
 @pytest.mark.full
-def test_without_webgl_figures_text_and_numbers_live(browser: Browser, served: Served) -> None:
+def test_without_webgl_figures_text_and_numbers_live(browser: Browser, served: ServedStage) -> None:
     path = browser_path()
     if path is None:
         pytest.skip("no browser")

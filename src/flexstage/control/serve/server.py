@@ -57,7 +57,7 @@ class Pace:
         return 0.0
 
 
-class Served:
+class ServedStage:
     """Stage controlled by clients. If not `paced`, time runs as fast as it is computed, while a client is connected."""
 
     def __init__(self, stage: StageController, port: int = PORT, *, paced: bool = True) -> None:
@@ -180,7 +180,7 @@ class _Lines:
 
 async def run(stage: StageController, port: int, started: Callable[[int], None], *, paced: bool) -> Pace | None:
     """Serve a stage until interrupted; passes the port to `started`. Returns the lag, if synchronised with the clock."""
-    served = Served(stage, port, paced=paced)
+    served = ServedStage(stage, port, paced=paced)
     await served.start()
     try:
         started(served.port)
