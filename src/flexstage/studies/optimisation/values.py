@@ -43,7 +43,7 @@ class Scalars:
 
 
 @dataclass(frozen=True, eq=False)
-class Numbered:
+class NumberedFrequency:
     """The frequency number `count` of a spectrum."""
 
     spectrum: Spectrum
@@ -67,7 +67,7 @@ class Point:
     """A design at `shares` (n,) of the variables' ranges, with its measures in the requested order."""
 
     shares: Array
-    found: tuple[Scalars | Numbered, ...]
+    found: tuple[Scalars | NumberedFrequency, ...]
 
     @property
     def values(self) -> Array:
@@ -146,7 +146,7 @@ class Values:
             stepped = self._design(rows)
             bench = StageResults(stepped, self._command)
             modes = spectra(bench.model, self._modes, (designs, variables if slopes else 0)) if self._modes else []
-            columns: list[Sequence[Scalars | Numbered]] = []
+            columns: list[Sequence[Scalars | NumberedFrequency]] = []
             for measure in self.measures:
                 if measure.kind in _SPECTRAL:
                     columns.append([self._nth_frequency(own, measure) for own in modes])
@@ -156,9 +156,9 @@ class Values:
                     columns.append(_scalars(measure.kind.pieces(bench, measure), _extreme(measure), (designs, each), slopes=slopes))
         return [Point(shares[design], tuple(column[design] for column in columns)) for design in range(designs)]
 
-    def _nth_frequency(self, own: tuple[Spectrum, ...], measure: Measure) -> Numbered:
+    def _nth_frequency(self, own: tuple[Spectrum, ...], measure: Measure) -> NumberedFrequency:
         platform = measure.kind is platform_frequency
-        return Numbered(own[[modes.platform for modes in self._modes].index(platform)], int(measure.name))
+        return NumberedFrequency(own[[modes.platform for modes in self._modes].index(platform)], int(measure.name))
 
     def _central_differences(self, measure: Measure, shares: Array, *, slopes: bool) -> list[Scalars]:
         designs, variables = shares.shape

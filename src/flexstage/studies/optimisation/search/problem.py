@@ -10,7 +10,7 @@ import numpy as np
 from flexstage.analysis.assessment.measures import Extreme
 from flexstage.analysis.assessment.requirements import Sense
 from flexstage.base.number import Array
-from flexstage.studies.optimisation.values import Numbered, Point, Scalars
+from flexstage.studies.optimisation.values import NumberedFrequency, Point, Scalars
 
 SPARE = 1e-8
 """Margin of a limit over its scale, so that rounding does not violate it."""
@@ -116,7 +116,7 @@ def second_order_correction(side: Side, point: Point, tried: Point) -> Linear:
     return Linear(turned - np.tensordot(tried.shares - point.shares, here.slope, axes=1), here.slope)
 
 
-def members(side: Side, found: Numbered) -> slice:
+def members(side: Side, found: NumberedFrequency) -> slice:
     """The modes of the spectrum that a side contains.
 
     >>> from flexstage.studies.optimisation.search.spectrum import Spectrum
@@ -185,8 +185,8 @@ def lagrangian(problem: Problem, point: Point, weights: tuple[Weights, ...], see
 def _change_basis(side: Side, values: Array, before: Point, now: Point) -> Array:
     """A matrix transformed from the modes of one design to those of another."""
     first, second = before.found[side.index], now.found[side.index]
-    assert isinstance(first, Numbered)  # noqa: S101  a side with a matrix is of frequencies
-    assert isinstance(second, Numbered)  # noqa: S101
+    assert isinstance(first, NumberedFrequency)  # noqa: S101  a side with a matrix is of frequencies
+    assert isinstance(second, NumberedFrequency)  # noqa: S101
     chosen = members(side, first)
     left, _, right = np.linalg.svd(first.spectrum.weighted[:, chosen].T @ second.spectrum.shapes[:, chosen])
     turn = left @ right
