@@ -36,14 +36,14 @@ _NONE = "no kind has a similar name"
 
 
 @dataclass(frozen=True)
-class Reached:
+class ScatteredNumbers:
     """Numbers of an entry, by component (one without components), and the shared number behind each."""
 
     components: Mapping[str, tuple[str, ...]]
     shared: Mapping[str, str]
 
 
-def reach(design: Mechanism, source: str) -> Reached:
+def reach(design: Mechanism, source: str) -> ScatteredNumbers:
     """Expand an address or a kind into numbers of single instances; vectors into their components.
 
     Kinds are the keys of `KINDS`, `units`, `gauges` and `materials`, before a number's name: `hinges.thickness`, `units.rotation.z`,
@@ -62,7 +62,7 @@ def reach(design: Mechanism, source: str) -> Reached:
     for address in _addresses(design, source.strip()):
         for component, number in _numbers(design, address):
             components.setdefault(component, []).extend(_copies(design, locate(design, number), links, shared))
-    return Reached({name: tuple(dict.fromkeys(found)) for name, found in components.items()}, shared)
+    return ScatteredNumbers({name: tuple(dict.fromkeys(found)) for name, found in components.items()}, shared)
 
 
 def _addresses(design: Mechanism, source: str) -> tuple[str, ...]:
