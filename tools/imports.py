@@ -14,7 +14,7 @@ import grimp
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = "flexstage"
-LOADERS = ("import_module", "Late", "find_spec", "__import__")
+LOADERS = ("import_module", "LazyModule", "find_spec", "__import__")
 """Functions that take the name of a module."""
 _TABLE = "lazy_attributes"
 _NAME = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*(:\w+)?")

@@ -9,7 +9,7 @@ import pytest
 
 import flexstage as fs
 from flexstage.cases.parallelogram import parallelogram
-from flexstage.show.command.displaced import OperatingPointOptions, footing
+from flexstage.show.command.displaced import OperatingPointOptions, command_stage
 from tests.laws.test_nonlinear import guide
 
 
@@ -65,7 +65,7 @@ def test_weight_is_a_load_that_grows():
 
 def test_options_bring_a_stage_where_it_is_to_be():
     stage = parallelogram()
-    about = footing(stage, OperatingPointOptions(["platform.x=0.2 mm"], ["platform.fy=5 N"])).operating_point
+    about = command_stage(stage, OperatingPointOptions(["platform.x=0.2 mm"], ["platform.fy=5 N"])).operating_point
     model = fs.nonlinear(stage)
     sag = float(fs.equilibrium(model, {"platform.fy": 5.0}).displacement()[0])
     same = fs.linearise(fs.equilibrium(model, {"platform.fy": 5.0}, hold={"platform.x": sag + 2e-4}))
@@ -78,7 +78,7 @@ def test_options_bring_a_stage_where_it_is_to_be():
 )
 def test_options_that_mean_nothing_are_refused(at: list[str], load: list[str]):
     with pytest.raises(fs.DesignError):
-        footing(parallelogram(), OperatingPointOptions(at, load))
+        command_stage(parallelogram(), OperatingPointOptions(at, load))
 
 
 def test_loads_past_what_a_stage_bears_are_told_with_how_far_it_stays():
@@ -90,7 +90,7 @@ def test_loads_past_what_a_stage_bears_are_told_with_how_far_it_stays():
 
 def test_what_stays_locked_is_said_once():
     with pytest.raises(fs.DesignError, match="given twice"):
-        footing(parallelogram(), OperatingPointOptions(["platform.x=1 um"], fixed=["platform.x", "platform.x"]))
+        command_stage(parallelogram(), OperatingPointOptions(["platform.x=1 um"], fixed=["platform.x", "platform.x"]))
 
 
 def test_what_is_bent_beyond_the_theory_is_told():

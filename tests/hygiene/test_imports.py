@@ -55,7 +55,7 @@ def test_every_loader_states_its_names() -> None:
     "text",
     [
         'import_module("flexstage.show.table")',
-        'Late("flexstage.show.table")',
+        'LazyModule("flexstage.show.table")',
         '_SHOW = "flexstage.show"\nHOME = f"{_SHOW}.table:Table"',
         'HOMES = {"show.table": "Table"}\nlazy_attributes(__name__, HOMES)',
         'TASKS = {"write": "show.table:make_table"}',

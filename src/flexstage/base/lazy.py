@@ -29,7 +29,7 @@ def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[s
 class LazyModule:
     """Module by its full name, imported at first use; type checkers see the import.
 
-    >>> Late("math").floor(1.5)
+    >>> LazyModule("math").floor(1.5)
     1
     """
 

@@ -24,7 +24,7 @@ from flexstage.models.ideal import ideal
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command, print_missing
 from flexstage.show.command.design import Lumped, elastic_model
-from flexstage.show.command.displaced import OperatingPointOptions, footing
+from flexstage.show.command.displaced import OperatingPointOptions, command_stage
 from flexstage.show.command.options import (
     InputDensities,
     ModelName,
@@ -74,7 +74,7 @@ def workspace(
             lambda: [_small_text(small), *force_workspace_tables(reached)],
             model=model,
         )
-    stands = footing(mechanism, OperatingPointOptions(), model)
+    stands = command_stage(mechanism, OperatingPointOptions(), model)
     lost = None if linear is None or not kinematics.actuated else lost_motion(kinematics, stands.links)
     asked = motions(command or ()) or required_command(mechanism)
     found = study.workspace(mechanism, kinematics, linear, lost=lost, command=asked)
@@ -118,7 +118,7 @@ def drift(
 
     Prints drift per kelvin and per kelvin per metre by the lumped model. Significant permanent loads are included.
     """
-    stands = footing(mechanism, OperatingPointOptions())
+    stands = command_stage(mechanism, OperatingPointOptions())
     found = drifting.drift(mechanism, stands.links, ground=ground)
     return CommandResult(
         mechanism,
@@ -170,7 +170,7 @@ def budget(
 
     With --input-asd: noise of the actuators and floor vibration.
     """
-    stands = footing(mechanism, OperatingPointOptions())
+    stands = command_stage(mechanism, OperatingPointOptions())
     if stands.links.floating is not None:
         own = {"--command": command, "--temperature": temperature, "--point": point != PLATFORM, "--input-asd": input_asd, "--band": band}
         return _closed_loop(mechanism, [option for option, value in own.items() if value])

@@ -31,7 +31,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.design import Lumped, known_point
-from flexstage.show.command.displaced import OperatingPointOptions, footing
+from flexstage.show.command.displaced import OperatingPointOptions, command_stage
 from flexstage.show.command.options import ElasticModelName, InputDensities, ModelName, Point, band_option, text_option
 from flexstage.show.command.output import save
 from flexstage.show.command.values import band_limits, spectra
@@ -99,7 +99,7 @@ def stiffness(
     require(
         Finding(f"--at {text}", "the value is missing", f"Use --point {text} for a point") for text in place.at or () if "=" not in text
     )
-    there = footing(mechanism, place, model)
+    there = command_stage(mechanism, place, model)
     linear = there.linear
     read_point = known_point(linear, point, "--point")
     found = statics(linear, load_point=known_point(linear, load_point or point, "--load-point"), read_point=read_point)
@@ -144,7 +144,7 @@ def lost_motion(
 
     Of force-driven stages: the force per displacement, compared with the ideal guide.
     """
-    there, kinematics = footing(mechanism, place, model), ideal(mechanism)
+    there, kinematics = command_stage(mechanism, place, model), ideal(mechanism)
     if kinematics.thrusts and not kinematics.actuated:
         pushed = drive_force(kinematics, there.links, force_workspace(mechanism, kinematics, there.links))
         return CommandResult(
@@ -194,7 +194,7 @@ def modes(
     ending = None if view is None else _view_ending(view)
     if ending == ".glb" and place:
         raise refuse("--view", "a GLB file shows the stage as drawn", f"Leave out {place.options}, or write a page (.html)")
-    there = footing(mechanism, place, model)
+    there = command_stage(mechanism, place, model)
     linear = there.linear
     found = platform_modes(mechanism, linear)
     if view is not None:
@@ -263,7 +263,7 @@ def response(
 
     With --at, --load, --fixed or --temperature: about that operating point.
     """
-    there = footing(mechanism, place, model)
+    there = command_stage(mechanism, place, model)
     linear = there.linear
     law = damping_law(linear)
     grid = responses.default_frequencies(linear, band_limits(band), damping=law)

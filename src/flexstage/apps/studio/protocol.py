@@ -524,8 +524,8 @@ class State:
 
     `sound`: the design has no error, otherwise `problems` lists the errors. If the text has errors, numbers and figures belong to the
     last text without errors. `changed` counts numbers that differ from the file's, `warnings` are the last reported ones, `page` is the
-    one whose request made the change (0: the server), `pins` the pinned designs. `links` belong to the expanded stage, with the line of each.
-    `unprotected` is the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
+    one whose request made the change (0: the server), `pins` the pinned designs. `links` belong to the expanded stage, with the line of
+    each. `unprotected` is the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
     """
 
     revision: int

@@ -26,7 +26,7 @@ from flexstage.experiment.record_options import RECORD, AcceptFault, Arrays, Cha
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.design import Lumped
-from flexstage.show.command.displaced import CommandStage, OperatingPointOptions, footing
+from flexstage.show.command.displaced import CommandStage, OperatingPointOptions, command_stage
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import (
     FEA,
@@ -101,7 +101,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         _require_comparable(asked, {"--export": bool(exports), "--hardware": hardware is not None})
     models: Models = context.obj
     solid = models.modes("solid")(mechanism, computing=True) if fea else None
-    stands = CommandStage(mechanism, asked.model) if fea else footing(mechanism, place, asked.model)
+    stands = CommandStage(mechanism, asked.model) if fea else command_stage(mechanism, place, asked.model)
     model = None if fea else asked.model
     with progress_bar() as shown:
         test = _identified(record, texts, shown.share)

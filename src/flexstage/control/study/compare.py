@@ -200,7 +200,7 @@ def compare_controllers(
     return Comparison(Table(found), Table({name: "; ".join(map(str, findings)) for name, findings in missed.items()}))
 
 
-_Came: TypeAlias = "Rival | tuple[Finding, ...]"
+_Came: TypeAlias = "ComparedController | tuple[Finding, ...]"
 
 
 def _every(one: Callable[[Line | None, LoopSetup], _Came], rivals: Mapping[str, LoopSetup], workers: int) -> Iterator[tuple[str, _Came]]:

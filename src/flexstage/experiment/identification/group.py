@@ -82,7 +82,7 @@ def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], 
     >>> from flexstage.experiment.spectral.lines import edges, gather_cells
     >>> known, pole = evidence(one_mode_record(), None), 1.01 * POLE
     >>> [cells] = gather_cells(known.lines(), [edges(np.array([pole]), 6.0, 14.0)])
-    >>> found = fit_group(known, cells, (Candidate(pole, np.ones(1), 3),), Hunt(Extent(6.0, 14.0, (0,)), 0.1, []))
+    >>> found = fit_group(known, cells, (Candidate(pole, np.ones(1), 3),), ModeSearch(Extent(6.0, 14.0, (0,)), 0.1, []))
     >>> None if found is None else abs(found.modal.poles).round(1).tolist()
     [10.0]
     """

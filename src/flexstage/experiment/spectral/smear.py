@@ -30,7 +30,8 @@ class WindowLeakage:
     def functions(self, frequencies: Array, poles: Array) -> tuple[Array, Array]:
         """Smeared functions 1/(j f - p) (..., k) and derivatives by p, poles p in Hz (rad/s over 2 pi).
 
-        >>> sharp, smeared = 1 / (1j * 12.0 - (-1 + 10j)), Smear(Window.HANN, 1000.0).functions(np.array([12.0]), np.array([-1 + 10j]))[0]
+        >>> sharp = 1 / (1j * 12.0 - (-1 + 10j))
+        >>> smeared = WindowLeakage(Window.HANN, 1000.0).functions(np.array([12.0]), np.array([-1 + 10j]))[0]
         >>> bool(abs(smeared[0, 0] / sharp - 1.0) < 1e-3)
         True
         """

@@ -35,7 +35,7 @@ class ReplacementPart:
     def drawn_name(self) -> str:
         """Original name of the drawn part.
 
-        >>> StandIn(ComplianceMatrix(((0.0,) * 6,) * 6, (), replaces="neck-drawn"), ()).drawn_name
+        >>> ReplacementPart(ComplianceMatrix(((0.0,) * 6,) * 6, (), replaces="neck-drawn"), ()).drawn_name
         'neck'
         """
         return self.given.replaces.removesuffix(KEPT)
@@ -49,7 +49,7 @@ def write_stand_ins(text: str, parts: Mapping[str, ReplacementPart], tag: str, *
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.store import dumps, loads
     >>> unit = tuple(tuple(1e-7 * (row == column) for column in range(6)) for row in range(6))
-    >>> leaf = StandIn(ComplianceMatrix(unit, free=(), replaces="leaf-drawn"), ("links.left", "links.right"))
+    >>> leaf = ReplacementPart(ComplianceMatrix(unit, free=(), replaces="leaf-drawn"), ("links.left", "links.right"))
     >>> text = write_stand_ins(dumps(parallelogram()), {"leaf": leaf}, "derived test")
     >>> loads(text).parts["leaf"].replaces, "leaf-drawn" in loads(text).parts
     ('leaf-drawn', True)

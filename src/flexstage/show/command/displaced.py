@@ -133,7 +133,7 @@ class CommandStage:
         return () if self.operating_point is None else self.operating_point.warnings
 
 
-def footing(mechanism: Mechanism, place: OperatingPointOptions, model: Model = Model.LUMPED) -> CommandStage:
+def command_stage(mechanism: Mechanism, place: OperatingPointOptions, model: Model = Model.LUMPED) -> CommandStage:
     """The stage at the requested operating point. Refuses an operating point with a model without large displacements."""
     if not place:
         return CommandStage(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)

@@ -72,7 +72,7 @@ class Peak:
     def reason(self) -> Annotated[str, VIEW]:
         """Reason why it is not a mode.
 
-        >>> Peak(120.0, Doubt.NARROW, 1e-6, None, 0.3125, ("y",)).reason
+        >>> Peak(120.0, PeakCause.NARROW, 1e-6, None, 0.3125, ("y",)).reason
         'one line, 0.3125 Hz from the next: a narrower resonance or a tone (2 x 60 Hz: the mains?). Measure with finer lines.'
         """
         if self.doubt is PeakCause.TONE:
@@ -109,8 +109,8 @@ def peaks(
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
     >>> known, nothing = evidence(one_mode_record(), None), np.zeros(0)
-    >>> weak = Lost(-0.1 + 20.0j, np.ones(1), 1e-6)
-    >>> [peak.doubt.value for peak in peaks(known, Left(nothing, nothing, nothing), (), (weak, weak))]
+    >>> weak = RejectedResonance(-0.1 + 20.0j, np.ones(1), 1e-6)
+    >>> [peak.doubt.value for peak in peaks(known, ResidualResponses(nothing, nothing, nothing), (), (weak, weak))]
     ['weak']
     """
     step = known.resolution
@@ -174,7 +174,7 @@ def narrow_peaks(responses: Responses, left: ResidualResponses) -> list[Peak]:
     >>> lines, noise = np.arange(100.0), np.random.default_rng(2).standard_normal((2, 100, 1, 1))
     >>> rest = noise[0] + 1j * noise[1] + 30.0 * (lines == 60.0)[:, None, None]
     >>> here = Responses(lines, (Channel("S1"),), (Channel("u"),), rest)
-    >>> [(peak.frequency, peak.outputs) for peak in narrow_peaks(here, Left(lines, rest, np.zeros(0)))]
+    >>> [(peak.frequency, peak.outputs) for peak in narrow_peaks(here, ResidualResponses(lines, rest, np.zeros(0)))]
     [(60.0, ('S1',))]
     """
     lines, rest, poles = left.lines, left.rest, left.poles

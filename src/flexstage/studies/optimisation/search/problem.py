@@ -120,7 +120,7 @@ def members(side: Side, found: NumberedFrequency) -> slice:
     """The modes of the spectrum that a side contains.
 
     >>> from flexstage.studies.optimisation.search.spectrum import Spectrum
-    >>> one = Numbered(Spectrum(np.ones(3), np.zeros((0, 3, 3)), np.eye(3), np.eye(3)), 2)
+    >>> one = NumberedFrequency(Spectrum(np.ones(3), np.zeros((0, 3, 3)), np.eye(3), np.eye(3)), 2)
     >>> members(Side(0, Sense.AT_LEAST, 1.0, 1.0), one), members(Side(0, Sense.AT_MOST, 1.0, 1.0), one)
     (slice(1, None, None), slice(0, 2, None))
     """
