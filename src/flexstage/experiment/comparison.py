@@ -244,7 +244,7 @@ def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...
     found = tuple(channel.name for channel in experiment.outputs if channel.name in known)
     gauges = [channel.name for channel in model.outputs if "." not in channel.name]
     require(
-        Finding(channel.name, "unknown output, like all others of the record", suggest_nearest(channel.name, gauges))
+        Finding(channel.name, "unknown output; no output of the record is known", suggest_nearest(channel.name, gauges))
         for channel in experiment.outputs
         if not found
     )

@@ -309,7 +309,7 @@ def every_body(mechanism: Mechanism) -> Iterator[tuple[str, Body]]:
 
 
 def posed(gauges: Mapping[str, GaugePlace]) -> dict[str, Probe]:
-    """Yield the gauges with their own poses, not on links and not sums of others.
+    """Yield the gauges with their own poses: neither on links nor sums of other gauges.
 
     >>> list(posed({"D": GaugeSum({"S1": 1.0, "S2": -1.0}), "SG": LinkProbe("strain", "B1/pzt")}))
     []

@@ -437,7 +437,7 @@ def _blocked_findings(stage: _Stage, locked: list[tuple[str, Freedom]], missed: 
     for number, (name, link) in enumerate(stage.assembly.actuators.items()):
         blocking = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
         if blocking:
-            what = f"the stroke of actuator {name} is blocked: no elastic degree of freedom between its locked axis and {', '.join(blocking[:6])}"
+            what = f"the stroke of actuator {name} is blocked: no elastic DOF between its locked axis and {', '.join(blocking[:6])}"
             yield Finding(link, what, "Free one of these, or give it stiffness")
 
 

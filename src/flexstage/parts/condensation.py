@@ -349,7 +349,7 @@ def _negative_findings(inertia: MatrixLike) -> Iterator[Finding]:
     largest = np.max(np.abs(diagonal), initial=0.0)
     below = np.flatnonzero(diagonal < -_NEGATIVE * largest)
     if len(below):
-        what = f"{len(below)} of its diagonal entries are negative, the least {diagonal[below].min():.4g} in the file's units"
+        what = f"{len(below)} of its diagonal entries are negative, the smallest {diagonal[below].min():.4g} in the file's units"
         yield Finding("mass matrix", what, "Export the mass matrix of the model, not a dynamic stiffness")
         return
     if scipy.sparse.issparse(inertia):

@@ -91,7 +91,7 @@ class RandomResponse(Result):
 
     @property
     def units(self) -> Annotated[tuple[str, ...], VIEW, Axes("responding")]:
-        """Unit of each output's rms value; mean squares have its square, densities its square per hertz."""
+        """Unit of each output's rms value; mean squares have the square of this unit, densities the square per hertz."""
         return tuple(channel.unit for channel in self.outputs)
 
 

@@ -49,7 +49,7 @@ class DriveForce(Result):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:
-        """Rows are the coordinates, columns the force, that of the ideal guide, and the excess."""
+        """Rows are the coordinates, columns the force, the force of the ideal guide, and the excess."""
         values = np.concatenate([self.force.values, self.total[..., None]], axis=-1)
         units = tuple((*row, "1") for row in self.force.unit)
         return Matrix(values, self.force.rows, ("force", "ideal guide", "excess"), units)

@@ -164,7 +164,7 @@ def budget(
 
     Lost motion, crosstalk, linear map, gauge noise, quantisation and drift, by the lumped model.
 
-    Of a stage that forces move, in open loop: parasitic motion, gauge noise, quantisation and drift.
+    Of force-driven stages, in open loop: parasitic motion, gauge noise, quantisation and drift.
 
     Of a stage without stiffness along its drive: positioning noise in closed loop, as flexstage loop --quick. No option then applies.
 

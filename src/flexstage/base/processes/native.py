@@ -91,7 +91,7 @@ def kernel_lanes() -> Lanes:
         from flexstage.base.finding import refuse  # requires more than the standard library
 
         what = f"it is {stated}, and kernels run here with {', '.join(result)}, or are off"
-        raise refuse(SWITCH, what, "State one of these, or nothing for the fastest")
+        raise refuse(SWITCH, what, "Set it to one of these, or leave it empty for the fastest")
     return result[stated] if stated else next(iter(result.values()))
 
 

@@ -43,7 +43,7 @@ def speed_findings(poses: Array, times: Array, mapping: Matrix, slew: Array, *, 
 
     `units` are the units of the actuators' inputs (default: m).
 
-    Findings only, because an amplifier saturates behind a step, as the simulation shows. Columns of `mapping` (R_a) are the coordinates of
+    These are no errors: the simulation shows the saturation of the amplifier. Columns of `mapping` (R_a) are the coordinates of
     the poses.
 
     >>> lever = Matrix(np.array([[2.0]]), ("B1",), ("x",), "1")

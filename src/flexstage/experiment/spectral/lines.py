@@ -77,7 +77,7 @@ def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int
 
     At least `least` blocks, or as many as memory requires.
 
-    Its inputs are the columns `inputs` of the drive, and the transients of its blocks the columns from `first`.
+    Columns of the record's inputs: `inputs` of the drive, and from `first` the transients of its blocks.
 
     >>> from flexstage.experiment.records.record import Channel, Role, in_memory
     >>> both = in_memory([Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)], 8.0, np.eye(8)[:, :2])

@@ -35,7 +35,7 @@ def requirement_section(analysis: Analysis) -> Section | None:
     """
     if not analysis.verdicts:
         return None
-    note = "Judged by the lumped model, for any model of this report."
+    note = "Verdicts always use the lumped model, whatever the model of this report."
     return section("Requirements", [verdict_table(sorted(analysis.verdicts, key=is_met), explained=True), Prose(note)])
 
 

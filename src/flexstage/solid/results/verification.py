@@ -100,7 +100,7 @@ class Row:
 
     @property
     def calibrated_difference(self) -> Annotated[float | None, RATIO, Heading("calibrated error", digits=3, unit="%")]:
-        """Calibrated theory over FEA less one."""
+        """Relative difference of calibrated theory and FEA."""
         return None if self.calibrated is None else _relative(self.calibrated, self.fea)
 
     @property

@@ -28,7 +28,7 @@ class Variable:
     """One number of a study from `low` to `high` [SI of `quantity`], written to all its `addresses`.
 
     `relative`: low and high are factors on the design's value at each address. `logarithmic`: equal steps are equal ratios. `levels`:
-    number of values of a grid in the range, ends included. `step` [SI]: only its multiples can be made. With a `variant`, its
+    number of values of a grid in the range, ends included. `step` [SI]: manufacturing increment, values are its multiples. With a `variant`, its
     addresses are parameters of that case, from which the design is rebuilt.
     """
 

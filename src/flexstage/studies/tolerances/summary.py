@@ -70,7 +70,7 @@ class ResponseSpread(RequestedMeasure):
 class Yield:
     """`kept` of `copies` keep a requirement, or all; `low` to `high` is the 95 % interval of Clopper and Pearson, exact for random samples.
 
-    Failed samples keep nothing.
+    Failed samples meet no requirement.
     """
 
     kept: int
@@ -127,7 +127,7 @@ class Yields:
 
 @dataclass(frozen=True, eq=False)
 class Crosstalk:
-    """Pose error per command (6, f) over the samples, rows the motion, columns the command; one subtracted on the diagonal.
+    """Pose error per command (6, f) over the samples, rows the motion, columns the command, less the unit matrix.
 
     `kind` is `open` (commanded by the nominal R_a) or `held` (regulated to the pose from the nominal R_s^-1). `nominal`, `mean`,
     `deviation`, and of the magnitudes the 95th percentile `usual` and the `worst`; SI.

@@ -59,7 +59,7 @@ class History:
     pins: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def change(self, text: str, page: int) -> History:
-        """With another text; unchanged for an equal one."""
+        """Return the history with another text, or unchanged for an equal text."""
         if text == self.text:
             return self
         return self._step(text, (*self.past, self.text)[-_MOST:], (), page)

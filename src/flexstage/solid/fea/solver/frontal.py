@@ -231,7 +231,7 @@ def factorise_fronts(order: Fronts, matrices: Sequence[Any], held: Array) -> Ite
     """Factorise a sum of matrices, positive definite on the free nodes, for each of some sets of `held` degrees of freedom.
 
     Matrices are `scipy.sparse.csr_array` with both triangles. Degrees of freedom are ordered by components: those of all nodes along
-    x, then along y, then along z; every pair of nodes with an entry has all nine. Those of a set (masks (k, n)) are not coupled.
+    x, then along y, then along z; every pair of nodes with an entry has all nine. Fronts of one set (masks (k, n)) are not coupled.
     A front is shared if neither it nor its children meet any set. The sets are factorised one after another, when
     needed: only results in use take additional memory.
     Raises `numpy.linalg.LinAlgError` if a front is not positive definite.
