@@ -87,8 +87,8 @@ def _stated_expansion(mechanism: Mechanism, material: str) -> Number:
 def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
     """Return the ground's material: as requested (`none`: no expansion), as in the description, else that of all parts on the ground.
 
-    The parts on the ground are its outlines or, without outlines, its links; they must have one material. Raises `DesignError` for several materials or none:
-    drift is then undefined.
+    The parts on the ground are its outlines or, without outlines, its links; they must have one material. Raises `DesignError` for
+    several materials or none: drift is then undefined.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> ground_of(double_triangle())

@@ -28,8 +28,8 @@ class Variable:
     """One number of a study from `low` to `high` [SI of `quantity`], written to all its `addresses`.
 
     `relative`: low and high are factors on the design's value at each address. `logarithmic`: equal steps are equal ratios. `levels`:
-    number of values of a grid in the range, ends included. `step` [SI]: manufacturing increment, values are its multiples. With a `variant`, its
-    addresses are parameters of that case, from which the design is rebuilt.
+    number of values of a grid in the range, ends included. `step` [SI]: manufacturing increment, values are its multiples. With a
+    `variant`, its addresses are parameters of that case, from which the design is rebuilt.
     """
 
     name: str
