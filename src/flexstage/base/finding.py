@@ -144,12 +144,12 @@ def suggest_nearest(name: str, names: Iterable[str], *, otherwise: str = "") -> 
     renamed = new_name(name, known)
     if renamed is not None:
         return f"Use {renamed}"
-    lowered = {each.lower().removeprefix("--"): each for each in reversed(known)}
+    lowered = {each.lower().removeprefix("--"): each for each in known}
     word = name[:80].lower().removeprefix("--")
     begin = [each for each in lowered if len(word) > 2 and each.startswith(word)]
-    close = difflib.get_close_matches(word, reversed(lowered), n=len(known) or 1)
-    close.sort(key=lambda each: (-difflib.SequenceMatcher(None, each, word).ratio(), known.index(lowered[each])))
-    similar = [lowered[each] for each in (begin or close)][:_SUGGESTIONS]
+    ratios = {each: difflib.SequenceMatcher(None, each, word).ratio() for each in lowered}
+    close = sorted((each for each in ratios if ratios[each] >= 0.6), key=ratios.__getitem__, reverse=True)
+    similar = [lowered[each] for each in (begin or close)[:_SUGGESTIONS]]
     if otherwise and not similar:
         return otherwise
     if not known:

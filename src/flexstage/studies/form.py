@@ -103,7 +103,7 @@ class ToleranceTable:
     copies: Annotated[int, _TWO] = 1024
     seed: Annotated[int, _SEED] = 0
     sampling: Annotated[Sampling, ChoiceNode(Sampling, COPIES_BY)] = COPIES_BY[0]
-    wanted: Annotated[float, RATIO, _YIELD] = field(default=0.99, metadata={KEY: "yield"})
+    yield_: Annotated[float, RATIO, _YIELD] = field(default=0.99, metadata={KEY: "yield"})
     requirements: bool = True
     crosstalk: bool | None = None
     point: str = PLATFORM

@@ -15,7 +15,7 @@ from flexstage.analysis.linear_statics.lost_motion import lost_motion
 from flexstage.analysis.workspace import workspace as study
 from flexstage.analysis.workspace.force_workspace import force_workspace
 from flexstage.analysis.workspace.small import SecondOrder, second_order
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import refuse
 from flexstage.base.record import SideBySide
 from flexstage.base.units.quantity import TEMPERATURE
 from flexstage.base.units.unit import parse
@@ -172,8 +172,7 @@ def budget(
     """
     stands = command_stage(mechanism, OperatingPointOptions())
     if stands.links.floating is not None:
-        own = {"--command": command, "--temperature": temperature, "--point": point != PLATFORM, "--input-asd": input_asd, "--band": band}
-        return _closed_loop(mechanism, [option for option, value in own.items() if value])
+        return _closed_loop(mechanism, command or temperature or input_asd or band or point != PLATFORM)
     asked = motions(command or ()) or required_command(mechanism) or _reached(mechanism)
     warmth = None if temperature is None else parse(temperature, TEMPERATURE, where="--temperature")
     noise = spectra(stands.links, input_asd) if input_asd else None
@@ -196,14 +195,15 @@ def _reached(mechanism: Mechanism) -> dict[str, float]:
     return {name: float(held) for name, held in zip(reach.coordinates, reach.held, strict=True) if np.isfinite(held)}
 
 
-def _closed_loop(mechanism: Mechanism, options: list[str]) -> CommandResult:
-    """Positioning noise of the default loop, of a stage without stiffness along its drive; `options` do not apply to it."""
+def _closed_loop(mechanism: Mechanism, options: Any) -> CommandResult:
+    """Positioning noise of the default loop, of a stage without stiffness along its drive; refuses any `options`."""
     from flexstage.control.show.tables import controller_text, noise_table  # loops take a second to load
     from flexstage.control.study.setup import ControllerSetup, LoopSetup
     from flexstage.control.study.study import loop_study
 
-    what = "not applicable: the drive direction has no stiffness, so the budget is of a closed loop"
-    require(Finding(option, what, "Omit it, and set noise and trajectory in flexstage loop") for option in options)
+    if options:
+        what = "the drive direction has no stiffness, so the budget is of a closed loop, without options of its own"
+        raise refuse("budget", what, "Omit --command, --temperature, --point, --input-asd and --band, or set up flexstage loop")
     found = loop_study(mechanism, LoopSetup(controller=ControllerSetup(quick=True)))
     text = f"No stiffness along the drive: noise in closed loop, with the controller of flexstage loop --quick ({controller_text(found)})."
     return CommandResult(mechanism, lambda: found.noise, lambda: [text, noise_table(found)], model=Model.LUMPED)

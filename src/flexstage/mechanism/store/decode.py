@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields, is_dataclass, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Table
-from flexstage.base.storage.digest import KEY
 from flexstage.mechanism.addresses.address import set_text, set_value
 from flexstage.mechanism.addresses.locate import canonical, locate
 from flexstage.mechanism.assembly.expand import unknown_entries
@@ -75,7 +74,8 @@ def read_design(text: str, where: str) -> Mechanism:
 def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged: bool = True) -> _Record:
     """Decode a tree of `format` `form` into a record; raises `DesignError` with all errors.
 
-    Its fields are annotated as in descriptions. `tagged`: its tables may have tags, which are dropped.
+    Its fields are annotated as in descriptions; a keyword as key has a field with a final underscore. `tagged`: its tables may have
+    tags, which are dropped.
 
     >>> from flexstage.parts.rod import Rod
     >>> record_from(Rod, {"format": "rod 1", "material": "steel", "length": "3 mm", "diameter": "1 mm"}, "rod 1").length
@@ -87,21 +87,11 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
     try:
         value = reader.read(node_of(record), {key: part for key, part in raw.items() if key != "format"}, "")
         for address, number, node in () if value is BAD else node_of(record).numbers(value):
-            reader.note(number_findings(_in_file(value, address), number, node))
+            reader.note(number_findings(address.removesuffix("_"), number, node))
     except EnoughError:
         reader.findings.append(Finding("file", f"at least {MOST_FINDINGS} errors", "Correct these first"))
     require(reader.findings)
     return value
-
-
-def _in_file(value: Any, address: str) -> str:
-    """Address with the keys of the file, where the fields have other names (`yield`)."""
-    keys = []
-    for name in address.split("."):
-        own = {each.name: each.metadata.get(KEY, each.name) for each in fields(value)} if is_dataclass(value) else {}
-        keys.append(own.get(name, name))
-        value = value.get(name) if isinstance(value, Mapping) else getattr(value, name, None)
-    return ".".join(keys)
 
 
 def _check_format(reader: Reader, raw: dict[str, Any], form: str) -> None:

@@ -111,7 +111,7 @@ def _study(
         text=text,
         scatters=scatters,
         targets=targets(head.design, variables, shared),
-        wanted=wishes.wanted,
+        wanted=wishes.yield_,
         commanded=command,
     )
 
