@@ -59,7 +59,7 @@ def test_files_on_disk(tmp_path):
     ("text", "words"),
     [
         (PLAYS, 'format = "flexstage hysteresis 1"'),
-        (HEAD + 'thresholds = ["0 V"]', "it has no weights"),
+        (HEAD + 'thresholds = ["0 V"]', "weights missing"),
         (HEAD + PLAYS.replace("20 nm/V", "20 nm"), "weights"),
         (HEAD + PLAYS.replace('"50 V"', "50"), "thresholds"),
         (HEAD + PLAYS.replace("50 V", "-50 V"), "thresholds of axis 0 must ascend (got -50 after 0)"),
