@@ -71,7 +71,7 @@ class Describer:
         solid = solids[name].solid
         drawn, _, own = name.rpartition(".")
         facts = self._data(solid) + (() if placed is None else (("body", placed), *self._body_facts(placed)))
-        return type(solid).__name__.lower(), f"{self._body_address(drawn)}.solids.{own}", facts
+        return type(getattr(solid, "solid", solid)).__name__.lower(), f"{self._body_address(drawn)}.solids.{own}", facts
 
     def _link_address(self, link: PlacedLink | PlacedSuperelement) -> str:
         described = link.described if isinstance(link, PlacedLink) else link
