@@ -29,6 +29,7 @@ myst_heading_anchors = 3
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
 
+smartquotes_action = "qe"  # options such as --list keep both hyphens
 html_theme = "furo"
 html_title = "flexstage"
 html_search_scorer = str(Path(__file__).with_name("search_scorer.js"))  # ranks pages for developers last
