@@ -13,7 +13,7 @@ _POWERS = (4.0, 32.0, 256.0, 2048.0)
 def balance(matrices: Array) -> Array:
     """Balance each matrix (f, n, n) by diagonal scaling e^{d_i} M_ij e^{-d_j}: logarithms d (f, n), by rows and columns in turn.
 
-    Osborne's rule: equal off-diagonal row and column norms. A start value, and often sufficient.
+    Osborne's rule: equal off-diagonal row and column norms. The result is a start value for an optimisation, and often sufficient.
 
     >>> balance(np.array([[[0.0, 100.0], [1.0, 0.0]]])).round(6).tolist()
     [[-1.151293, 1.151293]]

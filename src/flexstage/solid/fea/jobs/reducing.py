@@ -158,7 +158,7 @@ class Reduce(ComponentJob):
         return refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
 
     def foreseen_refusal(self, memory: float, seconds: float) -> Finding | None:
-        """Reason why its usual mesh exceeds a memory [bytes] or a time by a large margin; with its thinnest wide piece."""
+        """Reason why its usual mesh exceeds a memory [bytes] or a time by a large margin; the reason names the thinnest wide piece."""
         scaled = self._usual.coarser(_SURELY**-0.5)
         found = self.refusal(scaled, memory)
         if found is None and self.seconds(scaled) > seconds:
