@@ -82,9 +82,9 @@ class MeasureKind:
 
     The first sentence of that function's docstring is the meaning. `pointed`: a point may be specified. `extreme`: the function returns
     pieces (..., m), and the measure is the least or largest; an optimiser uses all pieces (every actuator, hinge, stack). `softening`:
-    power of 1 - 1/factor of its change where the permanent load softens the measure most. `over_strokes`: the measure covers all strokes. `felt`: it
-    depends on lost motion or drift, which the permanent load changes. `analytic`: complex-step differentiation is valid. `along`: it is
-    along a path of the design, or at a point of the path.
+    power of 1 - 1/factor of its change where the permanent load softens the measure most. `over_strokes`: the measure covers all strokes.
+    `felt`: it depends on lost motion or drift, which the permanent load changes. `analytic`: complex-step differentiation is valid.
+    `along`: it is along a path of the design, or at a point of the path.
     """
 
     form: str
