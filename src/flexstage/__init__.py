@@ -49,7 +49,7 @@ HOMES = {
     "ModalDamping StructuralDamping RayleighDamping",
     "mechanism.store": "dump dumps load loads",
     "analysis.caveats": "check",
-    "studies.synthesis.search": "design",
+    "studies.synthesis.answers": "design",
     "studies.synthesis.specification": "load_specification",
     "cases.registry": "case",
     "models.ideal": "ideal",

@@ -2,7 +2,7 @@ from flexstage import control as control, experiment as experiment, solid as sol
 from flexstage.analysis.caveats import (
     check as check,
 )
-from flexstage.studies.synthesis.search import (
+from flexstage.studies.synthesis.answers import (
     design as design,
 )
 from flexstage.studies.synthesis.specification import (

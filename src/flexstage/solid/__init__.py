@@ -14,7 +14,7 @@ HOMES = {
     "results.hinges": "solid_hinges",
     "results.units": "solid_units",
     "results.stage": "solid_stage",
-    "results.verification": "verify",
+    "results.verification": "required_values verify",
     "results.modes": "fea_modes",
     "results.calibration": "calibrate",
 }

@@ -39,6 +39,7 @@ from flexstage.solid.results.units import (
     solid_units as solid_units,
 )
 from flexstage.solid.results.verification import (
+    required_values as required_values,
     verify as verify,
 )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,6 +14,15 @@ from flexstage.analysis.workspace.stops import single_strokes
 from flexstage.base.finding import DesignError, LowerBoundError
 from flexstage.base.number import Array
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.models.linear.model import LinearModel
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Values of requirements [SI] by their keys, with estimated relative errors where these are known."""
+
+    values: Mapping[str, float]
+    errors: Mapping[str, float] = field(default_factory=dict)
 
 
 def judge(mechanism: Mechanism, bench: StageResults | None = None) -> tuple[Verdict, ...]:
@@ -53,6 +63,20 @@ def bench_of(mechanism: Mechanism) -> StageResults:
     5e-05
     """
     return StageResults(mechanism, _required_strokes(requirements(mechanism)))
+
+
+def required_values(mechanism: Mechanism, model: LinearModel | None = None) -> dict[str, float]:
+    """Return the values of a stage's requirements [SI] by a linear model; the default is the lumped one. Unknown ones are left out.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> {key: round(value) for key, value in required_values(parallelogram()).items() if key.startswith("frequency")}
+    {'frequency.platform.1': 875}
+    """
+    bench = bench_of(mechanism)
+    if model is not None:
+        bench = bench.with_model(model)
+    found = ((line.key, value_or_reason(bench, line)) for line in requirements(mechanism))
+    return {key: float(np.real(value)) for key, value in found if not isinstance(value, str)}
 
 
 def _required_strokes(lines: tuple[Requirement, ...]) -> dict[str, float]:

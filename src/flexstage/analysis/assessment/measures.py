@@ -568,7 +568,7 @@ def _least_factor(bench: StageResults, load_cases: Iterable[cases.LoadCase]) -> 
     return float(least)
 
 
-@partial(MeasureKind, "frequency.unwanted", FREQUENCY)
+@partial(MeasureKind, "frequency.unwanted", FREQUENCY, softening=0.5)
 def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
     """Lowest natural frequency with the required motions of the platform held.
 
@@ -583,8 +583,11 @@ def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
     rows = np.real(model.output[..., model.output_index(tuple(f"{PLATFORM}.{axis}" for axis in axes)), :])
     free = scipy.linalg.null_space(rows.reshape(-1, *rows.shape[-2:])[0])
     stiffness, mass = (free.T @ each @ free for each in (model.stiffness_matrix, model.inertia_matrix))
-    inverse = np.linalg.inv(np.linalg.cholesky(np.real(mass)))
-    lowest = np.linalg.eigh(inverse @ np.real(stiffness) @ np.swapaxes(inverse, -1, -2))[1][..., :, 0]
+    try:  # of 1 / omega^2, so that coordinates without mass are no obstacle
+        inverse = np.linalg.inv(np.linalg.cholesky(np.real(stiffness)))
+    except np.linalg.LinAlgError:
+        raise refuse(asked.key, "the stage with its required motions held has a motion without stiffness", "Add links") from None
+    lowest = np.linalg.eigh(inverse @ np.real(mass) @ np.swapaxes(inverse, -1, -2))[1][..., :, -1]
     mode = np.einsum("...ji,...j->...i", inverse, lowest)
     square = np.einsum("...i,...ij,...j->...", mode, stiffness, mode) / np.einsum("...i,...ij,...j->...", mode, mass, mode)
     return np.sqrt(square) / (2.0 * np.pi)

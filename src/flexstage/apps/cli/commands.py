@@ -118,7 +118,7 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage loop stage.toml --floor VC-D --report loop.html"),
     Command("serve", _CONTROL, "Run a virtual controller of a stage over TCP.", f"{_CONTROLLED}.serve:serve",
             "flexstage serve stage.toml"),
-    Command("design", _IMPROVE, "Design stages for a specification.", f"{_STUDIES}.design:design",
+    Command("design", _IMPROVE, "Design stages for a specification.", f"{_APPS}.design:design",
             "flexstage design spec.toml -o answers"),
     Command("sweep", _IMPROVE, "Compute many designs of a study.", f"{_STUDIES}.sweep:sweep",
             "flexstage sweep study.toml -o results.h5 --report sweep.html"),

@@ -8,6 +8,8 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
+from flexstage.analysis.assessment.judge import Estimate
+from flexstage.analysis.assessment.judge import required_values as judged
 from flexstage.analysis.complete import platform_modes
 from flexstage.analysis.dynamics.pairing import RELIABLE, Moving, Pair, pair_modes
 from flexstage.analysis.linear_statics.statics import statics
@@ -33,7 +35,7 @@ from flexstage.solid.fea.solver.ties import stated_links
 from flexstage.solid.results.calibration import substitute_parts
 from flexstage.solid.results.hinges import STANDARD_HINGES, Hinges, SolidHinge, hinges, solid_hinges
 from flexstage.solid.results.plan import verification_plan, work_ahead
-from flexstage.solid.results.read import STANDARD_SOLIDS, STANDARD_WAYS, Solids, remember, solids
+from flexstage.solid.results.read import STANDARD_SOLIDS, STANDARD_WAYS, Solids, read_solid, remember, solids
 from flexstage.solid.results.resolution import DEFAULT, NOT_ESTIMATED, Converged, Resolution, converge
 from flexstage.solid.results.stage import SolidStage, solid_stage, stage_figures, stiffness_figures
 from flexstage.solid.results.units import SolidUnit, solid_units
@@ -230,6 +232,19 @@ def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
         lambda found: found.read.sizes,
         lambda way: stage_figures(mechanism, way, again),
     )
+
+
+def required_values(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Estimate:
+    """Compute the values of a stage's requirements by finite elements, with estimated errors. Unknown ones are left out.
+
+    Strokes, stresses and frequencies follow from the reduced solid model as from the lumped one; stress concentration at fillets is that of
+    the hinges. Raises `DesignError` if the stage cannot be read as a solid.
+    """
+    again = remember(reduce)
+    found = converge(
+        lambda way: read_solid(mechanism, way, again), lambda read: judged(mechanism, read.model), asked, lambda read: read.sizes
+    )
+    return Estimate(judged(mechanism, found.result.model), {key: error for key, error in found.errors.items() if np.isfinite(error)})
 
 
 def units_solid(

@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import resources
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -252,6 +253,8 @@ def requirement_lines(architecture: Architecture, spec: Specification, known: Ma
         lines[measure_key(architecture, spec, f"stroke.{axis}")] = f"at least {show(value, quantity, digits=_DIGITS)}"
     lines |= {measure_key(architecture, spec, key): text for key, text in spec.requirements.items()}
     lines.setdefault("safety", "at least 2")
+    if architecture.kind == "voice_coil":  # at peak current it would be that of unused force
+        lines["safety.at_strokes"] = lines.pop("safety")
     if spec.together and architecture.kind != "voice_coil":
         lines["corner"] = "at most 100 %"
     box = np.abs(turned_axes(architecture, spec)) @ np.array(spec.box.size)
@@ -262,10 +265,12 @@ def _mm(value: float) -> str:
     return show(float(value), quantity_of_dimension(_LENGTH, "mm"), digits=_DIGITS)
 
 
-def draw(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, without: frozenset[str] = frozenset()) -> str:
+def draw(
+    architecture: Architecture, spec: Specification, actuator: CatalogueActuator, replaced: Mapping[str, str | None] = MappingProxyType({})
+) -> str:
     """Return the design file's text of an architecture for a specification, with the start values of the numbers that are searched.
 
-    Requirements `without` are left out.
+    Requirements in `replaced` have other limits, or are left out (`None`).
     """
     known = scope(architecture, spec, actuator)
     document = tomlkit.parse(architecture.text)
@@ -282,8 +287,8 @@ def draw(architecture: Architecture, spec: Specification, actuator: CatalogueAct
     tree["parts"][architecture.slot] = {"kind": architecture.kind, **_stated(spec, architecture.kind, actuator.name)}
     _set_numbers(tree["numbers"], architecture, spec, known)
     _set_payload(tree, architecture, spec)
-    lines = requirement_lines(architecture, spec, known)
-    tree["requirements"] = {key: text for key, text in lines.items() if key not in without}
+    lines = {**requirement_lines(architecture, spec, known), **replaced}
+    tree["requirements"] = {key: text for key, text in lines.items() if text is not None}
     return tomlkit.dumps(document)
 
 

@@ -10,7 +10,8 @@ from flexstage.show.figures.style import FULL, SERIES, Margins, canvas, panels, 
 from flexstage.show.page import BlockRow, Head, Headline, Picture, page, section
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.viewer.data import still_data
-from flexstage.studies.synthesis.search import Answer, Answers
+from flexstage.studies.synthesis.answers import Answers
+from flexstage.studies.synthesis.search import Answer
 from flexstage.studies.synthesis.show.tables import answer_tables
 
 _BOUND = "Frequency and width of the answers. Lines: highest frequency of any mechanism with these actuators and this payload."

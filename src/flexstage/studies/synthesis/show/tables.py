@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 from flexstage.base.units.quantity import Quantity
 from flexstage.base.units.unit import show
 from flexstage.show.display import format_value
 from flexstage.show.table import Cell, Column, Mark, Table, make_table
-from flexstage.studies.synthesis.search import Answer, Answers, FailedPair, Shortfall
+from flexstage.studies.synthesis.answers import Answers
+from flexstage.studies.synthesis.pairs import ImpossiblePair, Shortfall
+from flexstage.studies.synthesis.search import Answer, FailedPair
 
 _DIGITS = 4
 
@@ -17,7 +19,6 @@ def answer_tables(found: Answers) -> Iterator[Table]:
     """Answers from the best on, pairs that failed, and pairs that a bound excludes.
 
     >>> from flexstage.studies.synthesis.specification import example
-    >>> from flexstage.studies.synthesis.search import Answers
     >>> list(answer_tables(Answers(example(), (), (), ())))[0].title
     'No stage meets the specification "scanner"'
     """
@@ -34,9 +35,12 @@ def answer_tables(found: Answers) -> Iterator[Table]:
         heads = ["architecture", "actuator", Column("least violation", "%"), "contradicting requirements", "possible with one relaxed"]
         yield make_table("Failed", heads, rows, notes=notes)
     if found.impossible:
-        rows = [(Cell(each.architecture, Mark.STRONG), each.actuator, *_shortfall_cells(each.shortfall)) for each in found.impossible]
-        notes = ["Bounds, exact for any values: with these actuators (any mechanism), or with the architecture alone."]
-        columns = ["architecture", "actuator", "requirement", Column("at most"), Column("required"), "holds for", "reason"]
+        rows = [(Cell(name, Mark.STRONG), actuators, *_shortfall_cells(best)) for name, actuators, best in _excluded(found.impossible)]
+        notes = [
+            "Bounds, exact for any values: with these actuators (any mechanism), or with the architecture alone.",
+            "Of several actuators, the row is that of the first one, which comes closest.",
+        ]
+        columns = ["architecture", "actuators", "requirement", Column("at most"), Column("required"), "holds for", "reason"]
         yield make_table("Impossible", columns, rows, notes=notes)
 
 
@@ -47,13 +51,14 @@ def _answer_table(found: Answers) -> Table:
         counts = [("failed", str(len(found.failed))), ("impossible", str(len(found.impossible)))]
         return make_table(f'No stage meets the specification "{spec.name}"', ["pairs", Column("number")], counts)
     rows = [(str(number), *_answer_cells(each)) for number, each in enumerate(found.answers, 1)]
-    numbers = map(Column, (f"{key}, {way}d", "elastic bodies", "size", "efficiency"))
+    numbers = map(Column, (f"{key}, {way}d", "elastic bodies", "finite elements", "size", "efficiency"))
     columns = ["", "architecture", "actuator", *numbers, "active requirements", "warnings"]
     notes = [
         "Efficiency: stroke energy that the first frequency needs for the payload alone, over that of the actuators; at most 100 %.",
         "Warnings: number of those that flexstage check prints.",
         "Elastic bodies: the required frequency with the flexibility of bodies, estimated from their outlines.",
-        "Displacements are small in the search. Check answers with flexstage verify and stroke.",
+        "Finite elements: the required frequency, all requirements kept; - not verified. Verify the first answers with --prove.",
+        *(f"{each.architecture} with {each.actuator} is not verified: {each.unverified}." for each in found.answers if each.unverified),
     ]
     return make_table(f'Stages for "{spec.name}"', columns, rows, notes=notes)
 
@@ -61,10 +66,14 @@ def _answer_table(found: Answers) -> Table:
 def _answer_cells(answer: Answer) -> tuple[str | Cell, ...]:
     size = " x ".join(f"{1e3 * answer.values[f'envelope.{axis}']:.0f}" for axis in "xyz")
     used = "-" if answer.efficiency is None else f"{100.0 * answer.efficiency:.0f} %"
-    elastic = next((value for key, value in answer.elastic.items() if key in ("frequency.1", "frequency.unwanted")), None)
-    goals = (format_value(answer.goal, answer.unit, _DIGITS), "-" if elastic is None else format_value(elastic, "Hz", _DIGITS))
+    goals = (format_value(answer.goal, answer.unit, _DIGITS), _frequency(answer.elastic), _frequency(answer.verified))
     active, warnings = ", ".join(answer.active), str(len(answer.warnings))
     return Cell(answer.architecture, Mark.STRONG), answer.actuator, *goals, f"{size} mm", used, active, warnings
+
+
+def _frequency(values: Mapping[str, float]) -> str:
+    found = next((value for key, value in values.items() if key in ("frequency.1", "frequency.unwanted")), None)
+    return "-" if found is None else format_value(found, "Hz", _DIGITS)
 
 
 def _violation(pair: FailedPair) -> str:
@@ -77,6 +86,16 @@ def _reason(pair: FailedPair) -> str:
 
 def _relaxed_text(pair: FailedPair) -> str:
     return "; ".join(f"{each.measure} {format_value(each.value, each.unit, _DIGITS)}" for each in pair.relaxed)
+
+
+def _excluded(pairs: Sequence[ImpossiblePair]) -> Iterator[tuple[str, str, Shortfall]]:
+    """Pairs of one architecture and one kind of bound, by their best actuator."""
+    groups = dict[tuple[str, str, bool], list[ImpossiblePair]]()
+    for each in pairs:
+        groups.setdefault((each.architecture, each.shortfall.requirement, each.shortfall.universal), []).append(each)
+    for (name, _, _), group in groups.items():
+        best, *others = sorted(group, key=lambda each: -each.shortfall.ratio)
+        yield name, f"{best.actuator} and {len(others)} others" if others else best.actuator, best.shortfall
 
 
 def _shortfall_cells(fault: Shortfall) -> tuple[str, ...]:

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from flexstage.base.finding import refuse
+from flexstage.base.processes.jobs import cores
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
-from flexstage.show.command.options import output_option
+from flexstage.show.command.options import Resume, Workers, output_option
 from flexstage.show.command.output import announce, make_folder, write
 from flexstage.show.command.progress import progress_bar
+from flexstage.solid.results.verification import required_values
+from flexstage.studies.synthesis.answers import Answers, all_names
+from flexstage.studies.synthesis.answers import design as find_designs
 from flexstage.studies.synthesis.architecture import DESIGN
-from flexstage.studies.synthesis.search import Answers, all_names
-from flexstage.studies.synthesis.search import design as find_designs
 from flexstage.studies.synthesis.show.report import answer_report
 from flexstage.studies.synthesis.show.tables import answer_tables
 from flexstage.studies.synthesis.specification import load_specification
+
+_KEPT = ".pairs"
 
 
 @command("report")
@@ -28,19 +34,35 @@ def design(
     architecture: Annotated[
         list[str] | None, typer.Option("--architecture", metavar="NAME", help="Architecture to try. Repeatable. Default: all.")
     ] = None,
+    prove: Annotated[bool, typer.Option("--prove", help="Verification of the first three answers by finite elements.")] = False,
+    resume: Resume = False,
+    workers: Workers = None,
 ) -> CommandResult:
     """Design stages for a specification.
 
-    Bounds exclude impossible pairs of architecture and actuator. The others are optimised within the requirements.
+    Bounds exclude impossible pairs of architecture and actuator. The others are optimised within the requirements, corrected for elastic
+    bodies and large displacements. Each answer is a design file with a study.
 
-    Each answer is a design file with a study. Without an answer the exit code is 1.
+    Without an answer the exit code is 1. An interrupted search keeps its results in the folder; --resume continues it.
     """
+    if resume and output is None:
+        raise refuse("--resume", "no folder is named", "Name it with --output")
     spec = load_specification(specification)
     with progress_bar() as shown:
-        found = find_designs(spec, tuple(architecture or ()), shown.share)
+        found = find_designs(
+            spec,
+            tuple(architecture or ()),
+            shown.share,
+            verify=required_values if prove else None,
+            keep=None if output is None else output / _KEPT,
+            resume=resume,
+            workers=cores() if workers is None else workers,
+        )
     if output is not None and found.answers:
         _write(found, output)
-    tables, page = lambda: answer_tables(found), lambda: answer_report(found)
+    if found.interrupted:
+        raise KeyboardInterrupt
+    tables, page = lambda: answer_tables(found), partial(answer_report, found)
     return CommandResult(None, lambda: found, tables, page, Model.LUMPED, failed=found.best is None)
 
 

@@ -1,0 +1,239 @@
+"""Stages for a specification: all pairs of architecture and actuator, excluded by bounds or searched; the answers, and why others fail."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Any
+
+from flexstage.base.arguments import check_arguments
+from flexstage.base.finding import DesignError
+from flexstage.base.notebook import InNotebook
+from flexstage.base.processes.jobs import Line, results
+from flexstage.base.record import INNER
+from flexstage.base.storage.digest import digest
+from flexstage.base.storage.store import write
+from flexstage.base.version import __version__
+from flexstage.studies.synthesis.architecture import catalogue_actuators, draw, find_architectures, specified_goal, study_text
+from flexstage.studies.synthesis.corrections import Estimator
+from flexstage.studies.synthesis.pairs import CandidatePair, ImpossiblePair, demand, shortfalls
+from flexstage.studies.synthesis.search import Answer, FailedPair, Relaxation, relaxations, search
+from flexstage.studies.synthesis.specification import Specification
+
+Progress = Callable[[str, float], None]
+"""Reports what is computed, and the share that is done."""
+
+_RELAXED = 3
+"""Failed pairs whose requirements are relaxed."""
+VERIFIED = 3
+"""Answers that are verified."""
+
+
+@dataclass(frozen=True, eq=False)
+class Answers(InNotebook):
+    """The outcome of a specification: `answers` from the best goal on, pairs that `failed`, and those that a bound makes `impossible`.
+
+    `interrupted`: some pairs were not searched.
+    """
+
+    specification: Annotated[Specification, INNER]
+    answers: tuple[Answer, ...]
+    failed: tuple[FailedPair, ...]
+    impossible: tuple[ImpossiblePair, ...]
+    interrupted: bool = False
+
+    @property
+    def best(self) -> Annotated[Answer | None, INNER]:
+        """The first answer, if there is any."""
+        return self.answers[0] if self.answers else None
+
+
+@check_arguments
+def design(
+    specification: Specification,
+    architectures: tuple[str, ...] = (),
+    progress: Progress | None = None,
+    *,
+    verify: Estimator | None = None,
+    keep: Path | None = None,
+    resume: bool = False,
+    workers: int = 1,
+) -> Answers:
+    """Design stages for a specification: every architecture that has its motions, with every allowed actuator of the catalogue.
+
+    Bounds exclude pairs first (`flexstage.studies.synthesis.bounds`). The others are optimised within the requirements, as
+    `studies.optimise` does, and again with corrected limits while elastic bodies or large displacements miss a requirement. With `verify`,
+    e.g. `solid.required_values`, finite elements do the same for the first three answers. An empty `architectures` means all.
+
+    Results of pairs are written to the folder `keep`, and taken from there to `resume`. Results do not depend on the number of `workers`
+    (processes). A keyboard interrupt ends the search with the answers so far. Raises `DesignError` where no architecture has the motions.
+
+    >>> from flexstage.studies.synthesis.specification import loads_specification
+    >>> found = design(loads_specification('''
+    ... format = "flexstage specification 1"
+    ... name = "impossible"
+    ... motion = { x = "0.5 mm", y = "0.5 mm" }
+    ... payload = { mass = "1 kg", size = ["60 mm", "60 mm", "20 mm"] }
+    ... box = { size = ["120 mm", "120 mm", "40 mm"] }
+    ... actuators.kinds = ["piezo"]
+    ... requirements.frequency = "at least 500 Hz"
+    ... '''))
+    >>> found.best is None, {each.shortfall.requirement for each in found.impossible}
+    (True, {'frequency'})
+    """
+    known = catalogue_actuators(specification)
+    pairs = [
+        CandidatePair(each, actuator) for each in find_architectures(specification, architectures) for actuator in known.get(each.kind, ())
+    ]
+    screened = [(pair, list(shortfalls(specification, pair))) for pair in pairs]
+    open_pairs = sorted((pair for pair, faults in screened if not faults), key=lambda pair: (demand(specification, pair), pair.name))
+    store = _Store(specification, keep, resume=resume)
+    found, interrupted = dict[str, Answer | FailedPair](), False
+    try:
+        for pair, result in _searched(store, open_pairs, progress, workers):
+            found[pair.name] = result
+        if verify is not None:
+            found |= _verified(store, open_pairs, found, verify, progress)
+        if not any(isinstance(each, Answer) for each in found.values()):
+            found |= _relaxed(store, open_pairs, found, progress)
+    except KeyboardInterrupt:
+        interrupted = True
+    excluded = (
+        ImpossiblePair(pair.architecture.name, pair.actuator.name, min(faults, key=lambda each: (not each.universal, each.ratio)))
+        for pair, faults in screened
+        if faults
+    )
+    failed = [found[pair.name] for pair in open_pairs if pair.name in found]
+    failed = sorted((each for each in failed if isinstance(each, FailedPair)), key=_violation)
+    return Answers(specification, tuple(_ranked(specification, found)), tuple(failed), tuple(excluded), interrupted)
+
+
+def _ranked(spec: Specification, found: Mapping[str, Answer | FailedPair]) -> list[Answer]:
+    sign = -1.0 if spec.goal[0] == "maximise" else 1.0
+    return sorted((each for each in found.values() if isinstance(each, Answer)), key=lambda each: (sign * each.goal, each.file))
+
+
+def _violation(failed: FailedPair) -> tuple[float, str, str]:
+    return math.inf if failed.violation is None else failed.violation, failed.architecture, failed.actuator
+
+
+@dataclass(frozen=True)
+class _Store:
+    """Results of pairs in a folder, by the content that they depend on; none without a folder."""
+
+    specification: Specification
+    folder: Path | None
+    resume: bool
+
+    def path(self, pair: CandidatePair, what: str) -> Path | None:
+        """File of a result; `None` if it is not kept: without a folder, or if the pair cannot be drawn."""
+        if self.folder is None:
+            return None
+        try:
+            drawn = draw(pair.architecture, self.specification, pair.actuator)
+            study = study_text(pair.architecture, self.specification, pair.actuator, specified_goal(pair.architecture, self.specification))
+        except DesignError:
+            return None
+        return self.folder / f"{digest((__version__, what, pair.name, repr(self.specification), drawn, study))[:20]}.json"
+
+    def kept(self, pair: CandidatePair, what: str) -> Answer | FailedPair | None:
+        """An earlier result."""
+        path = self.path(pair, what) if self.resume else None
+        return None if path is None or not path.exists() else _from_text(path.read_text(encoding="utf-8"))
+
+    def put(self, pair: CandidatePair, what: str, result: Answer | FailedPair) -> Answer | FailedPair:
+        """Keep a result, and return it."""
+        if (path := self.path(pair, what)) is not None:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write(path, json.dumps({"kind": type(result).__name__, **dataclasses.asdict(result)}))
+        return result
+
+
+def _from_text(text: str) -> Answer | FailedPair:
+    """A result from its file."""
+    tree: dict[str, Any] = json.loads(text)
+    if tree.pop("kind") == Answer.__name__:
+        return replace(Answer(**tree), active=tuple(tree["active"]), warnings=tuple(tree["warnings"]))
+    return replace(FailedPair(**tree), relaxed=tuple(Relaxation(**each) for each in tree["relaxed"]))
+
+
+def _searched(
+    store: _Store, pairs: Sequence[CandidatePair], progress: Progress | None, workers: int
+) -> Iterator[tuple[CandidatePair, Answer | FailedPair]]:
+    """Search all pairs, or take their kept results."""
+    todo = list[CandidatePair]()
+    for pair in pairs:
+        kept = store.kept(pair, "search")
+        if kept is None:
+            todo.append(pair)
+        else:
+            yield pair, kept
+    if min(workers, len(todo)) > 1:
+        work = partial(_search_in_process, store.specification)
+        for number, ((pair,), result) in enumerate(results(work, [(pair,) for pair in todo], min(workers, len(todo)))):
+            _notify(progress, f"{pair.name} ({number + 1} of {len(todo)})")(number / len(todo), "finished")
+            yield pair, store.put(pair, "search", result)
+        return
+    for number, pair in enumerate(todo):
+        said = partial(_notify(progress, f"{pair.name} ({number + 1} of {len(todo)})"), number / len(todo))
+        yield pair, store.put(pair, "search", search(store.specification, pair, said))
+
+
+def _search_in_process(spec: Specification, _line: Line, pair: CandidatePair) -> Answer | FailedPair:
+    return search(spec, pair)
+
+
+def _notify(progress: Progress | None, subject: str) -> Callable[[float, str], None]:
+    return lambda share, text: None if progress is None else progress(f"{subject}: {text}", share)
+
+
+def _verified(
+    store: _Store,
+    pairs: Sequence[CandidatePair],
+    found: Mapping[str, Answer | FailedPair],
+    verify: Estimator,
+    progress: Progress | None,
+) -> dict[str, Answer | FailedPair]:
+    """The first answers by finite elements. Where one of them falls behind or fails, the next is verified too."""
+    by_name, done = {pair.name: pair for pair in pairs}, dict[str, Answer | FailedPair]()
+    while True:
+        first = _ranked(store.specification, {**found, **done})[:VERIFIED]
+        names = [f"{each.architecture} with {each.actuator}" for each in first]
+        name = next((each for each in names if each not in done), None)
+        if name is None:
+            return done
+        pair, answer = by_name[name], {**found, **done}[name]
+        assert isinstance(answer, Answer)  # noqa: S101  it is among the ranked ones
+        said = partial(_notify(progress, name), len(done) / VERIFIED)
+        kept = store.kept(pair, "verified")
+        said("finite elements")
+        done[name] = kept or store.put(pair, "verified", search(store.specification, pair, said, answer=answer, verify=verify))
+
+
+def _relaxed(
+    store: _Store, pairs: Sequence[CandidatePair], found: Mapping[str, Answer | FailedPair], progress: Progress | None
+) -> dict[str, Answer | FailedPair]:
+    """The failed pairs of least violation with relaxed values."""
+    failed = [(each, pair) for pair in pairs if isinstance(each := found.get(pair.name), FailedPair)]
+    failed = sorted(failed, key=lambda each: _violation(each[0]))[:_RELAXED]
+    done = dict[str, Answer | FailedPair]()
+    for number, (each, pair) in enumerate(failed):
+        said = partial(_notify(progress, f"{pair.name}, relaxed"), number / len(failed))
+        kept = store.kept(pair, "relaxed")
+        one = kept or replace(each, relaxed=tuple(relaxations(store.specification, pair, each, said)))
+        done[pair.name] = store.put(pair, "relaxed", one)
+    return done
+
+
+def all_names(found: Sequence[Answer]) -> list[str]:
+    """Return the file names of answers, numbered from 1.
+
+    >>> all_names([])
+    []
+    """
+    return [f"{number}-{each.file}" for number, each in enumerate(found, 1)]

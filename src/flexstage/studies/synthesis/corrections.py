@@ -1,0 +1,138 @@
+"""Values of the requirements by better models than the search's: elastic bodies, large displacements; and the limits that they demand."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexstage.analysis.assessment.judge import Estimate, bench_of, required_values
+from flexstage.analysis.assessment.measures import safety_at_strokes, stroke
+from flexstage.analysis.assessment.requirements import Requirement, Sense, Verdict, requirements
+from flexstage.analysis.bench import Bench
+from flexstage.base.finding import refuse
+from flexstage.base.units.unit import show
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
+from flexstage.models.flexible_bodies import body_flexibilities, with_flexible_bodies
+from flexstage.models.nonlinear.elements.strain import strains
+from flexstage.models.nonlinear.equilibrium import State, equilibrium, require_equilibrium
+from flexstage.models.nonlinear.linearise import linearise
+from flexstage.models.nonlinear.stage import nonlinear
+from flexstage.spatial.frame import COMPONENTS
+
+_DIGITS = 9
+_STEPS = 12
+_TOGETHER = 3
+"""Number of displacements up to which all corners are computed; of more, each displacement alone."""
+_CLOSE = 1e-4
+"""Largest distance from the required displacement, relative to it."""
+
+
+Estimator = Callable[[Mechanism], Estimate]
+"""Values of a stage's requirements by another model."""
+
+
+def elastic_values(stage: Mechanism) -> Estimate:
+    """Return the values of a stage's requirements with elastic bodies, estimated from their outlines.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> round(elastic_values(parallelogram()).values["frequency.platform.1"])
+    866
+    """
+    return Estimate(required_values(stage, with_flexible_bodies(bench_of(stage).model, stage, body_flexibilities(stage).found)))
+
+
+def displaced_values(stage: Mechanism) -> Estimate:
+    """Return the worst values of a stage's requirements over the corners of its required displacements, at large displacements.
+
+    Of more than three required displacements, each is reached alone.
+
+    Frequencies and stiffnesses change as those of the models linearised there and at rest, stresses include stretch. A stroke is the
+    lumped one times the least ratio of linear to nonlinear inputs at the corners: it is enough exactly if the actuators reach the corners.
+    Requirements that do not depend on the displacement are left out. Raises `DesignError` without equilibrium.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> {key: round(value) for key, value in displaced_values(parallelogram()).values.items() if key.startswith("frequency")}
+    {'frequency.platform.1': 875}
+    """
+    bench, lines = bench_of(stage), requirements(stage)
+    reached = _at_corners(bench)
+    about, rest = bench.with_model(linearise(reached.state, inner=False)), bench.with_model(linearise(reached.rest, inner=False))
+    found = dict[str, float]()
+    for line in lines:
+        if line.kind.softening:
+            values = np.real(line.kind.value(about, line)) / np.real(line.kind.value(rest, line)) * np.real(line.kind.value(bench, line))
+            found[line.key] = float(np.min(values) if line.sense is Sense.AT_LEAST else np.max(values))
+        elif line.kind is safety_at_strokes:
+            of = strains(reached.state)
+            found[line.key] = float(np.min(of.limit / np.max(of.stress, axis=0), initial=np.inf))
+        elif line.kind is stroke:
+            found[line.key] = float(np.real(line.kind.value(bench, line))) * reached.ratio
+    return Estimate({key: value for key, value in found.items() if np.isfinite(value)})
+
+
+@dataclass(frozen=True, eq=False)
+class _Corners:
+    """States at rest and at the corners of the required displacements, and the least ratio of linear to nonlinear inputs."""
+
+    rest: State
+    state: State
+    ratio: float
+
+
+def _at_corners(bench: Bench) -> _Corners:
+    """Equilibria at the corners of the required displacements, by the inputs that reach them (with the lumped model's derivatives)."""
+    mapping = bench.force_workspace(PLATFORM).per_motion if bench.forced else bench.lost.correction
+    box = {axis: value for axis, value in bench.box().items() if axis in mapping.columns}
+    half = np.diag(list(box.values()))
+    wanted = (
+        np.array(list(itertools.product((-1.0, 1.0), repeat=len(box)))) @ half if len(box) <= _TOGETHER else np.concatenate([half, -half])
+    )
+    places = [COMPONENTS.index(axis) for axis in box]
+    gain = np.real(mapping.values[:, [mapping.columns.index(axis) for axis in box]])
+    model = nonlinear(bench.mechanism)
+    rest = equilibrium(model)
+    require_equilibrium(rest)
+    linear = wanted @ gain.T
+    inputs, away = linear, np.full_like(wanted, np.inf)
+    for _ in range(_STEPS):
+        state = equilibrium(model, dict(zip(mapping.rows, inputs.T, strict=True)), start=rest)
+        if not np.all(state.converged):
+            break
+        away = wanted - (state.twist(PLATFORM) - rest.twist(PLATFORM))[:, places]
+        if np.max(np.abs(away) @ np.linalg.inv(half)) < _CLOSE:
+            moved = np.max(np.abs(linear), axis=0) > 0.0
+            return _Corners(rest, state, float(np.min(np.max(np.abs(linear), axis=0)[moved] / np.max(np.abs(inputs), axis=0)[moved])))
+        inputs = inputs + away @ gain.T
+    raise refuse("motion", "no equilibrium found at the corners of the required displacements", "Reduce the displacements")
+
+
+def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Mapping[str, float], ...]) -> dict[str, str]:
+    """Return the limits with which the lumped model keeps the requirements also by the better ones; empty if it does already.
+
+    Each value changes by the ratios of the better models to the lumped one (space mapping): a limit becomes limit / ratio where that is
+    stricter.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> drawn = required_values(parallelogram())
+    >>> missed_limits(parallelogram(), drawn, ({"frequency.platform.1": 0.25 * drawn["frequency.platform.1"]},))
+    {'frequency.platform.1': 'at least 2000 Hz'}
+    """
+    lines = {line.key: line for line in requirements(stage) if line.key in drawn}
+    ratios = {key: float(np.prod([each[key] / drawn[key] for each in better if key in each])) for key in lines if drawn[key]}
+    if all(Verdict(lines[key], np.asarray(drawn[key] * ratio)).passed for key, ratio in ratios.items()):
+        return {}
+    return dict(_stricter(lines, ratios))
+
+
+def _stricter(lines: Mapping[str, Requirement], ratios: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+    """Limits of the lumped model. Longer strokes raise the stress at them: the limit of its safety falls by as much."""
+    longer = max((1.0 / ratios[key] for key, line in lines.items() if line.kind is stroke), default=1.0)
+    for key, ratio in ratios.items():
+        line = lines[key]
+        strict = min(ratio, 1.0) if line.sense is Sense.AT_LEAST else max(ratio, 1.0)
+        factor = strict * max(longer, 1.0) if line.kind is safety_at_strokes else strict
+        if factor != 1.0:
+            yield key, f"{line.sense.value} {show(line.limit / factor, line.quantity, digits=_DIGITS)}"
