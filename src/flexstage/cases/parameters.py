@@ -11,9 +11,8 @@ from flexstage.base.number import Array, Number
 from flexstage.base.units.quantity import Quantity
 from flexstage.base.units.unit import quantity_of_unit, show
 from flexstage.mechanism.addresses.address import set_value
-from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar.formulas import PREFIX
-from flexstage.mechanism.grammar.node import NumberNode
+from flexstage.mechanism.grammar.node import NumberNode, number_findings
 from flexstage.mechanism.mechanism import Mechanism
 
 Stated: TypeAlias = str | float | Array

@@ -270,26 +270,24 @@ def _stress(
     per = static_gain(model, names, inputs).values @ per_motion
     load = sum(dead_loads(mechanism, model).values(), np.zeros(len(model.coordinates)))
     dead = model.seen(model.output_index(names), displacement(model, load[..., None]))[..., 0]
-    found = [_yielding(sized, dead, per[..., column]) for column in range(per.shape[-1])]
-    yield _YIELD, stack(list(found))
+    yield _YIELD, _yielding(sized, dead, np.moveaxis(per, -1, 0))
 
 
 def _yielding(sized: Mapping[str, PlacedLink], dead: Array, per: Array) -> Array:
-    """Least motion (...) in both directions at which the largest stress reaches yield; NaN without a yield stress."""
-    ways: list[Array] = []
-    for sign in (1.0, -1.0):
-        use = stress_use(sized, (sign * per).reshape(*per.shape[:-1], len(sized), len(FORCES)))
-        if not np.any(np.real(use) > 0.0):
-            ways.append(np.where(np.isnan(use), np.nan, np.inf))
-            continue
-        motion = 1.0 / np.where(use == 0.0, 1e-30, use)
-        for _ in range(_STRESS_STEPS):
-            total = dead + sign * motion[..., None] * per
-            last, motion = motion, motion / stress_use(sized, total.reshape(*total.shape[:-1], len(sized), len(FORCES)))
-            if all(np.allclose(part(motion), part(last), rtol=_CONVERGED, atol=0.0, equal_nan=True) for part in (np.real, np.imag)):
-                break
-        ways.append(motion)
-    return np.minimum(*ways)
+    """Least motions (..., f) in both directions at which the largest stress reaches yield, for wrenches (f, ..., w) per motion."""
+
+    def use(wrenches: Array) -> Array:
+        return stress_use(sized, wrenches.reshape(*wrenches.shape[:-1], len(sized), len(FORCES)))
+
+    both = np.stack([per, -per])
+    begin = use(both)
+    motion = 1.0 / np.where(begin == 0.0, 1e-30, begin)
+    for _ in range(_STRESS_STEPS):
+        last, motion = motion, motion / use(dead + motion[..., None] * both)
+        if all(np.allclose(part(motion), part(last), rtol=_CONVERGED, atol=0.0, equal_nan=True) for part in (np.real, np.imag)):
+            break
+    least = np.minimum(*np.where(np.real(begin) > 0.0, motion, np.where(np.isnan(begin), np.nan, np.inf)))
+    return np.moveaxis(least, 0, -1)
 
 
 def _bounds(names: tuple[str, ...], causes: _Causes, units: tuple[str, ...]) -> Matrix:

@@ -24,8 +24,8 @@ from flexstage.control.study.setup import (
     TrajectorySetup,
     VibrationSetup,
 )
-from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar.grammar import node_of
+from flexstage.mechanism.grammar.node import number_findings
 
 _TUNED = ("bandwidth", "sensitivity", "goal")
 

@@ -13,8 +13,8 @@ from flexstage.experiment.virtual_rig.inputs import RECORDED_UNITS, InputQuantit
 from flexstage.experiment.virtual_rig.plan import TAPER, DrivenInput, Plan, drivable_actuators
 from flexstage.experiment.virtual_rig.setup import RigSetup
 from flexstage.mechanism.assembly.expand import expand
-from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar.grammar import node_of
+from flexstage.mechanism.grammar.node import number_findings
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.models.linear.model import LinearModel
 

@@ -17,8 +17,7 @@ from flexstage.mechanism.addresses.locate import link_path, locate
 from flexstage.mechanism.addresses.path import follow
 from flexstage.mechanism.assembly.expand import NO_IMAGE, apply_overrides, placed_bodies
 from flexstage.mechanism.assembly.likeness import drawn_units
-from flexstage.mechanism.checks.value import first_failing
-from flexstage.mechanism.grammar.node import join
+from flexstage.mechanism.grammar.node import first_failing, join
 from flexstage.mechanism.mechanism import Mechanism, every_body, every_link
 from flexstage.parts.body import Body, Extrusion, Imported, Inertia, Solid, winding
 from flexstage.parts.compliance_matrix import ComplianceMatrix

@@ -9,7 +9,7 @@ import numpy as np
 from flexstage.base.finding import Finding
 from flexstage.base.number import Vector, stack
 from flexstage.mechanism.assembly.pattern import Pattern, Pose
-from flexstage.mechanism.checks.value import LARGEST, first_failing
+from flexstage.mechanism.grammar.node import LARGEST, first_failing
 from flexstage.mechanism.mechanism import Mechanism, every_body, every_link, posed
 from flexstage.parts.compliance_matrix import Joint
 from flexstage.parts.freedom import Freedom

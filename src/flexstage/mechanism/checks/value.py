@@ -3,21 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from flexstage.base.finding import Finding
-from flexstage.base.units.quantity import RATIO, Bound
-from flexstage.base.units.unit import convert, example, parse, show
 from flexstage.mechanism.addresses.locate import locate
 from flexstage.mechanism.grammar.grammar import node_of
-from flexstage.mechanism.grammar.node import NumberNode
+from flexstage.mechanism.grammar.node import NumberNode, number_findings
 from flexstage.mechanism.mechanism import Mechanism
-
-LARGEST = 1e40
-"""Largest plausible number in SI (least nonzero: its reciprocal); powers of others exceed the range of floats."""
 
 
 def value_findings(mechanism: Mechanism) -> Iterator[Finding]:
@@ -38,52 +32,7 @@ def value_findings(mechanism: Mechanism) -> Iterator[Finding]:
         yield Finding("batch", f"arrays of different shapes ({text})", "Use arrays that broadcast")
 
 
-def first_failing(failing: Any, *values: Any) -> tuple[str, tuple[Any, ...]]:
-    """Return the index of the first failure of a batch (`" at index 3"`, empty for one design), and the values there.
-
-    >>> first_failing(np.array([False, True]), np.array([1.0, 2.0]), 3.0)
-    (' at index 1', (2.0, 3.0))
-    """
-    shape = np.shape(failing)
-    index = tuple(int(axis) for axis in np.argwhere(failing)[0]) if shape else ()
-    picked = tuple(float(np.broadcast_to(np.real(value), shape)[index]) for value in values)
-    return (f" at index {', '.join(map(str, index))}" if shape else ""), picked
-
-
 def _all_numbers(mechanism: Mechanism) -> Iterator[tuple[str, Any, NumberNode]]:
     yield from node_of(Mechanism).numbers(mechanism)
     for key, value in mechanism.overrides.items():
         yield from locate(mechanism, key).node.numbers(value, f'overrides."{key}"')
-
-
-def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:
-    """Return errors of a number with the quantity and bound of its node.
-
-    >>> from flexstage.base.units.quantity import FREQUENCY, POSITIVE, RATIO, Bound
-    >>> print(*number_findings("rate", 0.0, NumberNode(FREQUENCY, POSITIVE)))
-    rate: must be greater than 0 Hz (got 0 Hz). Use e.g. "4 kHz".
-    >>> print(*number_findings("peak", 0.5, NumberNode(RATIO, Bound(1.0, open_low=True))))
-    peak: must be greater than 1 (got 0.5). Use a number greater than 1.
-    """
-    hint, real = f"Use e.g. {example(node.quantity)}", np.real(value)
-    size = np.abs(real)
-    extreme = (size > LARGEST) | ((size < 1.0 / LARGEST) & (size > 0.0))
-    if np.any(extreme):
-        at, (result,) = first_failing(extreme, real)
-        told = show(result, node.quantity, digits=6)
-        yield Finding(f"{where}{at}", f"implausible size (got {told})", "Check the exponent and the unit")
-        return
-    bound = node.bound
-    if bound is not None and np.any(outside := _outside(real, bound)):
-        at, (result,) = first_failing(outside, real)
-        fits = node.quantity is not RATIO or not _outside(parse(RATIO.example, RATIO), bound)
-        limits = replace(bound, **{name: float(convert(getattr(bound, name), node.quantity)) for name in ("low", "high")})
-        text = limits.text() if node.quantity.shown == "1" else f"{limits.text()} {node.quantity.shown}"
-        advice = hint if fits else f"Use a number {text}"
-        yield Finding(f"{where}{at}", f"must be {text} (got {show(result, node.quantity, digits=6)})", advice)
-
-
-def _outside(real: Any, bound: Bound) -> Any:
-    low = real <= bound.low if bound.open_low else real < bound.low
-    high = real >= bound.high if bound.open_high else real > bound.high
-    return low | high

@@ -119,8 +119,9 @@ class ListNode(RowNode):
         return self.length
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Values, all at the address of the list."""
-        return (("", self.item, part) for part in row)
+        """Tables by number, from 1; other values at the address of the list."""
+        numbered = isinstance(self.item, RecordNode | UnionNode)
+        return ((str(number) if numbered else "", self.item, part) for number, part in enumerate(row, start=1))
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
         """Items by number, from 1."""

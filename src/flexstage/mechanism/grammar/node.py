@@ -10,9 +10,11 @@ import inspect
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any, ClassVar
+
+import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, list_choices, refuse, require, suggest_nearest
 from flexstage.base.units.expression import UnknownAmountError
@@ -29,11 +31,13 @@ from flexstage.base.units.quantity import (
     Bound,
     Quantity,
 )
-from flexstage.base.units.unit import example, missing_unit, parse, quantity_of_unit, show
+from flexstage.base.units.unit import convert, example, missing_unit, parse, quantity_of_unit, show
 from flexstage.mechanism.grammar.formulas import Numbers, formula_value, is_formula
 from flexstage.spatial.frame import COMPONENTS
 
 MOST_FINDINGS = 100
+LARGEST = 1e40
+"""Largest plausible number in SI (least nonzero: its reciprocal); powers of others exceed the range of floats."""
 
 _NUMBER = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?"
 _WITH_UNIT = rf"^(?![0-9.eE+-]*$){_NUMBER}(\s*[A-Za-zµμ°%/(].*|\s+1/.*)$"
@@ -58,7 +62,7 @@ class Reader:
     """Result collector of reading: errors, tags by address, and sources of catalogue entries.
 
     `tagged`: tables may have tags; otherwise `tags` is an ordinary name. `numbers` are named numbers for formulas (without: no formulas),
-    `formulas` are those read, by address.
+    `formulas` are those read, by address. `bounds` are numbers out of their bounds, which a description may have until it is checked.
     """
 
     tagged: bool = True
@@ -67,6 +71,7 @@ class Reader:
     sources: dict[str, str] = field(default_factory=dict)
     numbers: Numbers | None = None
     formulas: dict[str, str] = field(default_factory=dict)
+    bounds: list[Finding] = field(default_factory=list)
 
     def read(self, node: Node, raw: Any, where: str) -> Any:
         """Value of `raw` by a `node`; `BAD` after an error."""
@@ -219,9 +224,12 @@ class NumberNode(Node):
         except DesignError:
             if not isinstance(raw, str) or reader.numbers is None or not is_formula(raw, scope):
                 raise
-            return reader.formula(raw, self.quantity, where)
-        if isinstance(raw, str) and any(name in raw for name in scope):
-            formula_value(raw, self.quantity, scope, where)  # raises if a named number is meant by the unit
+            value = reader.formula(raw, self.quantity, where)
+        else:
+            if isinstance(raw, str) and any(name in raw for name in scope):
+                formula_value(raw, self.quantity, scope, where)  # raises if a named number is meant by the unit
+        if value is not BAD:
+            reader.bounds += number_findings(where, value, self)
         return value
 
     def si(self, raw: Any, where: str) -> float:
@@ -260,6 +268,51 @@ class NumberNode(Node):
         """The number."""
         if value is not None:
             yield where, value, self
+
+
+def first_failing(failing: Any, *values: Any) -> tuple[str, tuple[Any, ...]]:
+    """Return the index of the first failure of a batch (`" at index 3"`, empty for one design), and the values there.
+
+    >>> first_failing(np.array([False, True]), np.array([1.0, 2.0]), 3.0)
+    (' at index 1', (2.0, 3.0))
+    """
+    shape = np.shape(failing)
+    index = tuple(int(axis) for axis in np.argwhere(failing)[0]) if shape else ()
+    picked = tuple(float(np.broadcast_to(np.real(value), shape)[index]) for value in values)
+    return (f" at index {', '.join(map(str, index))}" if shape else ""), picked
+
+
+def number_findings(where: str, value: Any, node: NumberNode) -> Iterator[Finding]:
+    """Return errors of a number with the quantity and bound of its node.
+
+    >>> from flexstage.base.units.quantity import FREQUENCY, POSITIVE
+    >>> print(*number_findings("rate", 0.0, NumberNode(FREQUENCY, POSITIVE)))
+    rate: must be greater than 0 Hz (got 0 Hz). Use e.g. "4 kHz".
+    >>> print(*number_findings("peak", 0.5, NumberNode(RATIO, Bound(1.0, open_low=True))))
+    peak: must be greater than 1 (got 0.5). Use a number greater than 1.
+    """
+    hint, real = f"Use e.g. {example(node.quantity)}", np.real(value)
+    size = np.abs(real)
+    extreme = (size > LARGEST) | ((size < 1.0 / LARGEST) & (size > 0.0))
+    if np.any(extreme):
+        at, (result,) = first_failing(extreme, real)
+        told = show(result, node.quantity, digits=6)
+        yield Finding(f"{where}{at}", f"implausible size (got {told})", "Check the exponent and the unit")
+        return
+    bound = node.bound
+    if bound is not None and np.any(outside := _outside(real, bound)):
+        at, (result,) = first_failing(outside, real)
+        fits = node.quantity is not RATIO or not _outside(parse(RATIO.example, RATIO), bound)
+        limits = replace(bound, **{name: float(convert(getattr(bound, name), node.quantity)) for name in ("low", "high")})
+        text = limits.text() if node.quantity.shown == "1" else f"{limits.text()} {node.quantity.shown}"
+        advice = hint if fits else f"Use a number {text}"
+        yield Finding(f"{where}{at}", f"must be {text} (got {show(result, node.quantity, digits=6)})", advice)
+
+
+def _outside(real: Any, bound: Bound) -> Any:
+    low = real <= bound.low if bound.open_low else real < bound.low
+    high = real >= bound.high if bound.open_high else real > bound.high
+    return low | high
 
 
 @dataclass(frozen=True)

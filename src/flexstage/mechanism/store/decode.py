@@ -16,7 +16,6 @@ from flexstage.mechanism.assembly.expand import unknown_entries
 from flexstage.mechanism.assembly.mount import STAGES, Mount, mount_all
 from flexstage.mechanism.catalogue import SECTIONS, Catalogue, Section, shipped_catalogue
 from flexstage.mechanism.checks import copy_findings, package_findings, require_valid
-from flexstage.mechanism.checks.value import number_findings
 from flexstage.mechanism.grammar.formulas import NUMBERS, read_numbers
 from flexstage.mechanism.grammar.grammar import LIKE, OVERRIDES, TAGS, node_of
 from flexstage.mechanism.grammar.node import BAD, MOST_FINDINGS, EnoughError, Reader, kind, short
@@ -50,6 +49,8 @@ def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...]
         mechanism = _mechanism(reader, raw, _Files(where, above), frozenset(included.origin))
     except EnoughError:
         reader.findings.append(Finding("file", f"at least {MOST_FINDINGS} errors", "Correct these first"))
+    if reader.findings:
+        reader.findings += reader.bounds
     if reader.findings and STAGES not in raw:
         reader.findings += _unknown_names({name: table for name, table in raw.items() if isinstance(table, dict)})
     require(included.located(list(dict.fromkeys(reader.findings))))
@@ -86,11 +87,9 @@ def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged
     value: Any = BAD
     try:
         value = reader.read(node_of(record), {key: part for key, part in raw.items() if key != "format"}, "")
-        for address, number, node in () if value is BAD else node_of(record).numbers(value):
-            reader.note(number_findings(address.removesuffix("_"), number, node))
     except EnoughError:
         reader.findings.append(Finding("file", f"at least {MOST_FINDINGS} errors", "Correct these first"))
-    require(reader.findings)
+    require([*reader.findings, *reader.bounds])
     return value
 
 
