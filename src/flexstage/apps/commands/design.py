@@ -35,6 +35,7 @@ def design(
         list[str] | None, typer.Option("--architecture", metavar="NAME", help="Architecture to try. Repeatable. Default: all.")
     ] = None,
     prove: Annotated[bool, typer.Option("--prove", help="Verification of the first three answers by finite elements.")] = False,
+    tolerance: Annotated[bool, typer.Option("--tolerance", help="Yield of the first three answers with scatter of dimensions.")] = False,
     resume: Resume = False,
     workers: Workers = None,
 ) -> CommandResult:
@@ -54,6 +55,7 @@ def design(
             tuple(architecture or ()),
             shown.share,
             verify=required_values if prove else None,
+            tolerance=tolerance,
             keep=None if output is None else output / _KEPT,
             resume=resume,
             workers=cores() if workers is None else workers,
@@ -70,5 +72,6 @@ def _write(found: Answers, folder: Path) -> None:
     make_folder(folder)
     for name, answer in zip(all_names(found.answers), found.answers, strict=True):
         write(folder / f"{name}.toml", answer.design, "--output")
-        write(folder / f"{name}.study.toml", answer.study.replace(f'"{DESIGN}"', f'"{name}.toml"'), "--output")
-    announce(f"Wrote {len(found.answers)} design files and studies in {folder}")
+        for ending, study in (("study", answer.study), ("tolerance", answer.scatter)):
+            write(folder / f"{name}.{ending}.toml", study.replace(f'"{DESIGN}"', f'"{name}.toml"'), "--output")
+    announce(f"Wrote {len(found.answers)} design files, each with a study and a tolerance study, in {folder}")

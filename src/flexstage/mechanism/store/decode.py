@@ -161,7 +161,10 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
         return reader.note(error.findings)
     body = {key: value for key, value in raw.items() if key not in ("format", "overrides", STAGES, CATALOGUE)}
     if isinstance(raw.get("requirements"), dict):
-        body["requirements"] = dict(dotted(raw["requirements"]))
+        try:
+            body["requirements"] = dotted("requirements", raw["requirements"])
+        except DesignError as error:
+            reader.note(error.findings)
     mechanism = reader.read(node_of(Mechanism), body, "")
     if not isinstance(mechanism, Mechanism):
         return BAD
@@ -188,11 +191,22 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
     return replace(mechanism, formulas=Table(formulas))
 
 
-def dotted(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Yield the entries of a table by their dotted keys: `stroke.x` without quotes is a table `stroke` in TOML."""
+def dotted(where: str, table: dict[str, Any]) -> dict[str, Any]:
+    """Return a table by its dotted keys: `stroke.x` without quotes is a table `stroke` in TOML. Raises `DesignError` for a key given twice.
+
+    >>> dotted("requirements", {"stroke": {"x": "at least 5 um"}, "mass": "at most 2 kg"})
+    {'stroke.x': 'at least 5 um', 'mass': 'at most 2 kg'}
+    """
+    entries = list(_entries(table))
+    keys = [key for key, _ in entries]
+    require(Finding(f"{where}.{key}", "it is given twice", "Keep one") for key in dict.fromkeys(keys) if keys.count(key) > 1)
+    return dict(entries)
+
+
+def _entries(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
     for key, value in table.items():
         if isinstance(value, dict) and key != TAGS:
-            yield from ((f"{key}.{inner}", each) for inner, each in dotted(value))
+            yield from ((f"{key}.{inner}", each) for inner, each in _entries(value))
         else:
             yield key, value
 

@@ -22,7 +22,7 @@ from flexstage.base.version import __version__
 from flexstage.studies.synthesis.architecture import catalogue_actuators, draw, find_architectures, specified_goal, study_text
 from flexstage.studies.synthesis.corrections import Estimator
 from flexstage.studies.synthesis.pairs import CandidatePair, ImpossiblePair, demand, shortfalls
-from flexstage.studies.synthesis.search import Answer, FailedPair, Relaxation, relaxations, search
+from flexstage.studies.synthesis.search import Answer, FailedPair, Relaxation, relaxations, search, with_yield
 from flexstage.studies.synthesis.specification import Specification
 
 Progress = Callable[[str, float], None]
@@ -30,8 +30,8 @@ Progress = Callable[[str, float], None]
 
 _RELAXED = 3
 """Failed pairs whose requirements are relaxed."""
-VERIFIED = 3
-"""Answers that are verified."""
+FIRST = 3
+"""Answers that are verified, and that get their yield."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +60,7 @@ def design(
     progress: Progress | None = None,
     *,
     verify: Estimator | None = None,
+    tolerance: bool = False,
     keep: Path | None = None,
     resume: bool = False,
     workers: int = 1,
@@ -68,7 +69,8 @@ def design(
 
     Bounds exclude pairs first (`flexstage.studies.synthesis.bounds`). The others are optimised within the requirements, as
     `studies.optimise` does, and again with corrected limits while elastic bodies or large displacements miss a requirement. With `verify`,
-    e.g. `solid.required_values`, finite elements do the same for the first three answers. An empty `architectures` means all.
+    e.g. `solid.required_values`, finite elements do the same for the first three answers; with `tolerance`, these get their yield. An empty
+    `architectures` means all.
 
     Results of pairs are written to the folder `keep`, and taken from there to `resume`. Results do not depend on the number of `workers`
     (processes). A keyboard interrupt ends the search with the answers so far. Raises `DesignError` where no architecture has the motions.
@@ -99,6 +101,8 @@ def design(
             found[pair.name] = result
         if verify is not None:
             found |= _verified(store, open_pairs, found, verify, progress)
+        if tolerance:
+            found |= _with_yields(store, open_pairs, found, progress)
         if not any(isinstance(each, Answer) for each in found.values()):
             found |= _relaxed(store, open_pairs, found, progress)
     except KeyboardInterrupt:
@@ -202,17 +206,30 @@ def _verified(
     """The first answers by finite elements. Where one of them falls behind or fails, the next is verified too."""
     by_name, done = {pair.name: pair for pair in pairs}, dict[str, Answer | FailedPair]()
     while True:
-        first = _ranked(store.specification, {**found, **done})[:VERIFIED]
+        first = _ranked(store.specification, {**found, **done})[:FIRST]
         names = [f"{each.architecture} with {each.actuator}" for each in first]
         name = next((each for each in names if each not in done), None)
         if name is None:
             return done
         pair, answer = by_name[name], {**found, **done}[name]
         assert isinstance(answer, Answer)  # noqa: S101  it is among the ranked ones
-        said = partial(_notify(progress, name), len(done) / VERIFIED)
+        said = partial(_notify(progress, name), len(done) / FIRST)
         kept = store.kept(pair, "verified")
         said("finite elements")
         done[name] = kept or store.put(pair, "verified", search(store.specification, pair, said, answer=answer, verify=verify))
+
+
+def _with_yields(
+    store: _Store, pairs: Sequence[CandidatePair], found: Mapping[str, Answer | FailedPair], progress: Progress | None
+) -> dict[str, Answer | FailedPair]:
+    """The first answers with their yields."""
+    by_name, done = {pair.name: pair for pair in pairs}, dict[str, Answer | FailedPair]()
+    for number, answer in enumerate(_ranked(store.specification, found)[:FIRST]):
+        name = f"{answer.architecture} with {answer.actuator}"
+        _notify(progress, name)(number / FIRST, "tolerances")
+        what = "yield of verified" if answer.verified else "yield"
+        done[name] = store.kept(by_name[name], what) or store.put(by_name[name], what, with_yield(answer))
+    return done
 
 
 def _relaxed(

@@ -32,6 +32,7 @@ else:
 
 _LENGTH, _ANGLE = dimension_of("m"), dimension_of("rad")
 _DIGITS = 7
+_COPIES = 512
 DESIGN = "stage.toml"
 """The design file that a study of the search names."""
 _TURNS: Mapping[str, Array] = {
@@ -341,6 +342,20 @@ def study_text(architecture: Architecture, spec: Specification, actuator: Catalo
         lines.append(f'{each.name} = {{ address = "numbers.{each.name}", from = "{low}", to = "{high}"{even}{step} }}')
     lines += ["", "[responses]", f'goal = "{goal[1]}"', "", "[optimise]", f'{goal[0]} = "goal"']
     return "\n".join([*lines, f"starts = {spec.starts}", f"seed = {spec.seed}", ""])
+
+
+def tolerance_text(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, limits: Mapping[str, str]) -> str:
+    """Return the tolerance study of a design: lengths and the thickness of every hinge vary evenly within the tolerance.
+
+    `limits` are requirements of the design; those on its named numbers, rules of the architecture, are left out.
+    """
+    spread = f'uniform = "{_mm(spec.make.tolerance)}"'
+    lines = ['format = "flexstage study 1"', f"name = {json.dumps(spec.name)}", f'design = "{DESIGN}"', ""]
+    lines += ["[tolerance]", "requirements = false", "crosstalk = false", f"copies = {_COPIES}", f"seed = {spec.seed}", "", "[limits]"]
+    lines += [f"{json.dumps(key)} = {json.dumps(text)}" for key, text in limits.items() if not key.startswith("numbers.")]
+    lines += ["", "[scatter]", f'hinges = {{ address = "hinges.thickness", {spread}, independent = true }}']
+    lengths = [each.name for each in variables(architecture, scope(architecture, spec, actuator)) if each.quantity.si != "rad"]
+    return "\n".join([*lines, *(f'{name} = {{ address = "numbers.{name}", {spread} }}' for name in lengths), ""])
 
 
 def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list[Architecture]:

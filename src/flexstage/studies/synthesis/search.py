@@ -21,12 +21,15 @@ from flexstage.studies.optimisation.result import Optimum
 from flexstage.studies.optimisation.search.optimum import optimise
 from flexstage.studies.optimisation.stage_text import write_optimum
 from flexstage.studies.optimisation.values import values_of
+from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.synthesis import bounds
-from flexstage.studies.synthesis.architecture import DESIGN, draw, specified_goal, study_text
+from flexstage.studies.synthesis.architecture import DESIGN, draw, specified_goal, study_text, tolerance_text
 from flexstage.studies.synthesis.corrections import Estimator, displaced_values, elastic_values, missed_limits
 from flexstage.studies.synthesis.pairs import CandidatePair, energy_groups
 from flexstage.studies.synthesis.specification import Specification
+from flexstage.studies.tolerances.file import loads_tolerance
+from flexstage.studies.tolerances.run import tolerance
 
 _ROUNDS = 4
 """Searches of a pair until better models keep the requirements: the first, and three with corrected limits."""
@@ -69,6 +72,8 @@ class Answer:
     corners of the displacements, where these are large. `verified` are those of finite elements with their estimated relative `errors`,
     if requested; `unverified` is the reason without them. `rounds` is the number of searches until all these kept the requirements.
 
+    `manufactured` is the yield: the share of stages with scatter of dimensions that keep all requirements, lumped, if requested.
+
     `efficiency` is the stroke energy that it uses as a share of that of its actuators, at most 1 by `bounds.frequency_bound`; `None` of
     coils. `warnings` are those of `flexstage check`.
     """
@@ -89,9 +94,11 @@ class Answer:
     verified: Mapping[str, float] = field(default_factory=dict)
     errors: Mapping[str, float] = field(default_factory=dict)
     unverified: str = ""
+    manufactured: Annotated[float | None, RATIO] = None
     rounds: int = 1
     design: Annotated[str, INNER] = ""
     study: Annotated[str, INNER] = ""
+    scatter: Annotated[str, INNER] = ""
 
     @property
     def stage(self) -> Annotated[Mechanism, INNER]:
@@ -160,6 +167,15 @@ def _estimated(answer: Answer, spec: Specification, pair: CandidatePair, verify:
     elastic = Estimate(answer.elastic) if verify is not None and answer.elastic else elastic_values(stage)
     verified = Estimate({}) if verify is None else verify(stage)
     return replace(answer, elastic=elastic.values, displaced=displaced.values, verified=verified.values, errors=verified.errors)
+
+
+def with_yield(answer: Answer) -> Answer:
+    """Return an answer with its yield, from its tolerance study."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / DESIGN).write_text(answer.design, encoding="utf-8")
+        found = tolerance(loads_tolerance(answer.scatter, folder=Path(folder)), how=Run(workers=1))
+    together = found.summary.together
+    return replace(answer, manufactured=None if together is None else together.share)
 
 
 def relaxations(
@@ -234,6 +250,7 @@ def _answer(spec: Specification, pair: CandidatePair, found: Optimum, corrected:
         tuple(map(str, check(stage))),
         design=text,
         study=found.study.text,
+        scatter=tolerance_text(pair.architecture, spec, pair.actuator, stage.requirements),
     )
 
 

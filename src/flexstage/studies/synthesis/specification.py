@@ -11,17 +11,19 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from flexstage.analysis.assessment.requirements import measure, requirement
 from flexstage.base.arguments import check_arguments
-from flexstage.base.finding import DesignError, Finding, require, suggest_nearest
+from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.number import Array
 from flexstage.base.units.quantity import DISPLACEMENT, FREQUENCY, LENGTH, MASS, NOT_NEGATIVE, POSITIVE, RATIO, ROTATION, Bound, Quantity
-from flexstage.base.units.unit import parse
+from flexstage.base.units.unit import parse, show
 from flexstage.mechanism.grammar.node import TextsNode
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.mechanism.store.decode import catalogue_of, dotted, record_from
 from flexstage.mechanism.store.file import parse_toml, read_text
 from flexstage.mechanism.store.lines import with_lines
 from flexstage.mechanism.store.schema import schema_of
-from flexstage.parts.body import Inertia
+from flexstage.parts.body import Body, Inertia
 from flexstage.spatial.frame import COMPONENTS
 
 FORMAT = "flexstage specification 1"
@@ -86,12 +88,13 @@ class BoxTable:
 
 @dataclass(frozen=True)
 class MakeTable:
-    """Materials of flexures and of bodies, by name of the catalogue, the thinnest flexure and the step of dimensions."""
+    """Materials of flexures and of bodies, by name of the catalogue; thinnest flexure, step and tolerance (+-) of dimensions."""
 
     flexures: str = "7075-T6"
     bodies: str = "7075-T6"
     thinnest: _Length = 0.3e-3
     step: _Length = 10e-6
+    tolerance: _Length = 10e-6
 
 
 @dataclass(frozen=True)
@@ -168,7 +171,11 @@ class Specification:
     def least(self, key: str, quantity: Quantity = FREQUENCY) -> float | None:
         """The required least value [SI] of a key, `None` without one."""
         text = self.requirements.get(key)
-        return None if text is None else parse(text.removeprefix("at least "), quantity, where=f"requirements.{key}")
+        if text is None:
+            return None
+        if not text.startswith("at least "):
+            raise refuse(f"requirements.{key}", f'must be a least value (got "{text}")', f'Use e.g. "at least {quantity.example}"')
+        return parse(text.removeprefix("at least "), quantity, where=f"requirements.{key}")
 
     @property
     def goal(self) -> tuple[str, str]:
@@ -199,9 +206,9 @@ def loads_specification(text: str, *, where: str = "text") -> Specification:
     ({'x': 5e-05, 'y': 5e-05}, 500.0, ('maximise', 'frequency'))
     """
     raw = parse_toml(text, where)
-    if isinstance(raw.get("requirements"), dict):
-        raw["requirements"] = dict(dotted(raw["requirements"]))
     try:
+        if isinstance(raw.get("requirements"), dict):
+            raw["requirements"] = dotted("requirements", raw["requirements"])
         found = record_from(Specification, raw, FORMAT, tagged=False)
         if found.catalogue is not None:
             found = replace(found, catalogue=str((Path(where).parent / found.catalogue).resolve()))
@@ -235,11 +242,7 @@ def _findings(spec: Specification) -> Iterator[Finding]:
         yield Finding("motion", "no displacement is required", 'Use e.g. motion = { x = "50 um" }')
     if not any(key in FREQUENCY_KEYS or key.startswith("stiffness") for key in spec.requirements):
         yield Finding("requirements", "no frequency or stiffness is required", 'Use e.g. frequency = "at least 100 Hz"')
-    for key, quantity in (*((each, FREQUENCY) for each in FREQUENCY_KEYS), ("safety", RATIO)):
-        try:
-            spec.least(key, quantity)
-        except DesignError as error:
-            yield from error.findings
+    yield from _requirement_findings(spec)
     yield from _size_findings(spec)
     if any(axis.startswith("r") for axis in spec.displacements) and np.linalg.eigvalsh(spec.inertia)[0] <= 0.0:
         what = "a rotation is required, and the payload has no moment of inertia about some axis"
@@ -248,15 +251,41 @@ def _findings(spec: Specification) -> Iterator[Finding]:
         yield Finding("goals", "it has two goals", "Keep one, and set a requirement for the other")
 
 
+def _requirement_findings(spec: Specification) -> Iterator[Finding]:
+    """Requirements that are no measure of every stage, or no limit of it."""
+    frame = Mechanism(spec.name, bodies={PLATFORM: Body()})
+    for key, text in spec.requirements.items():
+        where = f"requirements.{key}"
+        try:
+            if key in (*FREQUENCY_KEYS, "safety"):
+                spec.least(key, RATIO if key == "safety" else FREQUENCY)
+            elif key.startswith("stroke."):
+                yield Finding(where, "strokes follow from the motion", f'Use e.g. motion.{key.removeprefix("stroke.")} = "50 um"')
+            else:
+                requirement(frame, key, text, where)
+        except DesignError as error:
+            yield from error.findings
+    for way, goal in (("maximise", spec.goals.maximise), ("minimise", spec.goals.minimise)):
+        if goal is not None and goal not in FREQUENCY_KEYS:
+            try:
+                measure(frame, goal, f"goals.{way}")
+            except DesignError as error:
+                yield from error.findings
+
+
 def _size_findings(spec: Specification) -> Iterator[Finding]:
     """Sizes and displacements that do not fit into the box."""
     for axis, size, payload in zip("xyz", spec.box.size, spec.payload.size or (0.0,) * 3, strict=True):
         if payload > size:
-            what = f"the payload is wider than the box along {axis} (got {payload:g} m, expected at most {size:g} m)"
+            what = f"the payload is wider than the box along {axis} (got {_mm(payload)}, expected at most {_mm(size)})"
             yield Finding("payload.size", what, "Enlarge the box")
         if (spec.displacements.get(axis) or 0.0) > 0.5 * size:
-            what = f"the displacement exceeds the box (got {spec.displacements[axis]:g} m, expected at most {0.5 * size:g} m)"
+            what = f"the displacement exceeds the box (got {_mm(spec.displacements[axis])}, expected at most {_mm(0.5 * size)})"
             yield Finding(f"motion.{axis}", what, "Enlarge the box")
+
+
+def _mm(value: float) -> str:
+    return show(value, LENGTH, digits=4)
 
 
 def actuator_findings(spec: Specification, where: str) -> Iterator[Finding]:

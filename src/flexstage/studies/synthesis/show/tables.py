@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from flexstage.base.units.quantity import Quantity
+from flexstage.base.units.quantity import LENGTH, Quantity
 from flexstage.base.units.unit import show
 from flexstage.show.display import format_value
 from flexstage.show.table import Cell, Column, Mark, Table, make_table
@@ -51,13 +51,14 @@ def _answer_table(found: Answers) -> Table:
         counts = [("failed", str(len(found.failed))), ("impossible", str(len(found.impossible)))]
         return make_table(f'No stage meets the specification "{spec.name}"', ["pairs", Column("number")], counts)
     rows = [(str(number), *_answer_cells(each)) for number, each in enumerate(found.answers, 1)]
-    numbers = map(Column, (f"{key}, {way}d", "elastic bodies", "finite elements", "size", "efficiency"))
+    numbers = map(Column, (f"{key}, {way}d", "elastic bodies", "finite elements", "yield", "size", "efficiency"))
     columns = ["", "architecture", "actuator", *numbers, "active requirements", "warnings"]
     notes = [
         "Efficiency: stroke energy that the first frequency needs for the payload alone, over that of the actuators; at most 100 %.",
         "Warnings: number of those that flexstage check prints.",
         "Elastic bodies: the required frequency with the flexibility of bodies, estimated from their outlines.",
         "Finite elements: the required frequency, all requirements kept; - not verified. Verify the first answers with --prove.",
+        f"Yield: share of stages that keep all requirements with dimensions within +-{_length(spec.make.tolerance)}; see --tolerance.",
         *(f"{each.architecture} with {each.actuator} is not verified: {each.unverified}." for each in found.answers if each.unverified),
     ]
     return make_table(f'Stages for "{spec.name}"', columns, rows, notes=notes)
@@ -67,13 +68,18 @@ def _answer_cells(answer: Answer) -> tuple[str | Cell, ...]:
     size = " x ".join(f"{1e3 * answer.values[f'envelope.{axis}']:.0f}" for axis in "xyz")
     used = "-" if answer.efficiency is None else f"{100.0 * answer.efficiency:.0f} %"
     goals = (format_value(answer.goal, answer.unit, _DIGITS), _frequency(answer.elastic), _frequency(answer.verified))
+    made = "-" if answer.manufactured is None else f"{100.0 * answer.manufactured:.0f} %"
     active, warnings = ", ".join(answer.active), str(len(answer.warnings))
-    return Cell(answer.architecture, Mark.STRONG), answer.actuator, *goals, f"{size} mm", used, active, warnings
+    return Cell(answer.architecture, Mark.STRONG), answer.actuator, *goals, made, f"{size} mm", used, active, warnings
 
 
 def _frequency(values: Mapping[str, float]) -> str:
     found = next((value for key, value in values.items() if key in ("frequency.1", "frequency.unwanted")), None)
     return "-" if found is None else format_value(found, "Hz", _DIGITS)
+
+
+def _length(value: float) -> str:
+    return show(value, LENGTH, digits=3)
 
 
 def _violation(pair: FailedPair) -> str:
