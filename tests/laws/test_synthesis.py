@@ -15,8 +15,8 @@ from flexstage.analysis.assessment.requirements import measure
 from flexstage.base.finding import DesignError
 from flexstage.mechanism.addresses.address import set_value
 from flexstage.studies.synthesis import bounds
-from flexstage.studies.synthesis.architecture import architectures, catalogue_actuators, draw, scope, variables
 from flexstage.studies.synthesis.answers import design
+from flexstage.studies.synthesis.architecture import architectures, catalogue_actuators, draw, scope, variables
 from flexstage.studies.synthesis.pairs import CandidatePair, shortfalls
 from flexstage.studies.synthesis.search import Answer, FailedPair, search
 from flexstage.studies.synthesis.specification import Specification, loads_specification

@@ -11,7 +11,7 @@ import numpy as np
 from flexstage.analysis.assessment.judge import Estimate, bench_of, required_values
 from flexstage.analysis.assessment.measures import safety_at_strokes, stroke
 from flexstage.analysis.assessment.requirements import Requirement, Sense, Verdict, requirements
-from flexstage.analysis.bench import Bench
+from flexstage.analysis.bench import StageResults
 from flexstage.base.finding import refuse
 from flexstage.base.units.unit import show
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
@@ -82,7 +82,7 @@ class _Corners:
     ratio: float
 
 
-def _at_corners(bench: Bench) -> _Corners:
+def _at_corners(bench: StageResults) -> _Corners:
     """Equilibria at the corners of the required displacements, by the inputs that reach them (with the lumped model's derivatives)."""
     mapping = bench.force_workspace(PLATFORM).per_motion if bench.forced else bench.lost.correction
     box = {axis: value for axis, value in bench.box().items() if axis in mapping.columns}
