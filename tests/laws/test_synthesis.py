@@ -10,16 +10,19 @@ import numpy as np
 import pytest
 
 import flexstage as fs
-from flexstage.analysis.assessment.judge import bench_of
+from flexstage.analysis.assessment.judge import Estimate, bench_of, required_values
 from flexstage.analysis.assessment.requirements import measure
 from flexstage.base.finding import DesignError
+from flexstage.base.storage.document import as_text
 from flexstage.mechanism.addresses.address import set_value
-from flexstage.studies.synthesis import bounds
+from flexstage.studies.synthesis import answers, bounds
 from flexstage.studies.synthesis.answers import design
 from flexstage.studies.synthesis.architecture import architectures, catalogue_actuators, draw, scope, variables
+from flexstage.studies.synthesis.corrections import displaced_values
 from flexstage.studies.synthesis.pairs import CandidatePair, shortfalls
 from flexstage.studies.synthesis.search import Answer, FailedPair, search
-from flexstage.studies.synthesis.specification import Specification, loads_specification
+from flexstage.studies.synthesis.specification import ActuatorTable, Specification, loads_specification
+from flexstage.studies.tolerances.file import loads_tolerance
 from tests.conftest import FULL
 
 SCANNER = """
@@ -39,6 +42,15 @@ resistance = "5 ohm"
 mass = "180 g"
 magnet_mass = "950 g"
 travel = "26 mm"
+"""
+COIL_SPEC = """
+format = "flexstage specification 1"
+name = "far"
+catalogue = "THERE"
+motion.y = "0.5 mm"
+payload = { mass = "0.3 kg", size = ["30 mm", "30 mm", "5 mm"] }
+box = { size = ["300 mm", "300 mm", "100 mm"] }
+requirements.unwanted = "at least 10 Hz"
 """
 MOTIONS = {
     "guide": 'motion.z = "15 um"',
@@ -291,6 +303,16 @@ BAD = {
     ),
     'name = "scanner"': ('name = "scanner"\ncatalogue = "nowhere.toml"', "file not found"),
     "specification 1": ("study 1", "a study file, expected a specification file"),
+    "requirements.": (
+        'requirements.stifness.x = "at least 1 N/um"\nrequirements.',
+        'requirements.stifness.x: unknown measure "stifness.x". Use',
+    ),
+    'requirements.frequency = "': ('requirements.stroke.x = "at least 1 um"\nrequirements.frequency = "', "strokes follow from the motion"),
+    'actuators.like = "': ('goals.maximise = "width"\nactuators.like = "', 'goals.maximise: unknown measure "width"'),
+    "requirements.f": (
+        'requirements."loss.x" = "at most 1"\nrequirements.loss.x = "at most 1"\nrequirements.f',
+        "loss.x: it is given twice",
+    ),
 }
 
 
@@ -300,6 +322,84 @@ def test_bad_specifications(old: str) -> None:
     with pytest.raises(DesignError) as caught:
         design(loads_specification(SCANNER.replace(old, new, 1)))
     assert words in str(caught.value)
+
+
+def test_one_run_names_unreadable_numbers_and_those_out_of_bounds() -> None:
+    text = SCANNER.replace('"30 g"', '"30 mm"').replace('x = "50 um"', 'x = "-50 um"').replace('"40 mm"', '"0 mm"')
+    with pytest.raises(DesignError) as caught:
+        loads_specification(text)
+    assert [str(each).split(": ")[1] for each in caught.value.findings] == ["payload.mass", "motion.x", "box.size.z"]
+
+
+def guide_specification(goal: str = 'goals.minimise = "envelope.z"') -> Specification:
+    """A guide along x whose stack just keeps 1 kHz."""
+    text = SCANNER.replace('{ x = "50 um", y = "50 um" }', '{ x = "20 um" }').replace('"PSt 1000/10/150 VS18"', '"PiezoDrive SA050536"')
+    return loads_specification(text.replace('name = "scanner"', f'name = "scanner"\nstarts = 1\n{goal}').replace("500 Hz", "1 kHz"))
+
+
+def test_finite_elements_raise_the_limits_of_the_next_search(tmp_path: Path) -> None:
+    """A verification that is always a fifth lower: the lumped model has to reach 1250 Hz, and the stroke that it loses."""
+    spec, tried = guide_specification(), []
+
+    def verify(stage: fs.Mechanism) -> Estimate:
+        tried.append(stage)
+        lumped = required_values(stage)
+        return Estimate({"frequency.1": 0.8 * lumped["frequency.1"], "stroke.x": 0.9 * lumped["stroke.x"]}, {"frequency.1": 0.01})
+
+    answer = fs.design(spec, verify=verify, tolerance=FULL).best
+    assert answer is not None
+    assert answer.verified["frequency.1"] >= 1000.0 * (1.0 - 1e-9)
+    assert answer.verified["stroke.x"] >= 20e-6 * (1.0 - 1e-9)
+    assert answer.values["frequency.1"] >= 1250.0 * (1.0 - 1e-9)
+    assert answer.rounds == len(tried) == 2
+    assert answer.errors == {"frequency.1": 0.01}
+    assert 'frequency.1" = "at least 1 kHz"' in answer.design
+    assert not FULL or 0.0 < (answer.manufactured or 0.0) < 1.0
+    (tmp_path / "stage.toml").write_text(answer.design)
+    assert "frequency.1" in {each.key for each in loads_tolerance(answer.scatter, folder=tmp_path).limits}
+
+
+def test_large_displacements_reduce_the_stroke_as_the_force_that_holds_them_grows(tmp_path: Path) -> None:
+    """Folded leaves, far out: linear force over the force that holds the stage there (an operating point), and its frequencies there."""
+    spec = specification("folded", tmp_path)
+    far = loads_specification(
+        COIL_SPEC.replace("THERE", str(tmp_path / "lab.toml")).replace('"0.5 mm"', '"6 mm"'), where=str(tmp_path / "spec.toml")
+    )
+    (coil,) = catalogue_actuators(spec)["voice_coil"]
+    stage = fs.loads(draw(architectures()["folded"], far, coil), checked=False)
+    drawn, found = required_values(stage), displaced_values(stage).values
+    held = fs.operating_point(stage, {"platform.x": 6e-3})
+    assert held.held is not None
+    ratio = drawn["stroke.x"] / found["stroke.x"]
+    stiffness = 1.0 / float(fs.statics(fs.lumped(stage)).compliance.values[0, 0])
+    assert ratio > 1.001
+    assert ratio == pytest.approx(float(held.held.at("platform.x", "force")) / (stiffness * 6e-3), rel=2e-3)
+
+
+def test_results_of_pairs_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Resumed without a search: the same bytes; as by two processes."""
+    spec = replace(loads_specification(SCANNER), actuators=ActuatorTable(like=("PSt 1000/10/150 VS18", "PSt 1000/16/200 VS25")), starts=1)
+    first = as_text(fs.design(spec, keep=tmp_path, workers=2))
+    assert len(list(tmp_path.iterdir())) == 2
+    monkeypatch.setattr(answers, "search", None)
+    assert as_text(fs.design(spec, keep=tmp_path, resume=True)) == first
+    monkeypatch.undo()
+    assert not FULL or as_text(fs.design(spec)) == first
+
+
+def test_an_interrupted_design_returns_its_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    spec = replace(loads_specification(SCANNER), actuators=ActuatorTable(like=("PSt 1000/10/150 VS18", "PSt 1000/16/200 VS25")), starts=1)
+    real = answers.search
+
+    def once(spec: Specification, pair: CandidatePair, said: object) -> Answer | FailedPair:
+        if any(tmp_path.iterdir()):
+            raise KeyboardInterrupt
+        return real(spec, pair)
+
+    monkeypatch.setattr(answers, "search", once)
+    found = fs.design(spec, keep=tmp_path)
+    assert found.interrupted
+    assert len(found.answers) + len(found.failed) == 1
 
 
 def test_rotations_need_an_inertia() -> None:
