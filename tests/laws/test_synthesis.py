@@ -15,6 +15,7 @@ from flexstage.analysis.assessment.requirements import measure
 from flexstage.base.finding import DesignError
 from flexstage.base.storage.document import as_text
 from flexstage.mechanism.addresses.address import set_value
+from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.synthesis import answers, bounds
 from flexstage.studies.synthesis.answers import design
 from flexstage.studies.synthesis.architecture import architectures, catalogue_actuators, draw, scope, variables
@@ -379,10 +380,10 @@ def test_large_displacements_reduce_the_stroke_as_the_force_that_holds_them_grow
 def test_results_of_pairs_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Resumed without a search: the same bytes; as by two processes."""
     spec = replace(loads_specification(SCANNER), actuators=ActuatorTable(like=("PSt 1000/10/150 VS18", "PSt 1000/16/200 VS25")), starts=1)
-    first = as_text(fs.design(spec, keep=tmp_path, workers=2))
+    first = as_text(fs.design(spec, keep=tmp_path, how=Run(workers=2)))
     assert len(list(tmp_path.iterdir())) == 2
     monkeypatch.setattr(answers, "search", None)
-    assert as_text(fs.design(spec, keep=tmp_path, resume=True)) == first
+    assert as_text(fs.design(spec, keep=tmp_path, how=Run(workers=1, resume=True))) == first
     monkeypatch.undo()
     assert not FULL or as_text(fs.design(spec)) == first
 

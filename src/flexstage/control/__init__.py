@@ -41,7 +41,7 @@ HOMES = {
     ),
     "study.file": "load_setup",
     "study.compare": "compare_controllers",
-    "study.study": "loop_study",
+    "study.study": "loop_study sensitivity_crossover",
     "show.report": "loop_report",
     "export.files": "write_controller write_fmu write_plant",
 }

@@ -124,6 +124,7 @@ from flexstage.control.study.compare import (
 )
 from flexstage.control.study.study import (
     loop_study as loop_study,
+    sensitivity_crossover as sensitivity_crossover,
 )
 from flexstage.control.systems.system import (
     System as System,

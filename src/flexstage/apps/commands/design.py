@@ -9,13 +9,14 @@ from typing import Annotated
 import typer
 
 from flexstage.base.finding import refuse
-from flexstage.base.processes.jobs import cores
+from flexstage.control.study.study import sensitivity_crossover
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
 from flexstage.show.command.options import Resume, Workers, output_option
 from flexstage.show.command.output import announce, make_folder, write
 from flexstage.show.command.progress import progress_bar
 from flexstage.solid.results.verification import required_values
+from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.synthesis.answers import Answers, all_names
 from flexstage.studies.synthesis.answers import design as find_designs
 from flexstage.studies.synthesis.architecture import DESIGN
@@ -36,6 +37,7 @@ def design(
     ] = None,
     prove: Annotated[bool, typer.Option("--prove", help="Verification of the first three answers by finite elements.")] = False,
     tolerance: Annotated[bool, typer.Option("--tolerance", help="Yield of the first three answers with scatter of dimensions.")] = False,
+    loop: Annotated[bool, typer.Option("--loop", help="Sensitivity crossover of the control loops of the first three answers.")] = False,
     resume: Resume = False,
     workers: Workers = None,
 ) -> CommandResult:
@@ -56,9 +58,9 @@ def design(
             shown.share,
             verify=required_values if prove else None,
             tolerance=tolerance,
+            close_loop=sensitivity_crossover if loop else None,
             keep=None if output is None else output / _KEPT,
-            resume=resume,
-            workers=cores() if workers is None else workers,
+            how=Run(workers, resume),
         )
     if output is not None and found.answers:
         _write(found, output)

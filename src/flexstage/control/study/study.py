@@ -245,6 +245,17 @@ def loop_study(
     )
 
 
+def sensitivity_crossover(mechanism: Mechanism) -> float | None:
+    """Return the lowest sensitivity crossover [Hz] of all coordinates with the default controller. Raises as `loop_study` does.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> 300.0 < sensitivity_crossover(parallelogram()) < 1000.0
+    True
+    """
+    found = loop_study(mechanism).bandwidths
+    return None if found is None else float(np.nanmin(found.rejection))
+
+
 def _reasons(*, is_closed: bool, forced: bool, tested: bool) -> dict[str, str]:
     open_loop = {} if is_closed else dict.fromkeys(("margins", "peaks", "disk_margin", "bandwidths", "curves", "measured"), _NO_LOOP)
     open_loop |= {} if tested else {"measured": _NO_TEST}

@@ -14,24 +14,27 @@ from typing import Annotated, Any
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import DesignError
 from flexstage.base.notebook import InNotebook
-from flexstage.base.processes.jobs import Line, results
+from flexstage.base.processes.jobs import Line, cores, results
 from flexstage.base.record import INNER
 from flexstage.base.storage.digest import digest
 from flexstage.base.storage.store import write
 from flexstage.base.version import __version__
+from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.synthesis.architecture import catalogue_actuators, draw, find_architectures, specified_goal, study_text
 from flexstage.studies.synthesis.corrections import Estimator
 from flexstage.studies.synthesis.pairs import CandidatePair, ImpossiblePair, demand, shortfalls
-from flexstage.studies.synthesis.search import Answer, FailedPair, Relaxation, relaxations, search, with_yield
+from flexstage.studies.synthesis.search import Answer, FailedPair, Relaxation, manufacturing_yield, relaxations, search
 from flexstage.studies.synthesis.specification import Specification
 
 Progress = Callable[[str, float], None]
 """Reports what is computed, and the share that is done."""
 
+_ALONE = Run(workers=1)
 _RELAXED = 3
 """Failed pairs whose requirements are relaxed."""
 FIRST = 3
-"""Answers that are verified, and that get their yield."""
+"""Answers that are verified, and that get their yield and their loop."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,19 +64,19 @@ def design(
     *,
     verify: Estimator | None = None,
     tolerance: bool = False,
+    close_loop: Callable[[Mechanism], float | None] | None = None,
     keep: Path | None = None,
-    resume: bool = False,
-    workers: int = 1,
+    how: Run = _ALONE,
 ) -> Answers:
     """Design stages for a specification: every architecture that has its motions, with every allowed actuator of the catalogue.
 
     Bounds exclude pairs first (`flexstage.studies.synthesis.bounds`). The others are optimised within the requirements, as
     `studies.optimise` does, and again with corrected limits while elastic bodies or large displacements miss a requirement. With `verify`,
-    e.g. `solid.required_values`, finite elements do the same for the first three answers; with `tolerance`, these get their yield. An empty
-    `architectures` means all.
+    e.g. `solid.required_values`, finite elements do the same for the first three answers; with `tolerance`, these get their yield, and with
+    `close_loop`, e.g. `control.sensitivity_crossover`, the sensitivity crossover of their control loop. An empty `architectures` means all.
 
-    Results of pairs are written to the folder `keep`, and taken from there to `resume`. Results do not depend on the number of `workers`
-    (processes). A keyboard interrupt ends the search with the answers so far. Raises `DesignError` where no architecture has the motions.
+    Results of pairs are written to the folder `keep`, and taken from there if `how` resumes. Results do not depend on the number of
+    processes. A keyboard interrupt ends the search with the answers so far. Raises `DesignError` where no architecture has the motions.
 
     >>> from flexstage.studies.synthesis.specification import loads_specification
     >>> found = design(loads_specification('''
@@ -94,15 +97,17 @@ def design(
     ]
     screened = [(pair, list(shortfalls(specification, pair))) for pair in pairs]
     open_pairs = sorted((pair for pair, faults in screened if not faults), key=lambda pair: (demand(specification, pair), pair.name))
-    store = _Store(specification, keep, resume=resume)
+    store = _Store(specification, keep, resume=how.resume)
     found, interrupted = dict[str, Answer | FailedPair](), False
     try:
-        for pair, result in _searched(store, open_pairs, progress, workers):
+        for pair, result in _searched(store, open_pairs, progress, cores() if how.workers is None else how.workers):
             found[pair.name] = result
         if verify is not None:
             found |= _verified(store, open_pairs, found, verify, progress)
         if tolerance:
-            found |= _with_yields(store, open_pairs, found, progress)
+            found |= _extended(store, open_pairs, found, ("manufactured", manufacturing_yield), progress)
+        if close_loop is not None:
+            found |= _extended(store, open_pairs, found, ("crossover", lambda answer: close_loop(answer.stage)), progress)
         if not any(isinstance(each, Answer) for each in found.values()):
             found |= _relaxed(store, open_pairs, found, progress)
     except KeyboardInterrupt:
@@ -219,17 +224,34 @@ def _verified(
         done[name] = kept or store.put(pair, "verified", search(store.specification, pair, said, answer=answer, verify=verify))
 
 
-def _with_yields(
-    store: _Store, pairs: Sequence[CandidatePair], found: Mapping[str, Answer | FailedPair], progress: Progress | None
+def _extended(
+    store: _Store,
+    pairs: Sequence[CandidatePair],
+    found: Mapping[str, Answer | FailedPair],
+    more: tuple[str, Callable[[Answer], float | None]],
+    progress: Progress | None,
 ) -> dict[str, Answer | FailedPair]:
-    """The first answers with their yields."""
+    """The first answers with one more result, its field and function."""
+    field, compute = more
     by_name, done = {pair.name: pair for pair in pairs}, dict[str, Answer | FailedPair]()
     for number, answer in enumerate(_ranked(store.specification, found)[:FIRST]):
         name = f"{answer.architecture} with {answer.actuator}"
-        _notify(progress, name)(number / FIRST, "tolerances")
-        what = "yield of verified" if answer.verified else "yield"
-        done[name] = store.kept(by_name[name], what) or store.put(by_name[name], what, with_yield(answer))
+        _notify(progress, name)(number / FIRST, field)
+        what = f"{field} of {digest(answer.design)}"
+        kept = store.kept(by_name[name], what)
+        if isinstance(kept, Answer):
+            done[name] = replace(answer, **{field: getattr(kept, field)}, warnings=kept.warnings)
+        else:
+            done[name] = store.put(by_name[name], what, _with(answer, field, compute))
     return done
+
+
+def _with(answer: Answer, field: str, compute: Callable[[Answer], float | None]) -> Answer:
+    """The answer with a result, or with a warning why there is none."""
+    try:
+        return replace(answer, **{field: compute(answer)})
+    except DesignError as error:
+        return replace(answer, warnings=(*answer.warnings, str(error)))
 
 
 def _relaxed(

@@ -33,6 +33,8 @@ else:
 _LENGTH, _ANGLE = dimension_of("m"), dimension_of("rad")
 _DIGITS = 7
 _COPIES = 512
+_SPARE = 1e-4
+"""A quarter of the range of a gauge whose motion is not required [m, rad]."""
 DESIGN = "stage.toml"
 """The design file that a study of the search names."""
 _TURNS: Mapping[str, Array] = {
@@ -288,9 +290,28 @@ def draw(
     tree["parts"][architecture.slot] = {"kind": architecture.kind, **_stated(spec, architecture.kind, actuator.name)}
     _set_numbers(tree["numbers"], architecture, spec, known)
     _set_payload(tree, architecture, spec)
+    _set_gauges(tree, architecture, spec)
     lines = {**requirement_lines(architecture, spec, known), **replaced}
     tree["requirements"] = {key: text for key, text in lines.items() if text is not None}
     return tomlkit.dumps(document)
+
+
+def _set_gauges(tree: Any, architecture: Architecture, spec: Specification) -> None:
+    """Add a gauge for each motion of the platform, at its reference; the sensors are assumed, since the specification names none."""
+    motions = frozenset("x") if architecture.turns else frozenset(spec.displacements)
+    axes = max((each for each in architecture.serves if motions <= each), key=len, default=motions)
+    needed = {"x": next(iter(spec.displacements.values()))} if architecture.turns else spec.displacements
+    gauges, sensors = tomlkit.table(), tomlkit.table()
+    sensors.add(tomlkit.comment("assumed: replace them by your own"))
+    for axis in sorted(axes, key=COMPONENTS.index):
+        turns = axis.startswith("r")
+        own = {"kind": "tilt", "resolution": "10 nrad"} if turns else {"kind": "encoder", "period": "4 um", "steps": 4096}
+        span = quantity_of_dimension(_ANGLE, "mrad") if turns else quantity_of_dimension(_LENGTH, "mm")
+        own["range"] = show(4.0 * needed.get(axis, _SPARE), span, digits=3)
+        sensors[axis] = own
+        pose = {"along": axis[-1], "up": "x"} if axis[-1] == "z" else {"along": axis[-1]}
+        gauges[axis] = {"gauge": axis, "body": "platform", "pose": pose}
+    tree["sensors"], tree["gauges"] = sensors, gauges
 
 
 def _stated(spec: Specification, section: str, name: str) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from flexstage.analysis.assessment.requirements import Sense, requirement, requi
 from flexstage.analysis.caveats import check
 from flexstage.base.finding import DesignError
 from flexstage.base.record import INNER, Heading
-from flexstage.base.units.quantity import RATIO
+from flexstage.base.units.quantity import FREQUENCY, RATIO
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.studies.optimisation.file import load_optimisation
@@ -73,6 +73,7 @@ class Answer:
     if requested; `unverified` is the reason without them. `rounds` is the number of searches until all these kept the requirements.
 
     `manufactured` is the yield: the share of stages with scatter of dimensions that keep all requirements, lumped, if requested.
+    `crossover` is the lowest sensitivity crossover of its control loop with the default controller, if requested.
 
     `efficiency` is the stroke energy that it uses as a share of that of its actuators, at most 1 by `bounds.frequency_bound`; `None` of
     coils. `warnings` are those of `flexstage check`.
@@ -95,6 +96,7 @@ class Answer:
     errors: Mapping[str, float] = field(default_factory=dict)
     unverified: str = ""
     manufactured: Annotated[float | None, RATIO] = None
+    crossover: Annotated[float | None, FREQUENCY] = None
     rounds: int = 1
     design: Annotated[str, INNER] = ""
     study: Annotated[str, INNER] = ""
@@ -169,13 +171,13 @@ def _estimated(answer: Answer, spec: Specification, pair: CandidatePair, verify:
     return replace(answer, elastic=elastic.values, displaced=displaced.values, verified=verified.values, errors=verified.errors)
 
 
-def with_yield(answer: Answer) -> Answer:
-    """Return an answer with its yield, from its tolerance study."""
+def manufacturing_yield(answer: Answer) -> float | None:
+    """Return the yield of an answer, from its tolerance study."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / DESIGN).write_text(answer.design, encoding="utf-8")
         found = tolerance(loads_tolerance(answer.scatter, folder=Path(folder)), how=Run(workers=1))
     together = found.summary.together
-    return replace(answer, manufactured=None if together is None else together.share)
+    return None if together is None else together.share
 
 
 def relaxations(

@@ -51,7 +51,7 @@ def _answer_table(found: Answers) -> Table:
         counts = [("failed", str(len(found.failed))), ("impossible", str(len(found.impossible)))]
         return make_table(f'No stage meets the specification "{spec.name}"', ["pairs", Column("number")], counts)
     rows = [(str(number), *_answer_cells(each)) for number, each in enumerate(found.answers, 1)]
-    numbers = map(Column, (f"{key}, {way}d", "elastic bodies", "finite elements", "yield", "size", "efficiency"))
+    numbers = map(Column, (f"{key}, {way}d", "elastic bodies", "finite elements", "yield", "loop", "size", "efficiency"))
     columns = ["", "architecture", "actuator", *numbers, "active requirements", "warnings"]
     notes = [
         "Efficiency: stroke energy that the first frequency needs for the payload alone, over that of the actuators; at most 100 %.",
@@ -59,6 +59,7 @@ def _answer_table(found: Answers) -> Table:
         "Elastic bodies: the required frequency with the flexibility of bodies, estimated from their outlines.",
         "Finite elements: the required frequency, all requirements kept; - not verified. Verify the first answers with --prove.",
         f"Yield: share of stages that keep all requirements with dimensions within +-{_length(spec.make.tolerance)}; see --tolerance.",
+        "Loop: lowest sensitivity crossover with the default controller and assumed sensors; see --loop.",
         *(f"{each.architecture} with {each.actuator} is not verified: {each.unverified}." for each in found.answers if each.unverified),
     ]
     return make_table(f'Stages for "{spec.name}"', columns, rows, notes=notes)
@@ -69,8 +70,9 @@ def _answer_cells(answer: Answer) -> tuple[str | Cell, ...]:
     used = "-" if answer.efficiency is None else f"{100.0 * answer.efficiency:.0f} %"
     goals = (format_value(answer.goal, answer.unit, _DIGITS), _frequency(answer.elastic), _frequency(answer.verified))
     made = "-" if answer.manufactured is None else f"{100.0 * answer.manufactured:.0f} %"
+    loop = "-" if answer.crossover is None else format_value(answer.crossover, "Hz", 3)
     active, warnings = ", ".join(answer.active), str(len(answer.warnings))
-    return Cell(answer.architecture, Mark.STRONG), answer.actuator, *goals, made, f"{size} mm", used, active, warnings
+    return Cell(answer.architecture, Mark.STRONG), answer.actuator, *goals, made, loop, f"{size} mm", used, active, warnings
 
 
 def _frequency(values: Mapping[str, float]) -> str:
