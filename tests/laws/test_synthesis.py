@@ -17,11 +17,13 @@ from flexstage.base.storage.document import as_text
 from flexstage.mechanism.addresses.address import set_value
 from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.synthesis import answers, bounds
-from flexstage.studies.synthesis.answers import design
+from flexstage.studies.synthesis.answers import design, joint_front
 from flexstage.studies.synthesis.architecture import architectures, catalogue_actuators, draw, scope, variables
 from flexstage.studies.synthesis.corrections import displaced_values
 from flexstage.studies.synthesis.pairs import CandidatePair, shortfalls
 from flexstage.studies.synthesis.search import Answer, FailedPair, search
+from flexstage.studies.synthesis.show.report import answer_report
+from flexstage.studies.synthesis.show.tables import answer_tables
 from flexstage.studies.synthesis.specification import ActuatorTable, Specification, loads_specification
 from flexstage.studies.tolerances.file import loads_tolerance
 from tests.conftest import FULL
@@ -298,10 +300,6 @@ BAD = {
         'requirements.safety = "at most 3"\nrequirements.frequency = "at least',
         "requirements.safety: ",
     ),
-    "requirements.frequency": (
-        'goals = { maximise = "frequency", minimise = "envelope.x" }\nrequirements.frequency',
-        "it has two goals",
-    ),
     'name = "scanner"': ('name = "scanner"\ncatalogue = "nowhere.toml"', "file not found"),
     "specification 1": ("study 1", "a study file, expected a specification file"),
     "requirements.": (
@@ -401,6 +399,20 @@ def test_an_interrupted_design_returns_its_answers(tmp_path: Path, monkeypatch: 
     found = fs.design(spec, keep=tmp_path)
     assert found.interrupted
     assert len(found.answers) + len(found.failed) == 1
+
+
+def test_a_front_has_the_goal_at_its_first_end(tmp_path: Path) -> None:
+    """Two goals: the answer maximises the first; along the front both fall, and no design of it breaks a requirement."""
+    found = fs.design(guide_specification('goals = { maximise = "frequency", minimise = "envelope.z" }'))
+    points = joint_front(found)
+    assert found.best is not None
+    assert points[0][1].goal == pytest.approx(found.best.goal, rel=2e-3)
+    for key in ("goal", "second"):
+        values = [getattr(point, key) for _, point in points]
+        assert len(values) > 2
+        assert values == sorted(values, reverse=True)
+    assert "Front of both goals" in [each.title for each in answer_tables(found)]
+    assert "front of both goals" in answer_report(found)
 
 
 def test_rotations_need_an_inertia() -> None:

@@ -21,10 +21,10 @@ from flexstage.base.storage.store import write
 from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.sweeps.execution.run import Run
-from flexstage.studies.synthesis.architecture import catalogue_actuators, draw, find_architectures, specified_goal, study_text
+from flexstage.studies.synthesis.architecture import catalogue_actuators, draw, find_architectures, specified_goals, study_text
 from flexstage.studies.synthesis.corrections import Estimator
 from flexstage.studies.synthesis.pairs import CandidatePair, ImpossiblePair, demand, shortfalls
-from flexstage.studies.synthesis.search import Answer, FailedPair, Relaxation, manufacturing_yield, relaxations, search
+from flexstage.studies.synthesis.search import Answer, FailedPair, FrontPoint, Relaxation, manufacturing_yield, relaxations, search
 from flexstage.studies.synthesis.specification import Specification
 
 Progress = Callable[[str, float], None]
@@ -145,7 +145,7 @@ class _Store:
             return None
         try:
             drawn = draw(pair.architecture, self.specification, pair.actuator)
-            study = study_text(pair.architecture, self.specification, pair.actuator, specified_goal(pair.architecture, self.specification))
+            study = study_text(pair.architecture, self.specification, pair.actuator, specified_goals(pair.architecture, self.specification))
         except DesignError:
             return None
         return self.folder / f"{digest((__version__, what, pair.name, repr(self.specification), drawn, study))[:20]}.json"
@@ -167,7 +167,8 @@ def _from_text(text: str) -> Answer | FailedPair:
     """A result from its file."""
     tree: dict[str, Any] = json.loads(text)
     if tree.pop("kind") == Answer.__name__:
-        return replace(Answer(**tree), active=tuple(tree["active"]), warnings=tuple(tree["warnings"]))
+        points = tuple(FrontPoint(**each) for each in tree["front"])
+        return replace(Answer(**tree), active=tuple(tree["active"]), warnings=tuple(tree["warnings"]), front=points)
     return replace(FailedPair(**tree), relaxed=tuple(Relaxation(**each) for each in tree["relaxed"]))
 
 
@@ -267,6 +268,23 @@ def _relaxed(
         one = kept or replace(each, relaxed=tuple(relaxations(store.specification, pair, each, said)))
         done[pair.name] = store.put(pair, "relaxed", one)
     return done
+
+
+def joint_front(found: Answers) -> list[tuple[Answer, FrontPoint]]:
+    """Return the designs of all pairs that no other exceeds in both goals, from the best in the first on.
+
+    >>> from flexstage.studies.synthesis.specification import example
+    >>> joint_front(Answers(example(), (), (), ()))
+    []
+    """
+    points = [(answer, point) for answer in found.answers for point in answer.front]
+    points.sort(key=lambda each: (-each[1].goal, each[1].second, each[0].file))
+    best, kept = math.inf, list[tuple[Answer, FrontPoint]]()
+    for answer, point in points:
+        if point.second < best:
+            kept.append((answer, point))
+            best = point.second
+    return kept
 
 
 def all_names(found: Sequence[Answer]) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import resources
 from types import MappingProxyType
@@ -33,6 +33,7 @@ else:
 _LENGTH, _ANGLE = dimension_of("m"), dimension_of("rad")
 _DIGITS = 7
 _COPIES = 512
+_FRONT = 5
 _SPARE = 1e-4
 """A quarter of the range of a gauge whose motion is not required [m, rad]."""
 DESIGN = "stage.toml"
@@ -347,22 +348,23 @@ def _set_payload(tree: Any, architecture: Architecture, spec: Specification) -> 
         tree["numbers"]["payload_at_z"] = "0 mm" if upright else f"depth/2 + {height}"
 
 
-def specified_goal(architecture: Architecture, spec: Specification) -> tuple[str, str]:
-    """Return the goal of a specification as the direction and the measure of a design of this architecture."""
-    way, key = spec.goal
-    return way, measure_key(architecture, spec, key)
+def specified_goals(architecture: Architecture, spec: Specification) -> list[tuple[str, str]]:
+    """Return the goals of a specification, each as the direction and the measure of a design of this architecture."""
+    return [(each[0], measure_key(architecture, spec, each[1])) for each in (spec.goal, spec.second_goal) if each is not None]
 
 
-def study_text(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, goal: tuple[str, str]) -> str:
-    """Return the study that searches a design of an architecture: its variables, and the goal, a direction and a measure."""
+def study_text(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, goals: Sequence[tuple[str, str]]) -> str:
+    """Return the study that searches a design of an architecture: its variables, and one or two goals, each a direction and a measure."""
     lines = ['format = "flexstage study 1"', f"name = {json.dumps(spec.name)}", f'design = "{DESIGN}"', "", "[variables]"]
     for each in variables(architecture, scope(architecture, spec, actuator)):
         low, high = (show(value, each.quantity, digits=_DIGITS) for value in (each.low, each.high))
         step = "" if each.quantity.si == "rad" else f', step = "{_mm(spec.make.step)}"'
         even = "" if each.low <= 0.0 or each.quantity.si == "rad" else ", logarithmic = true"
         lines.append(f'{each.name} = {{ address = "numbers.{each.name}", from = "{low}", to = "{high}"{even}{step} }}')
-    lines += ["", "[responses]", f'goal = "{goal[1]}"', "", "[optimise]", f'{goal[0]} = "goal"']
-    return "\n".join([*lines, f"starts = {spec.starts}", f"seed = {spec.seed}", ""])
+    names = ("goal", "second")[: len(goals)]
+    lines += ["", "[responses]", *(f'{name} = "{measure}"' for name, (_, measure) in zip(names, goals, strict=True)), "", "[optimise]"]
+    lines += [f'{way} = "{name}"' for name, (way, _) in zip(names, goals, strict=True)]
+    return "\n".join([*lines, f"pareto_points = {_FRONT}", f"starts = {spec.starts}", f"seed = {spec.seed}", ""])
 
 
 def tolerance_text(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, limits: Mapping[str, str]) -> str:

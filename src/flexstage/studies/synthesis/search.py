@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
@@ -18,13 +18,15 @@ from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.studies.optimisation.file import load_optimisation
 from flexstage.studies.optimisation.result import Optimum
+from flexstage.studies.optimisation.search.front import pareto_front
 from flexstage.studies.optimisation.search.optimum import optimise
 from flexstage.studies.optimisation.stage_text import write_optimum
 from flexstage.studies.optimisation.values import values_of
+from flexstage.studies.sweeps.definition import Study
 from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.sweeps.file import loads_study
 from flexstage.studies.synthesis import bounds
-from flexstage.studies.synthesis.architecture import DESIGN, draw, specified_goal, study_text, tolerance_text
+from flexstage.studies.synthesis.architecture import DESIGN, draw, specified_goals, study_text, tolerance_text
 from flexstage.studies.synthesis.corrections import Estimator, displaced_values, elastic_values, missed_limits
 from flexstage.studies.synthesis.pairs import CandidatePair, energy_groups
 from flexstage.studies.synthesis.specification import Specification
@@ -64,6 +66,16 @@ class FailedPair:
     corrected: Annotated[Mapping[str, str], INNER] = field(default_factory=dict)
 
 
+@dataclass(frozen=True)
+class FrontPoint:
+    """A design of the front of two goals: both values [SI], the second in `unit`, and the named numbers [SI] that are searched."""
+
+    goal: float
+    second: float
+    unit: str
+    numbers: Mapping[str, float]
+
+
 @dataclass(frozen=True, eq=False)
 class Answer:
     """A stage that keeps all requirements: the text of its design file and study, goal [SI] and active requirements.
@@ -74,6 +86,7 @@ class Answer:
 
     `manufactured` is the yield: the share of stages with scatter of dimensions that keep all requirements, lumped, if requested.
     `crossover` is the lowest sensitivity crossover of its control loop with the default controller, if requested.
+    `front` are its best designs in two goals, if there are two.
 
     `efficiency` is the stroke energy that it uses as a share of that of its actuators, at most 1 by `bounds.frequency_bound`; `None` of
     coils. `warnings` are those of `flexstage check`.
@@ -97,6 +110,7 @@ class Answer:
     unverified: str = ""
     manufactured: Annotated[float | None, RATIO] = None
     crossover: Annotated[float | None, FREQUENCY] = None
+    front: tuple[FrontPoint, ...] = ()
     rounds: int = 1
     design: Annotated[str, INNER] = ""
     study: Annotated[str, INNER] = ""
@@ -137,7 +151,7 @@ def search(
     limits, known = dict[str, str](), answer
     for rounds in range(1, _ROUNDS + 1):
         if known is None:
-            found = optimum(spec, pair, specified_goal(pair.architecture, spec), limits, progress)
+            found = optimum(spec, pair, specified_goals(pair.architecture, spec)[0], limits, progress)
             if isinstance(found, str):
                 return FailedPair(*names, None, {}, found)
             if found.final is None:
@@ -149,9 +163,9 @@ def search(
             if verify is not None:
                 return replace(known, unverified=str(error))
             return FailedPair(*names, None, {}, str(error))
-        missed = missed_limits(known.stage, known.values, (known.verified or known.elastic, known.displaced))
+        missed = missed_limits(known.stage, known.values, ({**known.elastic, **known.verified}, known.displaced))
         if not missed:
-            return known
+            return known if known.front or spec.second_goal is None else replace(known, front=front(spec, pair, limits, progress))
         limits, known = missed, None
     return FailedPair(*names, None, {}, f"with {_models(verify)} {'; '.join(f'{key} must be {text}' for key, text in limits.items())}")
 
@@ -210,15 +224,32 @@ def optimum(
 ) -> Optimum | str:
     """The optimum of a pair for a goal with some requirements `replaced`; the reason where it cannot be drawn or analysed."""
     try:
-        with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / DESIGN).write_text(draw(pair.architecture, spec, pair.actuator, replaced), encoding="utf-8")
-            study = loads_study(study_text(pair.architecture, spec, pair.actuator, goal), where=f"{folder}/study.toml", folder=Path(folder))
-            found = optimise(study, load_optimisation(study), progress)
+        study = _study(spec, pair, [goal], replaced)
+        found = optimise(study, load_optimisation(study), progress)
     except DesignError as error:
         return str(error)
     if found.interrupted:
         raise KeyboardInterrupt
     return found
+
+
+def front(
+    spec: Specification, pair: CandidatePair, replaced: Mapping[str, str], progress: Callable[[str], None] | None = None
+) -> tuple[FrontPoint, ...]:
+    """The front of a pair for the two goals of a specification, with some requirements `replaced`."""
+    study = _study(spec, pair, specified_goals(pair.architecture, spec), replaced)
+    found = pareto_front(study, load_optimisation(study), progress)
+    if found.interrupted:
+        raise KeyboardInterrupt
+    unit = found.definition.objectives[1].measure.quantity.si
+    return tuple(FrontPoint(*each.objectives.values(), unit, each.variables) for each in found.front)
+
+
+def _study(spec: Specification, pair: CandidatePair, goals: Sequence[tuple[str, str]], replaced: Mapping[str, str | None]) -> Study:
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / DESIGN).write_text(draw(pair.architecture, spec, pair.actuator, replaced), encoding="utf-8")
+        text = study_text(pair.architecture, spec, pair.actuator, goals)
+        return loads_study(text, where=f"{folder}/study.toml", folder=Path(folder))
 
 
 def _failed(spec: Specification, pair: CandidatePair, found: Optimum, corrected: Mapping[str, str]) -> FailedPair:
@@ -251,7 +282,7 @@ def _answer(spec: Specification, pair: CandidatePair, found: Optimum, corrected:
         found.evaluated,
         tuple(map(str, check(stage))),
         design=text,
-        study=found.study.text,
+        study=study_text(pair.architecture, spec, pair.actuator, specified_goals(pair.architecture, spec)),
         scatter=tolerance_text(pair.architecture, spec, pair.actuator, stage.requirements),
     )
 

@@ -107,7 +107,10 @@ class ActuatorTable:
 
 @dataclass(frozen=True)
 class GoalTable:
-    """What to `maximise` or `minimise`: a requirement's key. The default maximises the first required frequency."""
+    """What to `maximise` or `minimise`: a requirement's key. The default maximises the first required frequency.
+
+    With both, `maximise` is the goal, and the front of the two is computed as well.
+    """
 
     maximise: str | None = None
     minimise: str | None = None
@@ -180,10 +183,16 @@ class Specification:
     @property
     def goal(self) -> tuple[str, str]:
         """The direction (maximise, minimise) and the key of the goal."""
-        if self.goals.minimise is not None:
+        if self.goals.minimise is not None and self.goals.maximise is None:
             return "minimise", self.goals.minimise
         default = next((key for key in FREQUENCY_KEYS if key in self.requirements), FREQUENCY_KEYS[0])
         return "maximise", self.goals.maximise or default
+
+    @property
+    def second_goal(self) -> tuple[str, str] | None:
+        """The direction and the key of the second goal, if there are two."""
+        both = self.goals.maximise is not None and self.goals.minimise is not None
+        return ("minimise", str(self.goals.minimise)) if both else None
 
 
 @check_arguments
@@ -247,8 +256,6 @@ def _findings(spec: Specification) -> Iterator[Finding]:
     if any(axis.startswith("r") for axis in spec.displacements) and np.linalg.eigvalsh(spec.inertia)[0] <= 0.0:
         what = "a rotation is required, and the payload has no moment of inertia about some axis"
         yield Finding("payload", what, 'Use e.g. size = ["30 mm", "30 mm", "5 mm"]')
-    if spec.goals.maximise is not None and spec.goals.minimise is not None:
-        yield Finding("goals", "it has two goals", "Keep one, and set a requirement for the other")
 
 
 def _requirement_findings(spec: Specification) -> Iterator[Finding]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from flexstage.base.version import __version__
@@ -10,8 +11,8 @@ from flexstage.show.figures.style import FULL, SERIES, Margins, canvas, panels, 
 from flexstage.show.page import BlockRow, Head, Headline, Picture, page, section
 from flexstage.show.scene.pictures import stage_picture
 from flexstage.show.viewer.data import still_data
-from flexstage.studies.synthesis.answers import Answers
-from flexstage.studies.synthesis.search import Answer
+from flexstage.studies.synthesis.answers import Answers, joint_front
+from flexstage.studies.synthesis.search import Answer, FrontPoint
 from flexstage.studies.synthesis.show.tables import answer_tables
 
 _BOUND = "Frequency and width of the answers. Lines: highest frequency of any mechanism with these actuators and this payload."
@@ -28,11 +29,16 @@ def answer_report(found: Answers) -> str:
     bounded = [(each, each.efficiency) for each in found.answers if each.efficiency]
     caption = "frequency and width of the answers"
     picture = Picture(to_svg(bound_figure(bounded), "bound", caption), _BOUND) if bounded else None
+    if points := joint_front(found):
+        extra = Picture(to_svg(front_figure(found, points), "front", "front of both goals"), "Front of both goals.")
+    else:
+        extra = None
     stages = [_picture(each, number) for number, each in enumerate(found.answers, 1)]
     count = len(found.answers)
     said = Headline(f"{count} stage{'' if count == 1 else 's'} meet{'s' if count == 1 else ''} the specification.", count > 0)
     sections = [
         section("Answers", [tables[0], picture]),
+        section("Front", [extra]),
         section("Stages", [BlockRow(tuple(stages[place : place + 2])) for place in range(0, count, 2)]),
         section("Excluded pairs", tables[1:]),
     ]
@@ -52,6 +58,21 @@ def bound_figure(answers: list[tuple[Answer, float]]) -> Any:
         ax.set_ylim(bottom=0.0)
         ax.set_xlabel("width [mm]")
         ax.set_ylabel("first natural frequency [Hz]")
+        ax.legend()
+    return figure
+
+
+def front_figure(found: Answers, points: Sequence[tuple[Answer, FrontPoint]]) -> Any:
+    """Draw the designs of the joint front by both goals, in the colours of their pairs."""
+    (_, key), (_, second) = found.specification.goal, found.specification.second_goal or ("", "")
+    with style_context():
+        figure = canvas(FULL, 2.9)
+        ax = panels(figure, 1, 1, Margins(left=0.75, bottom=0.5, right=0.2))[0, 0]
+        for number, answer in enumerate(dict.fromkeys(answer for answer, _ in points)):
+            own = [(point.second, point.goal) for each, point in points if each is answer]
+            ax.plot(*zip(*own, strict=True), "o-", color=SERIES[number % len(SERIES)], label=f"{answer.architecture}, {answer.actuator}")
+        ax.set_xlabel(f"{second} [{points[0][1].unit}]")
+        ax.set_ylabel(f"{key} [{points[0][0].unit}]")
         ax.legend()
     return figure
 

@@ -8,9 +8,9 @@ from flexstage.base.units.quantity import LENGTH, Quantity
 from flexstage.base.units.unit import show
 from flexstage.show.display import format_value
 from flexstage.show.table import Cell, Column, Mark, Table, make_table
-from flexstage.studies.synthesis.answers import Answers
+from flexstage.studies.synthesis.answers import Answers, joint_front
 from flexstage.studies.synthesis.pairs import ImpossiblePair, Shortfall
-from flexstage.studies.synthesis.search import Answer, FailedPair
+from flexstage.studies.synthesis.search import Answer, FailedPair, FrontPoint
 
 _DIGITS = 4
 
@@ -23,6 +23,11 @@ def answer_tables(found: Answers) -> Iterator[Table]:
     'No stage meets the specification "scanner"'
     """
     yield _answer_table(found)
+    if points := joint_front(found):
+        goal, second = (f"{key}, {way}d" for way, key in (found.specification.goal, found.specification.second_goal or ("", "")))
+        rows = [(Cell(answer.architecture, Mark.STRONG), answer.actuator, *_front_cells(answer, each)) for answer, each in points]
+        notes = ["No design of any pair is better in one goal without being worse in the other. The study of an answer computes it."]
+        yield make_table("Front of both goals", ["architecture", "actuator", Column(goal), Column(second)], rows, notes=notes)
     if found.failed:
         rows = [
             (Cell(each.architecture, Mark.STRONG), each.actuator, _violation(each), _reason(each), _relaxed_text(each))
@@ -73,6 +78,10 @@ def _answer_cells(answer: Answer) -> tuple[str | Cell, ...]:
     loop = "-" if answer.crossover is None else format_value(answer.crossover, "Hz", 3)
     active, warnings = ", ".join(answer.active), str(len(answer.warnings))
     return Cell(answer.architecture, Mark.STRONG), answer.actuator, *goals, made, loop, f"{size} mm", used, active, warnings
+
+
+def _front_cells(answer: Answer, point: FrontPoint) -> tuple[str, str]:
+    return format_value(point.goal, answer.unit, _DIGITS), format_value(point.second, point.unit, _DIGITS)
 
 
 def _frequency(values: Mapping[str, float]) -> str:
