@@ -39,6 +39,7 @@ from flexstage.apps.studio.server import LARGEST
 from flexstage.apps.studio.travel import travelled
 from flexstage.apps.studio.wire import encode
 from flexstage.base.finding import DesignError
+from flexstage.base.labelled import quiet
 from flexstage.base.units.quantity import LENGTH
 from flexstage.base.units.unit import show
 from flexstage.cases.double_triangle import double_triangle
@@ -100,7 +101,7 @@ async def test_figures_at_rest_are_those_of_the_library(page, studio):
     model = lumped(stage)
     told = page.told[say.Figures]
     stiff, found, lost = statics(model), modes(model), lost_motion(ideal(stage), model)
-    assert np.allclose(told.stiffness.values, stiff.stiffness.values, rtol=1e-9, atol=0.0)
+    assert np.allclose(told.stiffness.values, quiet(stiff.stiffness.values), rtol=1e-9, atol=0.0)
     assert np.allclose([each.frequency for each in told.modes], found.frequencies[: len(told.modes)], rtol=1e-9)
     assert [each.loss for each in told.losses] == pytest.approx([float(each.loss) for each in lost.actuators.values()], rel=1e-9)
     heard = response(model, ("platform",), ("B",))
@@ -123,7 +124,7 @@ def test_figures_of_a_stage_whose_weight_is_felt_are_those_of_its_analysis():
     assert told.loading == load_effect(stage).text != ""
     assert told.modes[0].frequency == pytest.approx(2.26569, rel=1e-4)
     assert [each.frequency for each in told.modes] == pytest.approx(found.frequencies[: len(told.modes)], rel=1e-9)
-    assert np.allclose(told.compliance.values, statics(model).compliance.values, rtol=1e-9, atol=0.0)
+    assert np.allclose(told.compliance.values, quiet(statics(model).compliance.values), rtol=1e-9, atol=0.0)
     assert np.allclose(array(told.curves[2].magnitude), np.abs(heard.values[:, 2, 0]), rtol=1e-7, atol=1e-12)
     value = next(each.value for each in told.figures if each.name == "frequency.platform.1")
     assert value == next(each.value for each in all_figures(text, "") if each.name == "frequency.platform.1") == told.modes[0].frequency
