@@ -298,7 +298,7 @@ class RecordNode(Node):
         required = [key] if key else []
         wrapped: list[dict[str, Any]] = []
         for slot in self.fields.values():
-            properties |= {key: node.schema(definitions) for key, node in slot.alternatives}
+            properties |= {key: node.schema(definitions) | _default(slot) for key, node in slot.alternatives}
             if slot.wrapped is not None:
                 wrapped += [{"required": [option]} for option in slot.keys]
             elif slot.required:
@@ -450,6 +450,12 @@ class Slot:
         if len(present) > 1:
             reader.refuse(where, f"both {' and '.join(key for key, _ in present)} specified", "Remove one of them")
         return present[0] if present else (self.key, self.node)
+
+
+def _default(slot: Slot) -> dict[str, Any]:
+    """The default of a field in a schema, if it is a single value."""
+    single = isinstance(slot.default, str | int | float | Enum)
+    return {"default": Writer().write(slot.node, slot.default, slot.key)} if single else {}
 
 
 def _is_table(raw: Any, where: str, reader: Reader) -> bool:

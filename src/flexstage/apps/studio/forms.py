@@ -1,0 +1,80 @@
+"""Forms of the studio's jobs: the JSON Schema of what a command takes, and the key figures of its result."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from flexstage.apps.cli.option_groups import default_last
+from flexstage.apps.studio.protocol import Figure
+
+_STUDIES = ("sweep", "optimise")
+_OWN = ("--help", "--stage", "--report", "--json", "--csv", "--xlsx", "--mat", "--strict", "--full")
+"""Options without an entry: the studio sets them, or they concern the printed text."""
+
+
+def form(command: str) -> Mapping[str, Any]:
+    """The JSON Schema of a command's file: of its study or set-up; without one, of its options."""
+    if command == "loop":
+        from flexstage.control.study.file import setup_schema  # takes long to import
+
+        return setup_schema()
+    if command in _STUDIES:
+        from flexstage.studies.form import study_schema
+
+        return study_schema()
+    from typer import Context
+
+    from flexstage.apps.cli.commands import COMMANDS, LazyCommand
+
+    loaded = LazyCommand(next(each for each in COMMANDS if each.name == command)).load()
+    context = Context(loaded)
+    options = (each for each in loaded.params if each.param_type_name == "option" and each.opts[0] not in _OWN)
+    return {"properties": {each.opts[0]: _property(each, *each.get_help_record(context)) for each in options}}
+
+
+def _property(option: Any, names: str, meaning: str) -> dict[str, Any]:
+    """The schema of an option: a switch, a choice of values, some values, or one."""
+    _, _, value = names.rpartition(" ")
+    choices = value.strip("<>").split("|") if value.startswith("<") and "|" in value else []
+    kind = {"enum": choices} if choices else {"type": "boolean" if option.is_flag else "string"}
+    many = {"minItems": option.nargs} if option.nargs > 1 else {}
+    return {"description": default_last(meaning), "examples": [value], **kind, **many}
+
+
+def key_figures(document: Mapping[str, Any]) -> tuple[Figure, ...]:
+    """The key figures of a command's result, with SI units, for a comparison of runs."""
+    return tuple(Figure(name, document["kind"], unit, unit, 1.0, value, None) for name, value, unit in _figures(document))
+
+
+def _figures(document: Mapping[str, Any]) -> Iterator[tuple[str, float | None, str]]:
+    for each in document.get("requirements", ()):
+        yield each["key"], each["value"], each["unit"]
+    if document["kind"] == "sweep":
+        for each in document["responses"]:
+            yield f"{each['name']}, least", each["min_value"], each["unit"]
+            yield f"{each['name']}, largest", each["max_value"], each["unit"]
+    if "optimum" in document:
+        best = document["optimum"]
+        for each in document["objectives"]:
+            yield each["name"], best["objectives"][each["name"]], each["unit"]
+        for each in best["limits"]:
+            yield f"margin of {each['measure']}", each["margin"], "1"
+    for each in document.get("rows", ()):
+        if each["group"] == "stage":
+            yield f"{each['figure']}, theory over finite elements - 1", each["difference"], "1"
+    if document["kind"] == "identify":
+        for each in document["modes"]:
+            yield f"mode {each['number']}", each["frequency_hz"], "Hz"
+            yield f"damping ratio of mode {each['number']}", each["damping"], "1"
+    if document["kind"] == "loop":
+        for name, each in document["bandwidths"]["coordinates"].items():
+            yield f"bandwidth {name}", each["tracking_hz"], "Hz"
+        for name, each in document["margins"]["loops"].items():
+            phase = each["phase_rad"]["value"]
+            yield f"gain margin {name}", each["gain_high"]["value"], "1"
+            yield f"phase margin {name}", None if phase is None else math.degrees(phase), "deg"
+        yield "peak sensitivity", document["peaks"]["sensitivity"]["value"], "1"
+        for name, value, unit in zip(*(document["noise"][key] for key in ("outputs", "rms", "units")), strict=True):
+            yield f"positioning noise {name}", value, unit
