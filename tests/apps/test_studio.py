@@ -3,6 +3,7 @@
 import asyncio
 import base64
 import contextlib
+import json
 import os
 import random
 import signal
@@ -32,6 +33,7 @@ from flexstage.apps.studio import solids
 from flexstage.apps.studio.design.palette import insert, snippets
 from flexstage.apps.studio.design.reading import design, read
 from flexstage.apps.studio.design.writing import write
+from flexstage.apps.studio.forms import key_figures
 from flexstage.apps.studio.helper import Urgency
 from flexstage.apps.studio.questions import slopes
 from flexstage.apps.studio.results import all_figures, drawn, figures, reach
@@ -765,6 +767,30 @@ async def test_jobs_that_cannot_be_are_refused(page, studio):
     ):
         assert isinstance(await page.ask(say.Run, **fields), say.Refusal)
     assert isinstance(await page.ask(say.Cancel, job=99), say.Refusal)
+
+
+LIMITED = ("analyse", "loop") if os.environ.get("FLEXSTAGE_TESTS") != "full" else ("analyse", "loop", "sweep", "optimise", "verify")
+
+
+@pytest.mark.parametrize("command", LIMITED)
+def test_key_figures_are_those_of_the_result(command, tmp_path):
+    (tmp_path / "guide.toml").write_text(TEXT)
+    base = STUDY.partition("[sweep]")[0].replace("[variables]", 'design = "guide.toml"\n[variables]')
+    (tmp_path / "study.toml").write_text(base + ('[optimise]\nmaximise = "f"' if command == "optimise" else "[sweep]\ndesigns = 8"))
+    study, document = command in ("sweep", "optimise"), tmp_path / "result.json"
+    extra = {"loop": ["--quick"], "verify": ["--accuracy", "5 %"], "sweep": ["-o", str(tmp_path / "r.h5")]}.get(command, [])
+    assert run([command, str(tmp_path / ("study.toml" if study else "guide.toml")), *extra, "--json", str(document)]) == 0
+    found = {each.name: (each.value, each.si) for each in key_figures(json.loads(document.read_text()))}
+    assert all(value is None or np.isfinite(value) for value, _ in found.values())
+    if command == "analyse":
+        expected = {each.requirement.key: float(each.value) for each in judge(loads(TEXT))}
+        assert {name: value for name, (value, _) in found.items()} == pytest.approx(expected)
+        assert found["frequency.platform.1"][1] == "Hz"
+    elif command == "loop":
+        assert {"bandwidth x", "gain margin x", "phase margin x", "peak sensitivity", "positioning noise relative.x"} == found.keys()
+        assert 0.0 < found["phase margin x"][0] < 90.0
+    else:
+        assert found
 
 
 @pytest.mark.full

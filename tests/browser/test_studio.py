@@ -395,6 +395,18 @@ def test_slow_and_fast_drags_end_at_the_same_value_in_one_step_of_undo_within_th
     row.locator(".name").click()
 
 
+def test_an_error_in_any_table_is_shown_at_its_line(page: Page) -> None:
+    rows = page.evaluate("() => studio.state.value.text.split('\\n')")
+    heads = [number for number, row in enumerate(rows) if row.startswith("[")]
+    assert len(heads) >= 10
+    for number in heads:
+        text = "\n".join([*rows[: number + 1], "wrong = true", *rows[number + 1 :]])
+        page.evaluate("(text) => studio.ask({ kind: 'edit', text, revision: studio.state.value.revision })", text)
+        until(page, f"studio.state.value.problems.length && studio.state.value.text.split('\\n')[{number + 1}] === 'wrong = true'")
+        assert f"line {number + 2}:" in page.inner_text("#problems"), rows[number]
+        assert page.locator("#head .good, #text .bar .good").count() == 0
+
+
 def test_the_named_numbers_come_first_and_dependent_ones_show_their_formula(page: Page) -> None:
     assert page.locator("#amounts summary").first.inner_text().startswith("numbers")
     row = page.locator('[data-address="numbers.strut"]')

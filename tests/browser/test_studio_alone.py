@@ -29,6 +29,8 @@ from flexstage.apps.studio.protocol import (
     Problem,
     Refusal,
     Scene,
+    Slope,
+    Slopes,
     Snippet,
     Snippets,
     State,
@@ -213,11 +215,15 @@ def test_no_status_is_green_next_to_results_of_another_text(page: Page, server: 
     chips = "() => ['engine', 'sound'].map((each) => document.getElementById(each).classList.contains('good'))"
     colours = "() => [...document.querySelectorAll('#verdicts .pill, #verdicts tr b')].map((each) => getComputedStyle(each).color)"
     figures = Figures(1, (), None, None, (), (), None, (), "", {}, 0.0)
-    server.say(Engine("ready", "", None), figures)
+    server.say(Engine("ready", "", None), figures, Slopes(0, 1, "frequency.1", (Slope(THICKNESS, "m", 5e-4, {}, 0.01),), {}))
+    until(page, lambda: page.inner_text("#amounts .buys") == "+1")
+    assert page.locator("#amounts.aged").count() == 0
     until(page, lambda: page.evaluate(chips) == [True, True])
     green = page.evaluate(colours)
     server.say(state(2, TEXT + "\n[requirements]", problems=(Problem("requirements.mass", "found a frequency", "Use e.g. 2 kg.", 6, 1),)))
     until(page, lambda: page.evaluate(chips) == [False, False])
+    assert page.locator("#amounts.aged").count() == 1
+    assert "of an earlier text" in page.inner_text("#numbers .foot")
     assert "1 error: results are of the last text without errors" in page.inner_text("#text .bar")
     assert not set(green) & set(page.evaluate(colours))
     server.say(state(3))

@@ -43,6 +43,7 @@ export class JobsPane {
   private readonly root = byId("pane-jobs");
   private readonly list = h("div", { id: "jobs" });
   private readonly form = h("div", {});
+  private readonly refusal = h("div", { role: "alert" });
   private readonly studies = new Map<Command, string>();
   private live = new Set<number>();
   /** Reports that this page asked for, which are shown as soon as they are there. */
@@ -88,16 +89,18 @@ export class JobsPane {
     study?.changed(() => text && (text.value = compose()));
     fill(
       this.form,
-      h("form", { className: "run", submit: start }, h("h3", {}, kind.title), h("p", { className: "quiet" }, kind.about), record && h("label", {}, "record's file ", record), body, text && h("details", {}, h("summary", {}, "as a file"), text), more && h("label", {}, "further options ", more), h("button", { type: "submit" }, `Start ${kind.title.toLowerCase()}`)),
+      h("details", { className: "blank", open: true }, h("summary", {}, h("h3", {}, kind.title)), h("form", { className: "run", submit: start }, h("p", { className: "quiet" }, kind.about), record && h("label", {}, "record's file ", record), body, text && h("details", {}, h("summary", {}, "as a file"), text), more && h("label", {}, "further options ", more), h("button", { type: "submit" }, `Start ${kind.title.toLowerCase()}`), this.refusal)),
     );
+    fill(this.refusal);
     this.form.querySelector<HTMLElement>("input, select, button")?.focus();
   }
 
   private async run(question: Omit<Run, "id">): Promise<void> {
     const said = await this.studio.ask(question);
     if (said.kind === "done" && said.job !== null && question.command === "analyse") this.wanted.add(said.job);
-    if (said.kind === "done") fill(this.form);
-    else if (said.kind === "refusal") fill(this.form, ...said.problems.map((each) => h("p", { className: "poor" }, `${each.where}: ${sentence(each)}`)));
+    const blank = this.form.querySelector("details");
+    if (said.kind === "done" && blank) blank.open = false; // it keeps what was filled in
+    else if (said.kind === "refusal") fill(this.refusal, ...said.problems.map((each) => h("p", { className: "poor" }, `${each.where}: ${sentence(each)}`)));
   }
 
   private show(said: Jobs): void {

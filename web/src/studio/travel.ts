@@ -88,7 +88,7 @@ export class Travel {
     const said = await this.studio.ask({ kind: "travel", drive: this.drive.value, start: this.start.value.trim(), end: this.end.value.trim(), points: Number(this.points.value), loads, path: this.path });
     this.wait(false);
     if (said.kind === "travelled") this.show(said);
-    else if (said.kind === "refusal") fill(this.about, said.problems.length ? h("span", { className: "poor" }, said.problems.map((each) => `${each.where}: ${sentence(each)}`).join(" ")) : "Cancelled.");
+    else if (said.kind === "refusal") fill(this.about, said.problems.length ? h("span", { className: "poor" }, said.problems.map((each) => `${each.where.replace("--load", "load")}: ${sentence(each)}`).join(" ")) : "Cancelled.");
   }
 
   private tell(said: Underway): void {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from flexstage.apps.cli.option_groups import default_last
@@ -44,37 +44,62 @@ def _property(option: Any, names: str, meaning: str) -> dict[str, Any]:
 
 
 def key_figures(document: Mapping[str, Any]) -> tuple[Figure, ...]:
-    """The key figures of a command's result, with SI units, for a comparison of runs."""
-    return tuple(Figure(name, document["kind"], unit, unit, 1.0, value, None) for name, value, unit in _figures(document))
+    """The key figures of a command's result, in SI units and degrees, for a comparison of runs."""
+    kind = document["kind"]
+    return tuple(Figure(name, kind, unit, unit, 1.0, value, None) for name, value, unit in _FIGURES[kind](document))
 
 
-def _figures(document: Mapping[str, Any]) -> Iterator[tuple[str, float | None, str]]:
-    for each in document.get("requirements", ()):
-        yield each["key"], each["value"], each["unit"]
-    if document["kind"] == "sweep":
-        for each in document["responses"]:
-            yield f"{each['name']}, least", each["min_value"], each["unit"]
-            yield f"{each['name']}, largest", each["max_value"], each["unit"]
-    if "optimum" in document:
-        best = document["optimum"]
-        for each in document["objectives"]:
-            yield each["name"], best["objectives"][each["name"]], each["unit"]
-        for each in best["limits"]:
-            yield f"margin of {each['measure']}", each["margin"], "1"
-    for each in document.get("rows", ()):
-        if each["group"] == "stage":
-            yield f"{each['figure']}, theory over finite elements - 1", each["difference"], "1"
-    if document["kind"] == "identify":
-        for each in document["modes"]:
-            yield f"mode {each['number']}", each["frequency_hz"], "Hz"
-            yield f"damping ratio of mode {each['number']}", each["damping"], "1"
-    if document["kind"] == "loop":
-        for name, each in document["bandwidths"]["coordinates"].items():
-            yield f"bandwidth {name}", each["tracking_hz"], "Hz"
-        for name, each in document["margins"]["loops"].items():
-            phase = each["phase_rad"]["value"]
-            yield f"gain margin {name}", each["gain_high"]["value"], "1"
-            yield f"phase margin {name}", None if phase is None else math.degrees(phase), "deg"
-        yield "peak sensitivity", document["peaks"]["sensitivity"]["value"], "1"
-        for name, value, unit in zip(*(document["noise"][key] for key in ("outputs", "rms", "units")), strict=True):
-            yield f"positioning noise {name}", value, unit
+_Rows = Iterator[tuple[str, float | None, str]]
+
+
+def _verdicts(document: Mapping[str, Any]) -> _Rows:
+    return ((each["key"], each["value"], each["unit"]) for each in document["requirements"])
+
+
+def _ranges(document: Mapping[str, Any]) -> _Rows:
+    for each in document["responses"]:
+        yield f"{each['name']}, least", each["min_value"], each["unit"]
+        yield f"{each['name']}, largest", each["max_value"], each["unit"]
+
+
+def _optimum(document: Mapping[str, Any]) -> _Rows:
+    """Objectives and margins of the best design; none for a front."""
+    best = document.get("optimum", {"limits": ()})
+    for each in document["objectives"] if "objectives" in best else ():
+        yield each["name"], best["objectives"][each["name"]], each["unit"]
+    for each in best["limits"]:
+        yield f"margin of {each['measure']}", each["margin"], "1"
+
+
+def _differences(document: Mapping[str, Any]) -> _Rows:
+    rows = (each for each in document["rows"] if each["group"] == "stage")
+    return ((f"{each['figure']}, theory over finite elements - 1", each["difference"], "1") for each in rows)
+
+
+def _modes(document: Mapping[str, Any]) -> _Rows:
+    for each in document["modes"]:
+        yield f"mode {each['number']}", each["frequency_hz"], "Hz"
+        yield f"damping ratio of mode {each['number']}", each["damping"], "1"
+
+
+def _loop(document: Mapping[str, Any]) -> _Rows:
+    for name, each in document["bandwidths"]["coordinates"].items():
+        yield f"bandwidth {name}", each["tracking_hz"], "Hz"
+    for name, each in document["margins"]["loops"].items():
+        phase = each["phase_rad"]["value"]
+        yield f"gain margin {name}", each["gain_high"]["value"], "1"
+        yield f"phase margin {name}", None if phase is None else math.degrees(phase), "deg"
+    yield "peak sensitivity", document["peaks"]["sensitivity"]["value"], "1"
+    for name, value, unit in zip(*(document["noise"][key] for key in ("outputs", "rms", "units")), strict=True):
+        yield f"positioning noise {name}", value, unit
+
+
+_FIGURES: Mapping[str, Callable[[Mapping[str, Any]], _Rows]] = {
+    "analyse": _verdicts,
+    "sweep": _ranges,
+    "optimise": _optimum,
+    "verify": _differences,
+    "identify": _modes,
+    "loop": _loop,
+}
+"""Names, values and units of the key figures by command."""

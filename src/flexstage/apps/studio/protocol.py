@@ -441,8 +441,9 @@ class Redo:
 
 @dataclass(frozen=True)
 class Save:
-    """Write the text to its file, or to another `file` of its folder. Refused after a change on disk, or if the other file exists,
-    unless `over` allows overwriting.
+    """Write the text to its file, or to another `file` of its folder.
+
+    Refused after a change on disk, or if the other file exists, unless `over` allows overwriting.
     """
 
     id: int

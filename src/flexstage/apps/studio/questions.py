@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -387,15 +388,16 @@ def _bent(strains: Mapping[str, Array], column: int) -> tuple[str, ...]:
 
 
 def _locked(motion_: Array, known: Bench) -> Iterator[Screw]:
-    """The constrained motions of the platform, a basis of the complement of the ideal ones, with the links that store their strain energy."""
+    """The constrained motions of the platform, complementary to the ideal ones, with the links that store their strain energy."""
     from scipy.linalg import qr  # takes long to import
 
     free, length = first_design(motion_, 2), known.kinematics.first_length
     scale = np.array([1.0] * 3 + [length] * 3)
     basis, sizes, _ = np.linalg.svd(free * scale[:, None], full_matrices=True)
     rank = int(np.sum(sizes > 1e-9 * sizes.max(initial=0.0))) if sizes.size else 0
-    rest, _, axes = qr(basis[:, rank:] @ basis[:, rank:].T, pivoting=True)  # coordinate axes first, as far as they are in the complement
-    rest = np.where(np.abs(rest) > 1e-12, rest * np.sign(rest[axes, range(6)]), 0.0)[:, : 6 - rank] / scale[:, None]
+    kept: Any = qr(basis[:, rank:] @ basis[:, rank:].T, pivoting=True)  # coordinate axes first, if they are in the complement
+    axes = kept[2]
+    rest = np.where(np.abs(kept[0]) > 1e-12, kept[0] * np.sign(kept[0][axes, range(6)]), 0.0)[:, : 6 - rank] / scale[:, None]
     reference = first_design(known.assembly.bodies["platform"].reference, 1)
     links = Attempts().of("links", lambda: _strained(known, rest)) or [()] * (6 - rank)
     for axis, twist, names in zip(axes.tolist(), rest.T, links, strict=False):

@@ -178,6 +178,8 @@ class Session:
             if path.exists():
                 raise refuse(path.name, "file exists", "Choose another name")
             write(path, await self._task_value(self._quick, "shipped", request.case))
+        elif not path.is_file():
+            raise refuse(path.name, "file not found", "Choose one of this folder")
         self._turn_to(Stored.read(path))
         self.history = History(self.stored.text, revision=self.history.revision + 1)
         self.reading, self.sound, self._warnings = None, "", ()

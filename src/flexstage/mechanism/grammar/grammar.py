@@ -470,8 +470,10 @@ def _strip_tags(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, An
     if not reader.tagged:
         return raw
     tags = raw.get(TAGS, {})
-    if not isinstance(tags, dict) or not all(isinstance(tag, str) for tag in tags.values()):
-        reader.refuse(join(where, TAGS), "a tag is a text", 'Write tags = { thickness = "stated paper 2.2" }, and quote a key with dots')
+    wrong = [key for key, tag in tags.items() if not isinstance(tag, str)] if isinstance(tags, dict) else [""]
+    if wrong:
+        own = join(join(where, TAGS), wrong[0]) if wrong[0] else join(where, TAGS)
+        reader.refuse(own, "a tag is a text", 'Write tags = { thickness = "stated paper 2.2" }, and quote a key with dots')
     else:
         reader.tags.update({join(where, key): tag for key, tag in tags.items()})
     return {key: value for key, value in raw.items() if key != TAGS}
