@@ -10,7 +10,7 @@ import type { StageView } from "./stage";
 import type { Studio } from "./studio";
 
 type Paint = [number, number, number];
-const BENDS: Paint = [0.16, 0.6, 0.3], HOLDS: Paint = [0.82, 0.16, 0.16], SUPERFLUOUS: Paint = [0.95, 0.6, 0.1];
+const BENDS: Paint = [0.95, 0.82, 0.1], HOLDS: Paint = [0.82, 0.16, 0.16], SUPERFLUOUS: Paint = [0.85, 0.1, 0.75]; // none is the colour of a part
 const NAMED = 8; // links by name; more are counted
 
 export class FreedomPane {
