@@ -331,10 +331,10 @@ def test_what_is_chosen_of_the_palette_is_asked_with_its_fields(page: Page, serv
 @pytest.mark.parametrize("name", ["Sweep", "Optimise"])
 def test_the_study_that_is_offered_can_be_run(page: Page, server: Server, tmp_path: Path, name: str) -> None:
     (tmp_path / "leaf.toml").write_text(dumps(parallelogram()))
-    server.holds = {"form"}
+    server.holds = {"jobform"}
     page.locator("#commands").get_by_role("button", name=name).click()
-    until(page, lambda: bool(server.of("form")))
-    server.say(Blank(server.of("form")[0]["id"], name.lower(), form(name.lower())))
+    until(page, lambda: bool(server.of("jobform")))
+    server.say(Blank(server.of("jobform")[0]["id"], name.lower(), form(name.lower())))
     assert page.get_by_label("seed", exact=True).get_attribute("placeholder") == "default: 0"
     page.get_by_label("seed", exact=True).fill("7")
     page.get_by_label("from", exact=True).last.fill("-5 %")
@@ -352,10 +352,10 @@ def test_the_study_that_is_offered_can_be_run(page: Page, server: Server, tmp_pa
 
 
 def test_a_form_of_a_set_up_writes_only_what_was_filled_in(page: Page, server: Server) -> None:
-    server.holds = {"form"}
+    server.holds = {"jobform"}
     page.locator("#commands").get_by_role("button", name="Loop").click()
-    until(page, lambda: bool(server.of("form")))
-    server.say(Blank(server.of("form")[0]["id"], "loop", form("loop")))
+    until(page, lambda: bool(server.of("jobform")))
+    server.say(Blank(server.of("jobform")[0]["id"], "loop", form("loop")))
     page.get_by_label("rate", exact=True).first.fill("5 kHz")
     page.locator("form.run summary", has_text="controller").click()
     page.get_by_label("coordinates", exact=True).select_option("modal")
@@ -374,10 +374,10 @@ def test_a_form_of_a_set_up_writes_only_what_was_filled_in(page: Page, server: S
 
 
 def test_options_are_a_form_and_runs_are_compared_by_their_key_figures(page: Page, server: Server) -> None:
-    server.holds = {"form"}
+    server.holds = {"jobform"}
     page.locator("#commands").get_by_role("button", name="Verify").click()
-    until(page, lambda: bool(server.of("form")))
-    server.say(Blank(server.of("form")[0]["id"], "verify", form("verify")))
+    until(page, lambda: bool(server.of("jobform")))
+    server.say(Blank(server.of("jobform")[0]["id"], "verify", form("verify")))
     assert page.get_by_label("--accuracy", exact=True).get_attribute("placeholder") == "default: 1 %"
     page.get_by_label("--accuracy", exact=True).fill("5 %")
     page.get_by_role("button", name="Start verify").click()

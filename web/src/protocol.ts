@@ -376,8 +376,9 @@ export interface Redo {
 }
 
 /**
- * Write the text to its file, or to another `file` of its folder. Refused after a change on disk, or if the other file exists,
- * unless `over` allows overwriting.
+ * Write the text to its file, or to another `file` of its folder.
+ *
+ * Refused after a change on disk, or if the other file exists, unless `over` allows overwriting.
  */
 export interface Save {
   kind: "save";
@@ -441,10 +442,10 @@ export interface Look {
 }
 
 /** Request for the form of a command. */
-export interface Form {
-  kind: "form";
+export interface JobForm {
+  kind: "jobform";
   id: number;
-  command: "analyse" | "sweep" | "optimise" | "verify" | "identify" | "loop";
+  command: "sweep" | "optimise" | "verify" | "identify" | "loop";
 }
 
 /** Start a command as a job; `study` is the text of its study or set-up if it needs one, `record` a file's path. */
@@ -790,7 +791,7 @@ export type Request =
   | Palette
   | Insert
   | Look
-  | Form
+  | JobForm
   | Run
   | Cancel;
 

@@ -62,7 +62,7 @@ export class JobsPane {
     this.studio.tab.set("jobs");
     if (name === "analyse") return void this.run({ kind: "run", command: name, study: null, record: null, options: [] });
     fill(this.form, h("p", { className: "quiet" }, "…"));
-    this.studio.connection.newest("form", { kind: "form", command: name }, (said) => said.kind === "blank" && this.blank(name, new Form(said.schema as Schema), said.schema as Schema));
+    this.studio.connection.newest("form", { kind: "jobform", command: name }, (said) => said.kind === "blank" && this.blank(name, new Form(said.schema as Schema), said.schema as Schema));
   }
 
   private blank(name: Command, form: Form, schema: Schema): void {

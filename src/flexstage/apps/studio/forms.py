@@ -1,4 +1,4 @@
-"""Forms of the studio's jobs: the JSON Schema of what a command takes, and the key figures of its result."""
+"""Forms of the studio's jobs: the JSON Schema of a command's input, and the key figures of its result."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexstage.apps.cli.option_groups import default_last
 from flexstage.apps.studio.protocol import Figure
 
 _STUDIES = ("sweep", "optimise")
-_OWN = ("--help", "--stage", "--report", "--json", "--csv", "--xlsx", "--mat", "--strict", "--full")
+_OWN = ("--help", "--stage", "--report", "--json", "--csv", "--xlsx")
 """Options without an entry: the studio sets them, or they concern the printed text."""
 
 
@@ -24,14 +24,23 @@ def form(command: str) -> Mapping[str, Any]:
         from flexstage.studies.form import study_schema
 
         return study_schema()
-    from typer import Context
+    return {"properties": dict(_options(command))}
 
-    from flexstage.apps.cli.commands import COMMANDS, LazyCommand
 
-    loaded = LazyCommand(next(each for each in COMMANDS if each.name == command)).load()
-    context = Context(loaded)
-    options = (each for each in loaded.params if each.param_type_name == "option" and each.opts[0] not in _OWN)
-    return {"properties": {each.opts[0]: _property(each, *each.get_help_record(context)) for each in options}}
+def _options(command: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The schemas of the options of `verify` or `identify`."""
+    from typer import Context, Typer  # takes long to import
+    from typer.main import get_command
+
+    from flexstage.experiment.commands.identify import identify
+    from flexstage.solid.commands.solid import verify
+
+    app = Typer(add_completion=False)
+    app.command()(verify if command == "verify" else identify)
+    loaded = get_command(app)
+    for each in loaded.params:
+        if each.param_type_name == "option" and each.opts[0] not in _OWN and (record := each.get_help_record(Context(loaded))):
+            yield each.opts[0], _property(each, *record)
 
 
 def _property(option: Any, names: str, meaning: str) -> dict[str, Any]:

@@ -512,11 +512,11 @@ class Look:
 
 
 @dataclass(frozen=True)
-class Form:
+class JobForm:
     """Request for the form of a command."""
 
     id: int
-    command: Literal["analyse", "sweep", "optimise", "verify", "identify", "loop"]
+    command: Literal["sweep", "optimise", "verify", "identify", "loop"]
 
 
 @dataclass(frozen=True)
@@ -889,7 +889,7 @@ Request: TypeAlias = (
     | Palette
     | Insert
     | Look
-    | Form
+    | JobForm
     | Run
     | Cancel
 )

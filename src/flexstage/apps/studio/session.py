@@ -295,7 +295,7 @@ class Session:
         if self.sound and "figures" in self._last:
             self._start(self._compute(self._computed, self.sound))
 
-    async def _form(self, request: say.Form, *_: Any) -> say.Said:
+    async def _form(self, request: say.JobForm, *_: Any) -> say.Said:
         return say.Blank(request.id, request.command, await self._task_value(self._quick, "form", request.command))
 
     async def _run(self, request: say.Run, *_: Any) -> say.Said:
@@ -328,7 +328,7 @@ class Session:
         say.Palette: _palette,
         say.Insert: _insert,
         say.Look: _look,
-        say.Form: _form,
+        say.JobForm: _form,
         say.Run: _run,
         say.Cancel: _cancel,
     }
