@@ -246,7 +246,7 @@ def test_nothing_is_wider_than_the_window(browser: Browser, served: ServedStage,
         name: made.evaluate(f"() => document.querySelector('#{name}').getBoundingClientRect().top")
         for name in ("verdicts", "stage", "numbers")
     }
-    assert width > 760 or tops["verdicts"] < min(tops["stage"], tops["numbers"])
+    assert width > 760 or tops["numbers"] < tops["verdicts"] < tops["stage"]
     made.close()
 
 
@@ -319,7 +319,13 @@ def test_a_stage_of_a_thousand_links_is_drawn_picked_and_turned_and_the_wait_is_
 
 def test_a_stroke_is_computed_plays_and_is_left_with_the_design(page: Page) -> None:
     page.get_by_role("tab", name="Stroke").click()
-    page.get_by_label("to", exact=True).fill("2 mm")
+    page.get_by_role("tab", name="Figures").click()
+    (own,) = page.evaluate("() => studio.reach.value.strokes")
+    ends = [page.get_by_label(name, exact=True) for name in ("from", "to")]
+    assert page.get_by_label("Drive", exact=True).input_value() == "platform.x"
+    assert [each.input_value() for each in ends] == [f"{1e6 * own[end]:.4g} um" for end in ("low", "high")]
+    ends[0].fill("")
+    ends[1].fill("2 mm")
     page.get_by_label("points", exact=True).fill("3")
     page.get_by_role("button", name="compute").click()
     until(page, "studio.viewer.value.probe.motion?.group === 'path'")
@@ -337,3 +343,189 @@ def test_a_stroke_is_computed_plays_and_is_left_with_the_design(page: Page) -> N
     page.get_by_role("button", name="compute").click()
     until(page, "document.querySelector('#travel .poor')?.textContent.includes('Hz')")
     page.get_by_role("tab", name="Modes").click()
+
+
+THICKNESS = "numbers.leaf_thickness"
+
+
+def drawn(page: Page, address: str, pixels: int, pauses: list[int], *, fine: bool = False) -> str:
+    """Drags a slider by pixels, in steps with pauses [ms]; its value in the text, and one more revision."""
+    box = page.locator(f'[data-address="{address}"] input[type=range]').bounding_box()
+    before = page.evaluate("() => studio.state.value.revision")
+    assert box is not None
+    x, y = box["x"] + 6, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    if fine:
+        page.keyboard.down("Shift")
+    for number, pause in enumerate(pauses, start=1):
+        page.mouse.move(x + pixels * number / len(pauses), y)
+        page.wait_for_timeout(pause)
+    assert page.evaluate("() => studio.state.value.revision") == before  # nothing is written before the slider is released
+    page.mouse.up()
+    page.keyboard.up("Shift")
+    until(page, f"studio.figures.value.revision > {before}")
+    assert page.evaluate("() => studio.state.value.revision") == before + 1
+    return page.evaluate(f"() => studio.state.value.amounts.find((each) => each.address === '{address}').text")
+
+
+def test_slow_and_fast_drags_end_at_the_same_value_in_one_step_of_undo_within_the_range_that_was_set(page: Page) -> None:
+    row = page.locator(f'[data-address="{THICKNESS}"]')
+    row.locator(".name").click()
+    low, high = row.locator(".ends input").all()
+    high.fill("0.5")
+    high.press("Enter")
+    until(page, "document.querySelector('#notice').textContent.includes('the lower one first')")
+    low.fill("0.9 mm")
+    high.fill("3")
+    high.press("Enter")
+    ends = row.locator("input[type=range]").get_attribute("title")
+    assert "0.9 mm to 3 mm" in (ends or "")
+    found = set[str]()
+    for pauses in ([0], [5] * 20, [250, 30, 250]):
+        found.add(drawn(page, THICKNESS, 40, pauses))
+        assert row.locator("input[type=range]").get_attribute("title") == ends
+        page.keyboard.press("Control+z")
+        until(page, "!studio.state.value.undo")
+    assert len(found) == 1
+    assert found != {"1 mm"}
+    # with shift a pixel is one step, a thousandth of the range: 2.1 um from the nearest step to 1 mm
+    fine = float(drawn(page, THICKNESS, 1, [20], fine=True).removesuffix(" mm"))
+    assert fine == pytest.approx(0.9 + 2.1e-3 * (round(0.1 / 2.1e-3) + 1), abs=1e-9)
+    row.locator(".name").click()
+
+
+def test_an_error_in_any_table_is_shown_at_its_line(page: Page) -> None:
+    rows = page.evaluate("() => studio.state.value.text.split('\\n')")
+    heads = [number for number, row in enumerate(rows) if row.startswith("[")]
+    assert len(heads) >= 10
+    for number in heads:
+        text = "\n".join([*rows[: number + 1], "wrong = true", *rows[number + 1 :]])
+        page.evaluate("(text) => studio.ask({ kind: 'edit', text, revision: studio.state.value.revision })", text)
+        until(page, f"studio.state.value.problems.length && studio.state.value.text.split('\\n')[{number + 1}] === 'wrong = true'")
+        assert f"line {number + 2}:" in page.inner_text("#problems"), rows[number]
+        assert page.locator("#head .good, #text .bar .good").count() == 0
+
+
+def test_the_named_numbers_come_first_and_dependent_ones_show_their_formula(page: Page) -> None:
+    assert page.locator("#amounts summary").first.inner_text().startswith("numbers")
+    row = page.locator('[data-address="numbers.strut"]')
+    assert row.locator(".formula").inner_text() == "= 2*neck_radius + 10 mm + stack_length"
+    assert row.locator("input[type=text]").first.input_value() == "54 mm"
+    assert row.locator("input[type=range]").is_disabled()
+
+
+def test_the_effect_of_one_per_cent_has_a_heading_and_sorts(page: Page) -> None:
+    until(page, "studio.slopes.value?.revision === studio.state.value.revision")
+    head = page.locator("#numbers .effect")
+    worst = page.evaluate("() => studio.slopes.value.worst")
+    assert head.inner_text() == "effect of 1 %"
+    assert f"change of the margin of {worst}" in page.inner_text("#numbers .foot")
+    gains = "() => [...document.querySelectorAll('#amounts .buys')].map((each) => Math.abs(Number(each.dataset.gain)))"
+    for order in ("descending", "ascending"):
+        head.click()
+        assert head.get_attribute("aria-sort") == order
+        found = page.evaluate(gains)
+        assert found == sorted(found, reverse=order == "descending")
+        assert max(found) > 0.0
+    head.click()
+    assert page.locator("#amounts summary").first.inner_text().startswith("numbers")
+
+
+def test_responses_have_axes_units_and_a_legend_in_words_without_rounding_noise(page: Page) -> None:
+    until(page, "document.querySelector('#curves')?.ariaLabel")
+    label = page.locator("#curves").get_attribute("aria-label")
+    assert label == "Magnitude [m/m, rad/m] and phase [deg] over frequency [Hz]"
+    legend = page.inner_text("#response .cursor")
+    assert "platform x per stroke of B [m/m]" in legend
+    assert "Zero: platform z, platform rotation x, platform rotation y" in legend
+    assert page.locator("#response .cursor i").count() == 3
+
+
+def test_the_constraint_pane_names_the_links_of_each_direction_and_colours_a_redundant_set(page: Page) -> None:
+    page.get_by_role("tab", name="Freedom").click()
+    until(page, "document.querySelector('#redundant')")
+    rows = {each.locator("button").inner_text(): each.inner_text() for each in page.locator("#pane-freedom li").all()}
+    assert set(rows) == {*"xyz", "rx", "ry", "rz", "set 1"}
+    assert all("constrained by left, right" in rows[name] for name in ("y", "z", "rx", "ry", "rz"))
+    assert "left (ry), right (ry)" in rows["set 1"]
+    spot = "() => { const { probe } = studio.viewer.value; return probe.pixel(...probe.project([-0.025, 0.0325, 0])); }"
+    page.locator("#redundant button").click()
+    red, green, blue, _ = page.evaluate(spot)
+    assert red > green < blue
+    page.locator("#redundant button").click()
+    red, green, blue, _ = page.evaluate(spot)
+    assert green > red
+    page.get_by_role("tab", name="Figures").click()
+
+
+def test_matrices_have_units_and_no_rounding_noise(page: Page) -> None:
+    until(page, "document.querySelector('#pane-figures .matrix')")
+    pane = page.locator('#pane-figures [data-group="Stiffness"]')
+    assert "fx fy fz over x y z: N/m" in pane.inner_text()
+    assert "mx my mz over rx ry rz: N m/rad" in pane.inner_text()
+    values = page.evaluate("() => studio.figures.value.stiffness.values")
+    scale = np.sqrt(np.abs(values).max(axis=1)[:, None] * np.abs(values).max(axis=0))
+    assert np.all((np.abs(values) > 1e-9 * scale) | (np.asarray(values) == 0.0))
+    shown = [each.inner_text() for each in pane.locator("tbody tr").first.locator("td").all()]
+    assert shown[2:5] == ["0"] * 3
+
+
+def test_on_a_phone_numbers_come_first(page: Page) -> None:
+    page.set_viewport_size({"width": 390, "height": 844})
+    tops = [
+        page.evaluate(f"() => document.querySelector('#{each}').getBoundingClientRect().top") for each in ("numbers", "verdicts", "stage")
+    ]
+    page.set_viewport_size({"width": 1440, "height": 900})
+    assert tops == sorted(tops)
+
+
+def test_the_distance_between_two_picked_corners_is_that_of_the_design(page: Page) -> None:
+    page.keyboard.press("0")
+    page.get_by_role("button", name="measure").click()
+    box = page.locator("#view").bounding_box()
+    assert box is not None
+    for corner, inward in (([-0.03, -0.02, 0.0125], 4), ([0.03, -0.02, 0.0125], -4)):
+        x, y = page.evaluate("(point) => studio.viewer.value.probe.project(point)", corner)
+        page.mouse.click(box["x"] + x + inward, box["y"] + y + 3)
+    assert page.inner_text("#measured") == "60 mm x 60, y 0, z 0 mm"
+    assert page.locator(".arrows text.measure").text_content() == "60 mm"
+    assert page.evaluate("() => studio.link.value") is None
+    page.get_by_role("button", name="measure").click()
+    assert page.locator(".arrows .measure").count() == 0
+
+
+def test_a_design_is_begun_from_a_shipped_case_saved_under_another_name_and_opened(browser: Browser, serve: Serve) -> None:
+    url, file = serve(fs.dumps(fs.case("parallelogram")))
+    made = browser.new_page()
+    made.goto(url)
+    until(made, "studio.state.value?.name")
+    made.locator("#new").click()
+    made.get_by_label("shipped case").select_option("leaf-guide")
+    made.get_by_label("file name").fill("stage.toml")
+    made.get_by_role("button", name="create").click()
+    made.get_by_text("stage.toml: file exists. Choose another name.").wait_for()
+    made.get_by_label("file name").fill("guide.toml")
+    with made.expect_navigation():
+        made.get_by_role("button", name="create").click()
+    until(made, "window.studio?.state.value?.file === 'guide.toml' && studio.state.value.name === 'leaf guide'")
+    made.locator("#save-as").click()
+    made.get_by_label("file name").fill("other/guide.toml")
+    made.locator("dialog").get_by_role("button", name="save").click()
+    made.get_by_text("must be a name that ends in .toml, without a folder").wait_for()
+    made.get_by_label("file name").fill("copy.toml")
+    made.locator("dialog").get_by_role("button", name="save").click()
+    until(made, "studio.state.value.file === 'copy.toml' && studio.state.value.saved")
+    assert file.with_name("copy.toml").read_bytes() == file.with_name("guide.toml").read_bytes()
+    made.evaluate("() => studio.ask({ kind: 'edit', text: studio.state.value.text + '# mine', revision: studio.state.value.revision })")
+    until(made, "!studio.state.value.saved")
+    made.locator("#open").click()
+    made.get_by_label("file to open").select_option("stage.toml")
+    made.locator("dialog").get_by_role("button", name="open").click()
+    made.get_by_text("copy.toml: it has unsaved changes. Save or discard them first.").wait_for()
+    made.get_by_label("discard the unsaved changes").check()
+    with made.expect_navigation():
+        made.locator("dialog").get_by_role("button", name="open").click()
+    until(made, "window.studio?.state.value?.file === 'stage.toml' && !studio.state.value.undo")
+    assert "# mine" not in file.with_name("copy.toml").read_text(encoding="utf-8")
+    made.close()

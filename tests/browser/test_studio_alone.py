@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -11,9 +12,11 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, Route, WebSocketRoute
 
+from flexstage.apps.studio.forms import form
 from flexstage.apps.studio.protocol import (
     VERSION,
     Amount,
+    Blank,
     Done,
     Draft,
     Engine,
@@ -26,6 +29,8 @@ from flexstage.apps.studio.protocol import (
     Problem,
     Refusal,
     Scene,
+    Slope,
+    Slopes,
     Snippet,
     Snippets,
     State,
@@ -210,11 +215,15 @@ def test_no_status_is_green_next_to_results_of_another_text(page: Page, server: 
     chips = "() => ['engine', 'sound'].map((each) => document.getElementById(each).classList.contains('good'))"
     colours = "() => [...document.querySelectorAll('#verdicts .pill, #verdicts tr b')].map((each) => getComputedStyle(each).color)"
     figures = Figures(1, (), None, None, (), (), None, (), "", {}, 0.0)
-    server.say(Engine("ready", "", None), figures)
+    server.say(Engine("ready", "", None), figures, Slopes(0, 1, "frequency.1", (Slope(THICKNESS, "m", 5e-4, {}, 0.01),), {}))
+    until(page, lambda: page.inner_text("#amounts .buys") == "+1")
+    assert page.locator("#amounts.aged").count() == 0
     until(page, lambda: page.evaluate(chips) == [True, True])
     green = page.evaluate(colours)
     server.say(state(2, TEXT + "\n[requirements]", problems=(Problem("requirements.mass", "found a frequency", "Use e.g. 2 kg.", 6, 1),)))
     until(page, lambda: page.evaluate(chips) == [False, False])
+    assert page.locator("#amounts.aged").count() == 1
+    assert "of an earlier text" in page.inner_text("#numbers .foot")
     assert "1 error: results are of the last text without errors" in page.inner_text("#text .bar")
     assert not set(green) & set(page.evaluate(colours))
     server.say(state(3))
@@ -322,14 +331,75 @@ def test_what_is_chosen_of_the_palette_is_asked_with_its_fields(page: Page, serv
 @pytest.mark.parametrize("name", ["Sweep", "Optimise"])
 def test_the_study_that_is_offered_can_be_run(page: Page, server: Server, tmp_path: Path, name: str) -> None:
     (tmp_path / "leaf.toml").write_text(dumps(parallelogram()))
+    server.holds = {"jobform"}
     page.locator("#commands").get_by_role("button", name=name).click()
-    study = page.get_by_label("study", exact=True).input_value()
+    until(page, lambda: bool(server.of("jobform")))
+    server.say(Blank(server.of("jobform")[0]["id"], name.lower(), form(name.lower())))
+    assert page.get_by_label("seed", exact=True).get_attribute("placeholder") == "default: 0"
+    page.get_by_label("seed", exact=True).fill("7")
+    page.get_by_label("from", exact=True).last.fill("-5 %")
+    page.get_by_role("button", name=f"Start {name.lower()}").click()
+    until(page, lambda: bool(server.of("run")))
+    study = server.of("run")[0]["study"]
     assert THICKNESS in study
     found = loads_study(study, folder=tmp_path)
+    assert found.variables[-1].low == pytest.approx(0.95)
     if name == "Sweep":
         assert found.plan is not None
+        assert found.plan.seed == 7
     else:
-        load_optimisation(found)
+        assert load_optimisation(found).seed == 7
+
+
+def test_a_form_of_a_set_up_writes_only_what_was_filled_in(page: Page, server: Server) -> None:
+    server.holds = {"jobform"}
+    page.locator("#commands").get_by_role("button", name="Loop").click()
+    until(page, lambda: bool(server.of("jobform")))
+    server.say(Blank(server.of("jobform")[0]["id"], "loop", form("loop")))
+    page.get_by_label("rate", exact=True).first.fill("5 kHz")
+    page.locator("form.run summary", has_text="controller").click()
+    page.get_by_label("coordinates", exact=True).select_option("modal")
+    page.locator("form.run summary", has_text="trajectory").click()
+    page.get_by_label("trajectory", exact=True).select_option("sine")
+    page.get_by_label("periods", exact=True).fill("3")
+    page.get_by_role("button", name="Start loop").click()
+    until(page, lambda: bool(server.of("run")))
+    study = tomllib.loads(server.of("run")[0]["study"])
+    assert study == {
+        "format": "flexstage loop 1",
+        "rate": "5 kHz",
+        "controller": {"coordinates": "modal"},
+        "trajectory": {"kind": "sine", "periods": 3},
+    }
+
+
+def test_options_are_a_form_and_runs_are_compared_by_their_key_figures(page: Page, server: Server) -> None:
+    server.holds = {"jobform"}
+    page.locator("#commands").get_by_role("button", name="Verify").click()
+    until(page, lambda: bool(server.of("jobform")))
+    server.say(Blank(server.of("jobform")[0]["id"], "verify", form("verify")))
+    assert page.get_by_label("--accuracy", exact=True).get_attribute("placeholder") == "default: 1 %"
+    page.get_by_label("--accuracy", exact=True).fill("5 %")
+    page.get_by_role("button", name="Start verify").click()
+    until(page, lambda: [each["options"] for each in server.of("run")] == [["--accuracy", "5 %"]])
+    runs = [(1, "verify", 2.1e-5, 100.0), (2, "loop", 1.0, 1.0), (3, "verify", 1.9e-5, None)]
+    jobs = [
+        JobState(number, command, "done", "done", 1.0, None, (), None, (figure("stroke.x", "m", low), figure("mode 1", "Hz", high)))
+        for number, command, low, high in runs
+    ]
+    server.say(Jobs(tuple(jobs)))
+    until(page, lambda: page.locator("article.job").count() == 3)
+    tables = page.locator("article.job", has_text="verify").locator("table")
+    assert tables.count() == 1
+    assert [each.inner_text().split("\t") for each in tables.locator("tr").all()] == [
+        ["key figures", "run 1", "run 3"],
+        ["stroke.x um", "21", "19"],
+        ["mode 1 Hz", "100", "\u2013"],
+    ]
+
+
+def figure(name: str, si: str, value: float | None) -> Figure:
+    return Figure(name, "", si, si, 1.0, value, None)
 
 
 def test_a_lost_connection_is_told_and_taken_up_again(page: Page, server: Server) -> None:

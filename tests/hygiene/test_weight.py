@@ -12,7 +12,7 @@ CEILINGS = {
     "spatial": 3_900,
     "parts": 38_100,
     "beams": 25_900,
-    "mechanism": 55_300,
+    "mechanism": 55_400,
     "cases": 1_200,
     "models": 97_900,
     "analysis": 70_300,
@@ -21,9 +21,9 @@ CEILINGS = {
     "experiment": 98_800,
     "control": 153_900,
     "studies": 59_200,
-    "apps": 35_500,
+    "apps": 37_600,
     ".": 400,
-    "all": 806_700,
+    "all": 808_900,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

@@ -20,6 +20,7 @@ from flexstage.control.hysteresis.creep import LogCreep
 from flexstage.control.hysteresis.models.envelope import Envelope
 from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
 from flexstage.control.hysteresis.stack import dumps_hysteresis, hysteresis_schema, stack_hysteresis
+from flexstage.control.study.file import setup_schema
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import dumps, schema
 from flexstage.studies.form import study_schema
@@ -33,7 +34,7 @@ SCHEMA = schema()
 KNOWN = {
     "$ref", "$schema", "$defs", "title", "description", "examples", "type", "const", "enum", "pattern", "properties", "required", "oneOf",
     "anyOf", "additionalProperties", "items", "prefixItems", "minItems", "maxItems", "minimum", "maximum", "exclusiveMinimum",
-    "exclusiveMaximum",
+    "exclusiveMaximum", "default",
 }  # fmt: skip
 TYPES = {"object": dict, "array": list, "string": str, "number": (int, float), "integer": int, "boolean": bool}
 
@@ -94,6 +95,15 @@ def fits(text: str, schema: dict[str, Any] = SCHEMA) -> bool:
 def test_the_schema_is_json_and_names_its_version() -> None:
     assert json.loads(json.dumps(SCHEMA)) == SCHEMA
     assert SCHEMA["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+
+
+@pytest.mark.parametrize(
+    "schema", [SCHEMA, study_schema(), setup_schema(), hysteresis_schema()], ids=["design", "study", "loop", "hysteresis"]
+)
+def test_defaults_fit_their_own_fields(schema: dict[str, Any]) -> None:
+    rules = [rule for table in (schema, *schema["$defs"].values()) for rule in table.get("properties", {}).values() if "default" in rule]
+    assert rules
+    assert all(Rules(schema).fits(rule["default"], rule) for rule in rules)
 
 
 @pytest.mark.parametrize("name", CASES)

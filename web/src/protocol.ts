@@ -8,7 +8,7 @@
  * the requests except for `Drag` and `Pose`. Of these the newest is answered, and older ones are `Done`. Everything else is pushed to all
  * pages when it changes. Numbers are in SI units, null if unknown.
  */
-export const VERSION = 4;
+export const VERSION = 5;
 
 /** A finding: its object or address, problem, advice; line and column from 1 if the text shows them. */
 export interface Problem {
@@ -171,7 +171,11 @@ export interface Clash {
   text: string;
 }
 
-/** A free motion: the platform's twist (unit length), its axis through `point`, pitch [m/rad], null for a pure translation. */
+/**
+ * A motion: the platform's twist (unit length), its axis through `point`, pitch [m/rad], null for a pure translation.
+ *
+ * `links` are those that deform in a free motion, or that constrain a locked one: by strain energy, largest share first, if known.
+ */
 export interface Screw {
   name: string;
   twist: number[];
@@ -190,7 +194,7 @@ export interface Snippet {
   fields: Record<string, string>;
 }
 
-/** A job: its state, fraction done and estimated seconds left, its output, and its report's address if any. */
+/** A job: its state, fraction done and estimated seconds left, its output, its report's address if any, its key figures. */
 export interface JobState {
   job: number;
   command: string;
@@ -200,6 +204,7 @@ export interface JobState {
   left: number | null;
   said: string[];
   report: string | null;
+  figures: Figure[];
 }
 
 /** The unsaved text of an ended studio: its last change [s since 1970], and whether the file was changed since. */
@@ -370,11 +375,31 @@ export interface Redo {
   id: number;
 }
 
-/** Write the text to its file. Refused after a change on disk, unless `over` allows overwriting. */
+/**
+ * Write the text to its file, or to another `file` of its folder.
+ *
+ * Refused after a change on disk, or if the other file exists, unless `over` allows overwriting.
+ */
 export interface Save {
   kind: "save";
   id: number;
   over: boolean;
+  file: string;
+}
+
+/** Request for the design files of the folder, and the shipped cases. */
+export interface Browse {
+  kind: "browse";
+  id: number;
+}
+
+/** Open a file of the folder, written first from a shipped `case` if named. Refused with unsaved changes, unless `discard`. */
+export interface Open {
+  kind: "open";
+  id: number;
+  file: string;
+  case: string;
+  discard: boolean;
 }
 
 /** Read the text from disk; the present one remains in undo. */
@@ -414,6 +439,13 @@ export interface Look {
   kind: "look";
   id: number;
   panes: ("stage" | "motions" | "reach")[];
+}
+
+/** Request for the form of a command. */
+export interface JobForm {
+  kind: "jobform";
+  id: number;
+  command: "sweep" | "optimise" | "verify" | "identify" | "loop";
 }
 
 /** Start a command as a job; `study` is the text of its study or set-up if it needs one, `record` a file's path. */
@@ -691,6 +723,22 @@ export interface Snippets {
   snippets: Snippet[];
 }
 
+/** The design files of the folder, and the shipped cases with their summaries. */
+export interface Folder {
+  kind: "folder";
+  to: number;
+  files: string[];
+  cases: Record<string, string>;
+}
+
+/** The form of a command: the JSON Schema of its study or set-up, or of its options. */
+export interface Blank {
+  kind: "blank";
+  to: number;
+  command: string;
+  schema: unknown;
+}
+
 /** All jobs; pushed at each progress. */
 export interface Jobs {
   kind: "jobs";
@@ -736,11 +784,14 @@ export type Request =
   | Undo
   | Redo
   | Save
+  | Browse
+  | Open
   | Reload
   | Recover
   | Palette
   | Insert
   | Look
+  | JobForm
   | Run
   | Cancel;
 
@@ -766,6 +817,8 @@ export type Said =
   | SolidModes
   | Comparison
   | Snippets
+  | Folder
+  | Blank
   | Jobs
   | Done
   | Refusal;

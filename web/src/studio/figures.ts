@@ -40,7 +40,7 @@ export class VerdictTable {
       "tr",
       { className: each.value === null ? "unknown" : each.passed ? "good" : "poor", title, click: () => this.studio.goto(each.line, false) },
       h("th", { scope: "row" }, h("b", { ariaLabel: each.passed ? "met" : "not met" }, each.value === null ? "?" : each.passed ? "✓" : "✗"), "\u00a0", ...named(each.key)),
-      ...(each.value === null ? [h("td", { className: "reason", colSpan: 3 }, `${short(each)}: ${each.reason || "not known"}`)] : this.cells(each)),
+      ...(each.value === null ? [h("td", { className: "reason", colSpan: 3 }, `${demand(each)}: ${each.reason || "not known"}`)] : this.cells(each)),
     );
   }
 
@@ -48,7 +48,7 @@ export class VerdictTable {
     const bar = h("span", { className: "margin" }, h("i", {}));
     bar.style.setProperty("--margin", String(Math.max(-1, Math.min(1, 2 * (each.margin ?? 0)))));
     const margin = each.margin === null ? "" : percent(each.margin) || "0 %";
-    return [h("td", { className: "number" }, shown(each.value, each)), h("td", { className: "quiet limit" }, short(each)), h("td", { className: "number" }, bar, margin)];
+    return [h("td", { className: "number" }, shown(each.value, each)), h("td", { className: "quiet limit" }, demand(each)), h("td", { className: "number" }, bar, margin)];
   }
 }
 
@@ -57,7 +57,7 @@ function named(key: string): (string | HTMLElement)[] {
   return key.split(".").flatMap((word, place) => (place ? [".", h("wbr", {}), word] : [word]));
 }
 
-function short(each: Judgement): string {
+function demand(each: Judgement): string {
   const sign = each.text.includes("at most") || each.text.includes("below") ? "≤" : each.text.includes("at least") ? "≥" : "";
   return `${sign} ${shown(each.limit, each)}`;
 }
@@ -218,12 +218,27 @@ function folded(name: string, content: HTMLElement, isOpen: boolean): HTMLDetail
   return made;
 }
 
-/** A matrix; with one unit for all entries that stands above, else rows name theirs by column in the cells' titles. */
+/** A matrix with the unit of each row over that of each column; the unit of an entry is in its title. Rounding noise is 0. */
 export function matrix(each: Matrix): HTMLElement {
-  const unit = each.unit;
+  const { unit, rows, columns } = each;
+  const of = (at: number, column: number): string => (typeof unit === "string" ? unit : (unit[at]?.[column] ?? ""));
   const cells = each.values.map((row, at) => [
-    each.rows[at] ?? "",
-    ...row.map((value, column) => h("span", { title: `${digits(value, 6)} ${typeof unit === "string" ? unit : (unit[at]?.[column] ?? "")}` }, digits(value, 3))),
+    short(rows[at] ?? ""),
+    ...row.map((value, column) => h("span", { title: `${digits(value, 6)} ${of(at, column)}` }, digits(value, 3))),
   ]);
-  return h("div", { className: "wide" }, table([typeof unit === "string" ? unit : "", ...each.columns], cells, "matrix"));
+  const found = table(["", ...columns.map(short)], cells, "matrix");
+  return h("div", { className: "wide" }, found, h("small", { className: "quiet" }, blocks(each, of)));
+}
+
+const short = (name: string): string => name.slice(name.lastIndexOf(".") + 1);
+
+/** The units of a matrix: one, or those of its blocks, rows over columns. */
+function blocks({ rows, columns, unit }: Matrix, of: (row: number, column: number) => string): string {
+  if (typeof unit === "string") return `Unit: ${unit}`;
+  const names = new Map<string, [Set<string>, Set<string>]>();
+  rows.forEach((row, at) => columns.forEach((column, place) => {
+    const [own, other] = names.get(of(at, place)) ?? [new Set<string>(), new Set<string>()];
+    names.set(of(at, place), [own.add(short(row)), other.add(short(column))]);
+  }));
+  return `Units: ${[...names].map(([name, [own, other]]) => `${[...own].join(" ")} over ${[...other].join(" ")}: ${name}`).join("; ")}`;
 }

@@ -1,13 +1,17 @@
-// Freedom and constraint: free screws and what locks the platform as arrows, superfluous constraints in words, the culprits in colour.
+// Freedom and constraint: free and constrained motions as arrows, each with its links; sets of redundant constraints. A click colours the links.
 
 import type { Fact, Freedoms, Screw } from "../protocol";
 import type { StageData } from "../viewer/types";
 import { norm, plus } from "./arrows";
 import type { Arrow, Point } from "./arrows";
-import { byId, digits, fill, h } from "./dom";
+import { byId, digits, fill, grouped, h } from "./dom";
 import { facts } from "./part";
 import type { StageView } from "./stage";
 import type { Studio } from "./studio";
+
+type Paint = [number, number, number];
+const BENDS: Paint = [0.95, 0.82, 0.1], HOLDS: Paint = [0.82, 0.16, 0.16], SUPERFLUOUS: Paint = [0.85, 0.1, 0.75]; // none is the colour of a part
+const NAMED = 8; // links by name; more are counted
 
 export class FreedomPane {
   private readonly root = byId("pane-freedom");
@@ -35,14 +39,42 @@ export class FreedomPane {
     fill(
       this.root,
       h("p", {}, `Mobility ${said.mobility}: the platform has ${said.free.length} free ${said.free.length === 1 ? "motion" : "motions"}.`),
-      ...list("Free", said.free, (each) => this.point([each])),
-      ...list("Locked", said.locked, (each) => this.point([each])),
-      ...told("Locked motions", said.blocked),
-      ...told("Redundant constraints: they stress the stage if parts do not fit exactly", said.redundant),
+      ...this.list("Free", "deforms", said.free),
+      ...this.list("Constrained", "constrained by", said.locked),
+      ...told("Locked actuators", said.blocked),
+      ...this.sets(said.redundant),
       ...told("Free internal modes: move neither platform nor stroke", said.idle),
       h("button", { type: "button", click: () => this.picture(this.said) }, "show all arrows"),
     );
     this.picture(this.studio.tab.value === "freedom" ? said : null);
+  }
+
+  private list(title: string, verb: string, screws: Screw[]): HTMLElement[] {
+    if (!screws.length) return [];
+    const items = screws.map((each) => h("li", {}, h("button", { type: "button", click: () => this.point([each]) }, each.name), ` ${spell(each)}; ${verb} `, named(each.links)));
+    return [h("h4", {}, title), h("ul", {}, ...items)];
+  }
+
+  /** Sets of constraints with one superfluous member: by link, with the locked directions in its frame. */
+  private sets(said: Fact[]): HTMLElement[] {
+    if (!said.length) return [];
+    const items = said.map((each, at) => {
+      const links = [...grouped(each.text.split(", "), (name) => name.slice(0, name.lastIndexOf(".")))].map(([link, names]) => ({ link, text: `${link} (${names.map((name) => name.slice(link.length + 1)).join(", ")})` }));
+      return h("li", {}, h("button", { type: "button", ariaPressed: "false", click: (event: Event) => this.mark(event.currentTarget as HTMLElement, links.map(({ link }) => link)) }, `set ${at + 1}`), " ", named(links.map(({ text }) => text)));
+    });
+    return [h("h4", {}, "Redundant constraints: one of each set is superfluous and stresses the stage if parts do not fit exactly"), h("ul", { id: "redundant" }, ...items)];
+  }
+
+  /** Colours the links of one set, or of none. */
+  private mark(button: HTMLElement, links: string[]): void {
+    const on = button.getAttribute("aria-pressed") !== "true";
+    for (const each of this.root.querySelectorAll("[aria-pressed]")) each.setAttribute("aria-pressed", String(each === button && on));
+    this.stage.arrows.set("freedom", []);
+    this.colour(on ? links : [], SUPERFLUOUS);
+  }
+
+  private colour(links: string[], paint: Paint): void {
+    this.studio.viewer.value?.setColours(links.length ? Object.fromEntries(links.map((each) => [each, paint])) : null);
   }
 
   private picture(said: Freedoms | null): void {
@@ -57,8 +89,10 @@ export class FreedomPane {
     if (!data) return;
     const locked = new Set(this.said?.locked ?? []);
     this.stage.arrows.set("freedom", screws.map((each) => arrow(each, data, locked.has(each))));
-    const culprits = screws.filter((each) => locked.has(each)).flatMap((each) => each.links);
-    this.studio.viewer.value?.setColours(culprits.length ? Object.fromEntries(culprits.map((each) => [each, [0.82, 0.16, 0.16] as [number, number, number]])) : null);
+    const [only] = screws;
+    if (screws.length === 1 && only) this.colour(only.links, locked.has(only) ? HOLDS : BENDS);
+    else this.colour([], HOLDS);
+    for (const each of this.root.querySelectorAll("[aria-pressed]")) each.setAttribute("aria-pressed", "false");
   }
 }
 
@@ -71,10 +105,10 @@ function arrow(screw: Screw, data: StageData, isLocked: boolean): Arrow {
   return { from, to: plus(from, direction, length / size), look: isLocked ? "locked" : "free", turns: !isMove, text: screw.name };
 }
 
-function list(title: string, screws: Screw[], point: (each: Screw) => void): HTMLElement[] {
-  if (!screws.length) return [];
-  const items = screws.map((each) => h("li", {}, h("button", { type: "button", click: () => point(each) }, each.name), ` ${spell(each)}`, h("small", { className: "quiet", title: each.links.join(", ") }, ` ${each.links.length} links ${title === "Locked" ? "hold it" : "bend"}`)));
-  return [h("h4", {}, title), h("ul", {}, ...items)];
+/** Links by name, the first ones; all of them in its title. */
+function named(links: string[]): HTMLElement {
+  const more = links.length > NAMED ? ` and ${links.length - NAMED} more` : "";
+  return h("small", { title: links.join(", ") }, links.length ? `${links.slice(0, NAMED).join(", ")}${more}` : "unknown links");
 }
 
 function spell(screw: Screw): string {

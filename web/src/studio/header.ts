@@ -3,6 +3,7 @@
 import type { Draft, Engine, State } from "../protocol";
 import { byId, digits, fill, h } from "./dom";
 import type { Editor } from "./editor";
+import { fromGallery, openFile, saveAs } from "./files";
 import type { Studio } from "./studio";
 
 const TOLD = 6000; // ms that a notice stays
@@ -18,6 +19,7 @@ export class Header {
     byId("undo").addEventListener("click", () => void this.undo());
     byId("redo").addEventListener("click", () => void this.redo());
     byId("save").addEventListener("click", () => void this.save());
+    for (const [id, act] of [["new", fromGallery], ["open", openFile], ["save-as", saveAs]] as const) byId(id).addEventListener("click", () => void this.settled().then(() => act(studio)));
     studio.state.watch((state) => state && this.show(state));
     for (const each of [studio.state, studio.figures, studio.verdicts, studio.connection.state]) each.watch(() => this.tell());
     studio.connection.on("engine", (said) => ((this.engine = said), this.tell()));
@@ -84,7 +86,7 @@ export class Header {
 
   async save(over = false): Promise<void> {
     await this.settled();
-    const said = await this.studio.ask({ kind: "save", over });
+    const said = await this.studio.ask({ kind: "save", over, file: "" });
     if (said.kind === "refusal" && said.stale) this.differs();
     else if (said.kind !== "refusal") this.studio.tell("Saved.");
   }

@@ -1,4 +1,5 @@
 // Frequency responses: the present design's solid, the one it is compared with dashed; a click near a peak plays that mode.
+// Curves that are zero but for rounding are not drawn; the legend lists them.
 
 import uPlot from "uplot";
 import type { AlignedData, Axis, Options, Scale, Series } from "uplot";
@@ -9,6 +10,7 @@ import { byId, digits, fill, framewise, h } from "./dom";
 import type { Studio } from "./studio";
 
 const NEAR = 24; // pixels between a click and the mode that is meant
+const NOISE = 1e-8; // of the largest curve, where the plot ends: what is smaller is rounding noise of the solve
 
 export class Responses {
   private readonly root = h("div", { id: "curves" });
@@ -18,6 +20,7 @@ export class Responses {
   private readonly values = h("div", { className: "values", hidden: true });
   private readonly redraw = framewise(() => this.draw());
   private plots: uPlot[] = [];
+  private curves: Curve[] = [];
   private channels = "";
 
   constructor(private readonly studio: Studio) {
@@ -37,7 +40,7 @@ export class Responses {
     if (!state || channels === this.channels) return;
     this.channels = channels;
     for (const [select, names] of [[this.input, state.inputs], [this.output, state.outputs]] as const) {
-      select.replaceChildren(new Option("as chosen", ""), ...names.map((each) => new Option(each)));
+      select.replaceChildren(new Option(select === this.input ? "first actuator" : "platform", ""), ...names.map((each) => new Option(each)));
     }
   }
 
@@ -51,8 +54,9 @@ export class Responses {
     for (const each of this.plots) each.destroy();
     this.plots = [];
     const present = this.studio.figures.value;
-    if (!present?.frequency || !present.curves.length || this.root.clientWidth < 40) {
-      fill(this.root, h("p", { className: "quiet" }, present?.missing["curves"] ?? present?.missing["response"] ?? "No response yet."));
+    this.curves = this.significant(present?.curves ?? []);
+    if (!present?.frequency || !this.curves.length || this.root.clientWidth < 40) {
+      fill(this.root, h("p", { className: "quiet" }, present?.missing["curves"] ?? present?.missing["response"] ?? (present?.curves.length ? "These outputs do not respond to this input." : "No response yet.")));
       return;
     }
     const other = this.studio.kept.get(this.studio.against.value)?.figures ?? null;
@@ -60,13 +64,22 @@ export class Responses {
     fill(this.root, this.values);
     this.values.hidden = true;
     const height = Math.max(this.root.clientHeight, 150);
-    const phase = Math.round(0.34 * height);
+    const phase = Math.round(0.38 * height);
     this.name(present, before);
+    this.root.ariaLabel = `Magnitude [${units(this.curves)}] and phase [deg] over frequency [Hz]`;
     this.plots = [this.plot(present, before, "magnitude", height - phase), this.plot(present, before, "phase", phase)];
   }
 
+  /** Curves above rounding noise. Rotations are compared by the motion that they cause at the edge of the stage. */
+  private significant(curves: Curve[]): Curve[] {
+    const arm = (this.studio.scene.value?.size ?? 0.2) / 2;
+    const sizes = curves.map((each) => Math.max(...floats(each.magnitude)) * (each.unit.startsWith("rad") ? arm : 1));
+    const most = Math.max(...sizes);
+    return curves.filter((_, at) => (sizes[at] ?? 0) > NOISE * most).slice(0, COLOURS);
+  }
+
   private plot(present: Figures, before: Figures | null, what: "magnitude" | "phase", height: number): uPlot {
-    const curves = present.curves.slice(0, 4);
+    const { curves } = this;
     const old = curves.map((each) => before?.curves.find((one) => one.input === each.input && one.output === each.output) ?? null);
     const [along, ...values] = aligned(present, before, curves, old, what);
     const series: Series[] = [{}, ...curves.map((each, at) => line(each, at, false)), ...old.filter((each) => each !== null).map((each, at) => line(each, at, true))];
@@ -77,8 +90,8 @@ export class Responses {
       cursor: { sync: { key: "response" }, points: { size: 6 }, drag: { x: false, y: false } },
       scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: scale(what) },
       axes: [
-        { ...axis(what === "phase" ? 26 : 8, what === "phase" ? spell : () => []), ...logarithmic },
-        { ...axis(54, spell), ...(what === "phase" ? { incrs: [90, 180, 360], space: 14 } : logarithmic) },
+        { ...axis(what === "phase" ? 24 : 8, what === "phase" ? spell : () => [], what === "phase" ? "Frequency [Hz]" : ""), ...logarithmic },
+        { ...axis(50, spell, what === "phase" ? "Phase [deg]" : `Magnitude [${units(curves)}]`), ...(what === "phase" ? { splits: () => [-180, 0, 180] } : logarithmic) },
       ],
       series,
       hooks: { draw: [(plot) => this.modes(plot, what)], setCursor: [(plot) => this.tell(plot, curves)], ready: [(plot) => this.listen(plot)] },
@@ -134,10 +147,14 @@ export class Responses {
     ctx.restore();
   }
 
-  /** Which curve is which. */
+  /** The legend: each curve in words with its unit, and which are omitted. */
   private name(present: Figures, before: Figures | null): void {
-    const names = present.curves.slice(0, 4).flatMap((each, at) => [h("i", { className: `curve-${at}` }), named(each)]);
-    fill(this.told, ...names, ...(before ? [h("i", { className: "dashed" }), this.studio.against.value || "file"] : []));
+    const names = this.curves.flatMap((each, at) => [h("span", {}, h("i", { className: `curve-${at}` }), `${worded(each)} [${unit(each)}]`)]);
+    const absent = present.curves.filter((each) => !this.curves.includes(each));
+    const zero = absent.length ? h("span", { title: "below 1e-8 of the largest curve: rounding noise of the solution" }, `Zero: ${absent.map((each) => spoken(each.output)).join(", ")}`) : null;
+    const old = before && h("span", {}, h("i", { className: "dashed" }), this.studio.against.value || "file");
+    fill(this.told, ...names, old, zero);
+    this.told.title = this.told.textContent ?? "";
   }
 
   private tell(plot: uPlot, curves: Curve[]): void {
@@ -145,7 +162,7 @@ export class Responses {
     const along = at === null || at === undefined ? undefined : plot.data[0][at];
     const [magnitude, phase] = this.plots;
     if (at === null || at === undefined || along === undefined || !magnitude || !phase) return;
-    const values = curves.map((each, n) => h("div", {}, h("i", { className: `curve-${n}` }), `${named(each)} ${digits(magnitude.data[n + 1]?.[at], 4)} ${each.unit}, ${digits(phase.data[n + 1]?.[at], 4)}°`));
+    const values = curves.map((each, n) => h("div", {}, h("i", { className: `curve-${n}` }), `${worded(each)} ${digits(magnitude.data[n + 1]?.[at], 4)} ${unit(each)}, ${digits(phase.data[n + 1]?.[at], 4)}°`));
     fill(this.values, h("b", {}, `${digits(along)} Hz`), ...values);
     this.values.hidden = false;
     this.values.classList.toggle("away", (plot.cursor.left ?? 0) > plot.over.clientWidth / 2);
@@ -172,17 +189,38 @@ function interpolated(along: number[], own: number[], values: number[]): number[
   });
 }
 
-const named = (curve: Curve): string => `${curve.output.replace("platform.", "")}/${curve.input}`;
+const COLOURS = 6;
 
-const colour = (at: number): (() => string) => () => getComputedStyle(document.documentElement).getPropertyValue(`--curve-${at % 4}`);
+const WORDS: Readonly<Record<string, string>> = { x: "x", y: "y", z: "z", rx: "rotation x", ry: "rotation y", rz: "rotation z", fx: "force x", fy: "force y", fz: "force z", mx: "moment x", my: "moment y", mz: "moment z" };
+
+/** A channel in words: `platform.rx` is "platform rotation x". */
+function spoken(channel: string): string {
+  const [place, component] = [channel.slice(0, channel.lastIndexOf(".")), channel.slice(channel.lastIndexOf(".") + 1)];
+  return place && WORDS[component] ? `${place} ${WORDS[component]}` : channel;
+}
+
+const INPUTS: Readonly<Record<string, string>> = { m: "stroke of ", N: "force of ", A: "current of ", V: "voltage of " };
+
+/** A curve in words: "platform x per stroke of B1". */
+function worded(curve: Curve): string {
+  const per = curve.unit === "1" || curve.unit === "rad/m" ? "m" : (curve.unit.split("/")[1] ?? "");
+  const kind = curve.input.includes(".") ? "" : (INPUTS[per] ?? "");
+  return `${spoken(curve.output)} per ${kind}${spoken(curve.input)}`;
+}
+
+const unit = (curve: Curve): string => (curve.unit === "1" ? "m/m" : curve.unit);
+
+const units = (curves: Curve[]): string => [...new Set(curves.map(unit))].join(", ");
+
+const colour = (at: number): (() => string) => () => getComputedStyle(document.documentElement).getPropertyValue(`--curve-${at % COLOURS}`);
 
 function line(curve: Curve, at: number, isOld: boolean): Series {
-  return { label: named(curve), stroke: colour(at), width: isOld ? 1 : 1.6, pxAlign: 0, points: { show: false }, ...(isOld ? { dash: [5, 4] } : {}) };
+  return { label: worded(curve), stroke: colour(at), width: isOld ? 1 : 1.6, pxAlign: 0, points: { show: false }, ...(isOld ? { dash: [5, 4] } : {}) };
 }
 
 /** Magnitudes over eight decades below the largest; what is less is rounding noise of the solve. */
 function scale(what: string): Scale {
-  return what === "magnitude" ? { distr: 3, range: (_, low, high) => [Math.max(low, high * 1e-8), high * 1.5] } : { auto: true };
+  return what === "magnitude" ? { distr: 3, range: (_, low, high) => [Math.max(low, high * NOISE), high * 1.5] } : { range: [-190, 190] };
 }
 
 /** Powers of ten between two values, with twice and five times where there are few, and every second or third where there are many. */
@@ -196,10 +234,10 @@ function decades(low: number, high: number): number[] {
 
 const logarithmic: Pick<Axis, "splits" | "filter"> = { splits: (_, __, low, high) => decades(low, high), filter: (_, all) => all };
 
-function axis(size: number, values: Axis["values"]): Axis {
+function axis(size: number, values: Axis["values"], label: string): Axis {
   const ink = (): string => getComputedStyle(document.documentElement).getPropertyValue("--quiet");
   const edge = (): string => getComputedStyle(document.documentElement).getPropertyValue("--faint");
-  return { stroke: ink, size, font: "10px sans-serif", grid: { stroke: edge, width: 1 }, ticks: { show: false }, ...(values ? { values } : {}) };
+  return { stroke: ink, size, font: "10px sans-serif", ...(label ? { label, labelSize: 15, labelGap: 0, labelFont: "10px sans-serif" } : {}), grid: { stroke: edge, width: 1 }, ticks: { show: false }, ...(values ? { values } : {}) };
 }
 
 /** Powers of ten and what lies between as far as there is room. */

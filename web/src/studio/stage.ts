@@ -2,8 +2,9 @@
 
 import type { Scene } from "../protocol";
 import type { Controller, Picked, StageData } from "../viewer/types";
-import { Arrows } from "./arrows";
-import { byId, fill, h } from "./dom";
+import { Arrows, norm } from "./arrows";
+import type { Point } from "./arrows";
+import { byId, digits, fill, h } from "./dom";
 import type { Studio } from "./studio";
 
 /** The viewer is a script of its own, which reports carry too; where it did not start, the page lives without. */
@@ -11,12 +12,17 @@ declare const flexstage: typeof import("../viewer") | undefined;
 
 const VIEWS = ["iso", "top", "front", "right"] as const;
 
+/** A length in millimetres, to a tenth of a micrometre. */
+const mm = (value = 0): string => digits(Math.round(1e7 * value) / 1e4 + 0, 7);
+
 export class StageView {
   readonly arrows: Arrows;
   private readonly told = byId("told");
   private readonly units = h("select", { ariaLabel: "Show one unit alone", change: () => this.viewer?.isolate(this.units.value || null) });
   private readonly cut = h("select", { ariaLabel: "Section", change: () => this.section() });
   private readonly depth = h("input", { type: "range", min: 0, max: 1, step: 0.005, value: "0.5", ariaLabel: "Place of the section", hidden: true, input: () => this.section() });
+  private readonly measured = h("output", { id: "measured" });
+  private first: Point | null = null;
   private readonly toggles = new Map<string, HTMLButtonElement>();
   private isOld = false;
   private second: Controller | null = null;
@@ -46,6 +52,7 @@ export class StageView {
     this.isOld = false;
     if (this.viewer === null) this.begin(data);
     else if (this.viewer.alive) this.viewer.replace(data);
+    if (this.toggles.get("measure")?.getAttribute("aria-pressed") === "true") this.measure(true);
     this.second?.replace(data);
     if (this.viewer?.alive) fill(this.told, data.notes.filter((each) => each.startsWith("drawn ")).join("; "));
     this.offerUnits(data);
@@ -57,6 +64,7 @@ export class StageView {
     if (made === null || !made.alive) return this.without();
     this.studio.viewer.set(made);
     this.tools();
+    byId("stage").append(this.measured);
     made.onPick((picked) => this.picked(picked));
     made.select(this.studio.link.value);
   }
@@ -87,8 +95,33 @@ export class StageView {
       this.units,
       this.cut,
       this.depth,
+      this.toggle("measure", "distance between two points: click them; corners are caught", (on) => this.measure(on)),
       this.toggle("old", "the old design solid, the new one as its ghost (C)", (on) => this.swap(on)),
     );
+  }
+
+  /** Clicks give points of the stage at rest, and their distance. */
+  private measure(on: boolean): void {
+    const { studio } = this;
+    if (on) studio.mode.set(null), studio.other.set(null), this.viewer?.setPose(null);
+    this.first = null;
+    this.arrows.set("measure", []);
+    fill(this.measured, on ? "click the first point" : "");
+    this.viewer?.onPoint(on ? (point) => this.point(point) : null);
+  }
+
+  private point(at: Point | null): void {
+    const { first } = this;
+    if (at === null) return fill(this.measured, "no surface there: click a part");
+    this.first = first ? null : at;
+    if (!first) {
+      this.arrows.set("measure", [{ from: at, to: at, look: "measure" }]);
+      return fill(this.measured, `from (${at.map(mm).join(", ")}) mm: click the second point`);
+    }
+    const way = at.map((each, axis) => each - (first[axis] ?? 0));
+    const text = `${mm(norm(way))} mm`;
+    this.arrows.set("measure", [{ from: first, to: at, look: "measure", text }]);
+    fill(this.measured, h("b", {}, text), ` x ${mm(way[0])}, y ${mm(way[1])}, z ${mm(way[2])} mm`);
   }
 
   private button(text: string, title: string, act: () => void): HTMLButtonElement {

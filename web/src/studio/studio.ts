@@ -42,7 +42,7 @@ export class Studio {
   private looked = "";
 
   constructor(readonly connection: Connection) {
-    connection.on("state", (said) => this.state.set(said));
+    connection.on("state", (said) => this.take(said));
     connection.on("figures", (said) => this.figures.set(said));
     connection.on("verdicts", (said) => this.verdicts.set(said));
     connection.on("reach", (said) => this.reach.set(said));
@@ -52,6 +52,13 @@ export class Studio {
     for (const each of [this.viewer, this.tab, this.mode, this.other, this.besides, this.strip, connection.state]) each.watch(() => this.look());
     this.figures.watch(() => this.keepFile());
     this.scene.watch(() => this.keepFile());
+  }
+
+  /** Another text in another file is another design: the page begins anew. */
+  private take(said: State): void {
+    const before = this.state.value;
+    if (before && before.file !== said.file && before.text !== said.text) location.reload();
+    else this.state.set(said);
   }
 
   /** Tells the server what is shown, where that changed: nothing else is computed after a change. */

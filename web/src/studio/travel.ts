@@ -2,7 +2,7 @@
 
 import type { Travelled, Underway } from "../protocol";
 import type { Motion } from "../viewer/types";
-import { fill, framewise, h, sentence } from "./dom";
+import { fill, framewise, h, sentence, shown } from "./dom";
 import type { Studio } from "./studio";
 
 const COORDINATES = ["x", "y", "z", "rx", "ry", "rz"].map((each) => `platform.${each}`);
@@ -11,9 +11,9 @@ const PATHS = "paths.";
 
 export class Travel {
   readonly root = h("div", { className: "strip", id: "travel" });
-  private readonly drive = h("select", { ariaLabel: "Drive", change: () => this.turn() });
-  private readonly start = h("input", { type: "text", size: 7, placeholder: "at rest", ariaLabel: "from" });
-  private readonly end = h("input", { type: "text", size: 7, value: "1 mm", required: true, ariaLabel: "to" });
+  private readonly drive = h("select", { ariaLabel: "Drive", change: () => ((this.isChosen = true), (this.isTyped = false), this.turn()) });
+  private readonly start = h("input", { type: "text", size: 8, placeholder: "at rest", ariaLabel: "from", input: () => (this.isTyped = true) });
+  private readonly end = h("input", { type: "text", size: 8, required: true, placeholder: "1 mm", ariaLabel: "to", input: () => (this.isTyped = true) });
   private readonly points = h("input", { type: "number", min: 2, max: 201, value: "21", ariaLabel: "points" });
   private readonly load = h("input", { type: "text", size: 16, placeholder: "platform.fy=-20 N", ariaLabel: "loads" });
   private readonly own = [h("label", {}, "from ", this.start), h("label", {}, "to ", this.end), h("label", {}, this.points, " points"), h("label", {}, "under ", this.load)];
@@ -29,6 +29,9 @@ export class Travel {
   private motions: Motion[] = [];
   private revision = -1;
   private isPlaying = true;
+  /** Whether a person chose the drive, and typed the ends of its path. */
+  private isChosen = false;
+  private isTyped = false;
   private readonly follow = framewise(() => this.followNow());
 
   constructor(private readonly studio: Studio) {
@@ -39,7 +42,7 @@ export class Travel {
     );
     fill(this.root, form, this.player, this.about, this.curves);
     fill(this.about, h("span", { className: "quiet" }, "Large displacements with weight: true positions of bodies and leaves. Strokes are relative to static equilibrium."));
-    studio.state.watch(() => this.offer());
+    for (const each of [studio.state, studio.reach]) each.watch(() => this.offer());
     studio.connection.on("underway", (said) => this.tell(said));
     studio.figures.watch((each) => each?.revision !== this.revision && this.leave("The design has changed: compute again."));
     studio.scene.watch(() => this.put());
@@ -50,9 +53,10 @@ export class Travel {
   private offer(): void {
     const state = this.studio.state.value, held = this.drive.value;
     const names = [...(state?.paths.map((each) => PATHS + each) ?? []), ...COORDINATES, ...(state?.actuators.map((each) => each.name) ?? [])];
-    if (names.join() === [...this.drive.options].map((each) => each.value).join()) return;
-    this.drive.replaceChildren(...names.map((each) => new Option(each)));
-    if (names.includes(held)) this.drive.value = held;
+    if (names.join() !== [...this.drive.options].map((each) => each.value).join()) this.drive.replaceChildren(...names.map((each) => new Option(each)));
+    const [first] = this.studio.reach.value?.strokes ?? [];
+    if (this.isChosen && names.includes(held)) this.drive.value = held;
+    else if (!state?.paths.length && first) this.drive.value = `platform.${first.coordinate}`;
     this.turn();
   }
 
@@ -64,6 +68,18 @@ export class Travel {
   private turn(): void {
     for (const each of this.own) each.hidden = this.path !== "";
     this.end.required = this.path === "";
+    if (!this.isTyped) [this.start.value, this.end.value] = this.limits();
+  }
+
+  /** The ends of the drive's own stroke, empty if unknown. */
+  private limits(): [string, string] {
+    const { state, reach } = this.studio, name = this.drive.value;
+    const axis = name.replace("platform.", "");
+    const stroke = axis === name ? undefined : reach.value?.strokes.find((each) => each.coordinate === axis);
+    const channel = [...(state.value?.actuators ?? []), ...(state.value?.axes ?? [])].find((each) => each.name === name || each.name === axis);
+    const ends = stroke ?? channel;
+    if (!channel || !ends || ends.low === null || ends.high === null) return ["", ""];
+    return [shown(ends.low, channel, 4).replace("−", "-"), shown(ends.high, channel, 4).replace("−", "-")];
   }
 
   private async ask(): Promise<void> {
@@ -72,7 +88,7 @@ export class Travel {
     const said = await this.studio.ask({ kind: "travel", drive: this.drive.value, start: this.start.value.trim(), end: this.end.value.trim(), points: Number(this.points.value), loads, path: this.path });
     this.wait(false);
     if (said.kind === "travelled") this.show(said);
-    else if (said.kind === "refusal") fill(this.about, said.problems.length ? h("span", { className: "poor" }, said.problems.map((each) => `${each.where}: ${sentence(each)}`).join(" ")) : "Cancelled.");
+    else if (said.kind === "refusal") fill(this.about, said.problems.length ? h("span", { className: "poor" }, said.problems.map((each) => `${each.where.replace("--load", "load")}: ${sentence(each)}`).join(" ")) : "Cancelled.");
   }
 
   private tell(said: Underway): void {

@@ -39,7 +39,7 @@ function still(element: HTMLElement, error: unknown): Controller {
   element.append(line);
   const nothing = (): void => undefined, ends = () => nothing;
   return {
-    element, alive: false, curves: document.createElement("div"), probe: NOWHERE, replace: nothing, replaceMotions: nothing, select: nothing, onPick: ends, onMotion: ends, setMotion: nothing,
+    element, alive: false, curves: document.createElement("div"), probe: NOWHERE, replace: nothing, replaceMotions: nothing, select: nothing, onPick: ends, onPoint: nothing, onMotion: ends, setMotion: nothing,
     setPose: nothing, setPlaying: nothing, setPhase: nothing, setAmplitude: nothing, setColours: nothing, showEnergy: nothing, showStress: nothing, showGhost: nothing,
     ghostPlatform: nothing, isolate: nothing, showLabels: nothing, section: nothing, look: nothing, fit: nothing, picture: () => "",
     dispose: () => line.remove(),

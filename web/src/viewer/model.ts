@@ -41,6 +41,8 @@ export class Model {
   readonly points: Float32Array;
   readonly carriers: Uint16Array;
   readonly part: Uint16Array;
+  /** Corners of the faces, three a face. */
+  readonly triangles: ArrayLike<number>;
   private readonly carrier: Uint16Array;
   private readonly twists: Table;
   private readonly poses: Table;
@@ -84,7 +86,9 @@ export class Model {
       this.surface.setAttribute(name, attribute);
       this.lines.setAttribute(name, attribute);
     }
-    this.surface.setIndex(new BufferAttribute(indices(mesh.triangles, mesh.indices), 1));
+    const corners = indices(mesh.triangles, mesh.indices);
+    this.triangles = corners;
+    this.surface.setIndex(new BufferAttribute(corners, 1));
     this.lines.setIndex(new BufferAttribute(indices(mesh.edges, mesh.indices), 1));
     this.picking = new Mesh(this.surface, this.material(edgeVertex, pickFragment, {}));
     this.addPicking();

@@ -191,6 +191,8 @@ export interface Controller {
   select(name: string | null): void;
   /** Calls back when a person picks a part, or nothing (null); returns what ends it. */
   onPick(callback: (picked: Picked | null) => void): () => void;
+  /** Calls back with the point [m] of the undeformed stage where a person clicks, instead of picking a part; null: clicks pick again. */
+  onPoint(callback: ((point: [number, number, number] | null) => void) | null): void;
   /** Calls back when the motion changes by the viewer's own keys and buttons. */
   onMotion(callback: (motion: Motion | null) => void): () => void;
   /** Plays or holds a motion of the data; null: at rest. */

@@ -1,6 +1,6 @@
 // The viewer: a stage in a page, its camera, its motions and its keys.
 
-import { ColorManagement, LinearSRGBColorSpace, Scene, Vector3, Vector4, WebGLRenderer, WebGLRenderTarget } from "three";
+import { ColorManagement, LinearSRGBColorSpace, Ray, Scene, Vector3, Vector4, WebGLRenderer, WebGLRenderTarget } from "three";
 import { TwistArrows } from "./arrows";
 import { Camera } from "./camera";
 import { moved as movedPoint, Route } from "./course";
@@ -18,6 +18,7 @@ ColorManagement.enabled = false;
 
 const VIEWS: readonly StandardView[] = ["iso", "top", "front", "right", "back", "left", "bottom"];
 const DEEP = 12;
+const SNAP = 9; // pixels within which a point is that of a corner
 const HOVER = 4; // pixels a pointer may move between down and up and still have clicked
 
 export class Viewer implements Controller {
@@ -55,6 +56,7 @@ export class Viewer implements Controller {
   private seen = true;
   private shares: Float32Array | null = null;
   private rest: Model | null = null;
+  private pointer: ((point: [number, number, number] | null) => void) | null = null;
   private readonly pickers = new Set<(picked: Picked | null) => void>();
   private readonly watchers = new Set<(motion: Motion | null) => void>();
 
@@ -162,6 +164,10 @@ export class Viewer implements Controller {
   onPick(callback: (picked: Picked | null) => void): () => void {
     this.pickers.add(callback);
     return () => this.pickers.delete(callback);
+  }
+
+  onPoint(callback: ((point: [number, number, number] | null) => void) | null): void {
+    this.pointer = callback;
   }
 
   onMotion(callback: (motion: Motion | null) => void): () => void {
@@ -363,7 +369,8 @@ export class Viewer implements Controller {
   }
 
   private click(x: number, y: number): void {
-    this.pick(this.partsAt(x, y));
+    if (this.pointer) this.pointer(this.pointAt(x, y));
+    else this.pick(this.partsAt(x, y));
   }
 
   /** The first of the parts, or, where that is picked already, the next one behind it. */
@@ -599,6 +606,29 @@ export class Viewer implements Controller {
     found.forEach((part, at) => this.model.setOpacity(part, opacities[at]!));
     this.draw();
     return found.map((part) => this.data.parts[part]!.name);
+  }
+
+  /** The point of the undeformed stage at a place: on the nearest face of the part that is seen there, or its corner within a few pixels. */
+  private pointAt(x: number, y: number): [number, number, number] | null {
+    const part = this.partAt(x, y), { clientWidth: width, clientHeight: height } = this.stage;
+    const { points, triangles, part: owners } = this.model, { eye } = this.camera;
+    const ray = new Ray(new Vector3((2 * x) / width - 1, 1 - (2 * y) / height, -1).unproject(eye), eye.getWorldDirection(new Vector3()));
+    const corner = (at: number): Vector3 => new Vector3().fromArray(points, 3 * triangles[at]!);
+    const isSeen = (each: Vector3): boolean => this.plane.x * each.x + this.plane.y * each.y + this.plane.z * each.z <= this.plane.w + 1e-9;
+    let found: Vector3 | null = null;
+    const own: Vector3[] = [];
+    for (let at = 0; at < triangles.length; at += 3) {
+      if (owners[triangles[at]!] !== part) continue;
+      const face = [corner(at), corner(at + 1), corner(at + 2)] as const;
+      own.push(...face.filter(isSeen));
+      const hit = ray.intersectTriangle(...face, false, new Vector3());
+      if (hit && isSeen(hit) && (!found || ray.origin.distanceTo(hit) < ray.origin.distanceTo(found))) found = hit;
+    }
+    if (!found) return null;
+    const reach = SNAP * this.camera.metresPerPixel(height), depth = ray.origin.distanceTo(found);
+    const near = own.filter((each) => ray.distanceToPoint(each) < reach);
+    const away = (each: Vector3): number => ray.distanceToPoint(each) + Math.abs(ray.direction.dot(each.clone().sub(ray.origin)) - depth);
+    return (near.sort((one, other) => away(one) - away(other))[0] ?? found).toArray();
   }
 
   private makeProbe(canvas: HTMLCanvasElement): Probe {

@@ -20,6 +20,8 @@ TASKS: Mapping[str, str] = {
     "read": "design.reading:read",
     "write": "design.writing:write",
     "insert": "design.palette:insert",
+    "gallery": "design.palette:gallery",
+    "shipped": "design.palette:shipped",
     "place": "questions:place",
     "drag": "dragging:drag",
     "figures": "results:figures",
@@ -38,6 +40,7 @@ TASKS: Mapping[str, str] = {
     "clearances": "questions:clearances",
     "solid_modes": "solids:solid_modes",
     "compared": "results:all_figures",
+    "form": "forms:form",
 }
 """Tasks by name: module and function, imported at the first call."""
 TELLING = frozenset({"travelled"})

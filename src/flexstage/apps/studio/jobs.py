@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 import os
 import secrets
 import signal
@@ -14,6 +15,7 @@ from pathlib import Path
 
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.design.history import Stored
+from flexstage.apps.studio.forms import key_figures
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.processes.jobs import environment
 from flexstage.base.processes.progress import LINE, LINES
@@ -35,6 +37,8 @@ class _Job:
 
     number: int
     request: say.Run
+    path: Path
+    """Its design file."""
     text: str
     state: say.JobState
     process: asyncio.subprocess.Process | None = None
@@ -53,7 +57,7 @@ class Jobs:
     """All jobs of a session on the design in a file; `tell` receives their states, `optimum` the text of a better design."""
 
     def __init__(self, path: Path, tell: Callable[[say.Said], None], optimum: Callable[[str], None]) -> None:
-        self._path, self._tell, self._optimum = path, tell, optimum
+        self.path, self._tell, self._optimum = path, tell, optimum
         self.program: tuple[str, ...] = ("-P", "-m", "flexstage")
         """Arguments of Python, before the command and its arguments."""
         self._jobs: dict[int, _Job] = {}
@@ -78,7 +82,9 @@ class Jobs:
             if option.partition("=")[0] in _WRITING:
                 raise refuse(request.command, f"the studio sets {option}", "Leave it out")
         number = len(self._jobs) + 1
-        job = _Job(number, request, text, say.JobState(number, request.command, "waits", "waits for its turn", None, None, (), None))
+        job = _Job(
+            number, request, self.path, text, say.JobState(number, request.command, "waits", "waits for its turn", None, None, (), None)
+        )
         self._jobs[number] = job
         task = asyncio.create_task(self._run(job))
         self._work.add(task)
@@ -88,7 +94,7 @@ class Jobs:
 
     def _is_file(self, record: str) -> bool:
         with contextlib.suppress(OSError, ValueError):  # an invalid name
-            return (self._path.parent / record).is_file()
+            return (self.path.parent / record).is_file()
         return False
 
     def cancel(self, number: int) -> None:
@@ -134,8 +140,8 @@ class Jobs:
         """Run a job from start to end."""
         if self._folder is None:
             self._folder = make_temporary_folder()
-        report = self._folder / f"{job.number}.html"
-        arguments = [*self._arguments(job), *job.request.options, "--report", str(report)]
+        report, document = (self._folder / f"{job.number}.{ending}" for ending in ("html", "json"))
+        arguments = [*self._arguments(job), *job.request.options, "--report", str(report), "--json", str(document)]
         self._set(job, replace(job.state, state="runs", text="starts"))
         job.process = process = await asyncio.create_subprocess_exec(
             *(sys.executable, *self.program, job.request.command, *arguments),
@@ -156,6 +162,8 @@ class Jobs:
             name = f"{secrets.token_urlsafe(18)}.html"
             self.reports[name] = report
             job.state = replace(job.state, report=f"/report/{name}")
+        if document.is_file():
+            job.state = replace(job.state, figures=key_figures(json.loads(document.read_text(encoding="utf-8"))))
         better = self._folder / f"{job.number}.toml"
         if code == 0 and better.is_file():
             self._optimum(job.as_read(better.read_text(encoding="utf-8")))
@@ -165,24 +173,24 @@ class Jobs:
     def _arguments(self, job: _Job) -> list[str]:
         """The files for its command; an unsaved text is stored temporarily next to its file."""
         request, folder = job.request, self._folder or Path()
-        design = self._path
+        design = job.path
         if not design.is_file() or Stored.read(design).text != job.text:
-            design = self._beside(job, "toml", self._path.name, job.text)
+            design = self._beside(job, "toml", job.path.name, job.text)
         if request.command == "identify":
-            return [str(self._path.parent / (request.record or "")), "--stage", str(design)]
+            return [str(job.path.parent / (request.record or "")), "--stage", str(design)]
         if request.command == "loop":
-            seen = ["--record", str(self._path.parent / request.record)] if request.record else []
+            seen = ["--record", str(job.path.parent / request.record)] if request.record else []
             setup = ["--setup", str(self._beside(job, "loop.toml", "set-up", request.study))] if request.study is not None else []
             return [str(design), *setup, *seen]
         if request.command not in _STUDIES:
             return [str(design)]
-        study = self._beside(job, "study.toml", "study", _study(request.study or "", design, self._path.stem))
+        study = self._beside(job, "study.toml", "study", _study(request.study or "", design, job.path.stem))
         ending = "h5" if request.command == "sweep" else "toml"
         return [str(study), "--output", str(folder / f"{job.number}.{ending}")]
 
     def _beside(self, job: _Job, ending: str, known: str, text: str) -> Path:
         """A temporary file next to the design, with a `known` name for the user."""
-        path = self._path.parent / f".{self._path.stem}.studio-{os.getpid()}-{job.number}.{ending}"
+        path = job.path.parent / f".{job.path.stem}.studio-{os.getpid()}-{job.number}.{ending}"
         job.files.append(path)
         job.names |= {str(path): known, path.name: known}
         return write(path, text)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-VERSION = 4
+VERSION = 5
 """Increased if a message changes its meaning."""
 
 # --- parts of messages ---
@@ -205,7 +205,10 @@ class Clash:
 
 @dataclass(frozen=True)
 class Screw:
-    """A free motion: the platform's twist (unit length), its axis through `point`, pitch [m/rad], null for a pure translation."""
+    """A motion: the platform's twist (unit length), its axis through `point`, pitch [m/rad], null for a pure translation.
+
+    `links` are those that deform in a free motion, or that constrain a locked one: by strain energy, largest share first, if known.
+    """
 
     name: str
     twist: tuple[float, ...]
@@ -228,7 +231,7 @@ class Snippet:
 
 @dataclass(frozen=True)
 class JobState:
-    """A job: its state, fraction done and estimated seconds left, its output, and its report's address if any."""
+    """A job: its state, fraction done and estimated seconds left, its output, its report's address if any, its key figures."""
 
     job: int
     command: str
@@ -238,6 +241,7 @@ class JobState:
     left: float | None
     said: tuple[str, ...]
     report: str | None
+    figures: tuple[Figure, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -437,10 +441,31 @@ class Redo:
 
 @dataclass(frozen=True)
 class Save:
-    """Write the text to its file. Refused after a change on disk, unless `over` allows overwriting."""
+    """Write the text to its file, or to another `file` of its folder.
+
+    Refused after a change on disk, or if the other file exists, unless `over` allows overwriting.
+    """
 
     id: int
     over: bool
+    file: str = ""
+
+
+@dataclass(frozen=True)
+class Browse:
+    """Request for the design files of the folder, and the shipped cases."""
+
+    id: int
+
+
+@dataclass(frozen=True)
+class Open:
+    """Open a file of the folder, written first from a shipped `case` if named. Refused with unsaved changes, unless `discard`."""
+
+    id: int
+    file: str
+    case: str
+    discard: bool
 
 
 @dataclass(frozen=True)
@@ -484,6 +509,14 @@ class Look:
 
     id: int
     panes: tuple[Literal["stage", "motions", "reach"], ...]
+
+
+@dataclass(frozen=True)
+class JobForm:
+    """Request for the form of a command."""
+
+    id: int
+    command: Literal["sweep", "optimise", "verify", "identify", "loop"]
 
 
 @dataclass(frozen=True)
@@ -784,6 +817,24 @@ class Snippets:
 
 
 @dataclass(frozen=True)
+class Folder:
+    """The design files of the folder, and the shipped cases with their summaries."""
+
+    to: int
+    files: tuple[str, ...]
+    cases: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Blank:
+    """The form of a command: the JSON Schema of its study or set-up, or of its options."""
+
+    to: int
+    command: str
+    schema: Any
+
+
+@dataclass(frozen=True)
 class Jobs:
     """All jobs; pushed at each progress."""
 
@@ -831,11 +882,14 @@ Request: TypeAlias = (
     | Undo
     | Redo
     | Save
+    | Browse
+    | Open
     | Reload
     | Recover
     | Palette
     | Insert
     | Look
+    | JobForm
     | Run
     | Cancel
 )
@@ -861,6 +915,8 @@ Said: TypeAlias = (
     | SolidModes
     | Comparison
     | Snippets
+    | Folder
+    | Blank
     | Jobs
     | Done
     | Refusal

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from flexstage.analysis.assessment.sensitivities import Sensitivities, sensitivi
 from flexstage.analysis.attempt import Attempts
 from flexstage.analysis.bench import StageResults
 from flexstage.analysis.caveats import part_warnings
+from flexstage.analysis.linear_statics.statics import statics
 from flexstage.analysis.workspace.strength import sized_links
 from flexstage.analysis.workspace.stroke import stroke_limits
 from flexstage.analysis.workspace.wrench import dead_wrenches
@@ -31,7 +33,7 @@ from flexstage.apps.studio.protocol import (
     Slope,
     Slopes,
 )
-from flexstage.apps.studio.results import bench, judged, matrix
+from flexstage.apps.studio.results import bench, judged, largest, matrix, strain_shares
 from flexstage.base.finding import refuse, suggest_nearest
 from flexstage.base.labelled import NOISE, ratio_units
 from flexstage.base.labelled import Matrix as Labelled
@@ -46,7 +48,7 @@ from flexstage.mechanism.geometry.contact import gaps
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store.lines import line_numbers, line_of
 from flexstage.models.ideal import free_freedoms
-from flexstage.models.linear.static import static_gain
+from flexstage.models.linear.static import input_motion, static_gain
 from flexstage.parts.part import Elastic, inner
 from flexstage.show.display import format_value, to_typography
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNITS
@@ -386,12 +388,26 @@ def _bent(strains: Mapping[str, Array], column: int) -> tuple[str, ...]:
 
 
 def _locked(motion_: Array, known: StageResults) -> Iterator[Screw]:
-    """The motions of the platform that the links lock: a basis of the complement of the ideal motions, at its reference."""
-    free = first_design(motion_, 2)
-    scale = np.array([1.0] * 3 + [known.kinematics.first_length] * 3)
+    """The constrained motions of the platform, complementary to the ideal ones, with the links that store their strain energy."""
+    from scipy.linalg import qr  # takes long to import
+
+    free, length = first_design(motion_, 2), known.kinematics.first_length
+    scale = np.array([1.0] * 3 + [length] * 3)
     basis, sizes, _ = np.linalg.svd(free * scale[:, None], full_matrices=True)
     rank = int(np.sum(sizes > 1e-9 * sizes.max(initial=0.0))) if sizes.size else 0
+    kept: Any = qr(basis[:, rank:] @ basis[:, rank:].T, pivoting=True)  # coordinate axes first, if they are in the complement
+    axes = kept[2]
+    rest = np.where(np.abs(kept[0]) > 1e-12, kept[0] * np.sign(kept[0][axes, range(6)]), 0.0)[:, : 6 - rank] / scale[:, None]
     reference = first_design(known.assembly.bodies["platform"].reference, 1)
-    for number, twist in enumerate(basis[:, rank:].T, start=1):
-        held = np.where(np.abs(twist) > 1e-12, twist, 0.0) / scale
-        yield _screw(f"locked {number}", held, reference, known.kinematics.first_length, ())
+    links = Attempts().of("links", lambda: _strained(known, rest)) or [()] * (6 - rank)
+    for axis, twist, names in zip(axes.tolist(), rest.T, links, strict=False):
+        yield _screw(COMPONENTS[axis], twist, reference, length, names)
+
+
+def _strained(known: StageResults, twists: Array) -> list[tuple[str, ...]]:
+    """The links of each imposed platform twist (6, k) with at least one per cent of its strain energy, the largest share first."""
+    model = known.model
+    wrenches = statics(model).stiffness.values @ twists
+    shapes = input_motion(model, model.input_index(tuple(f"platform.{name}" for name in FORCES)), wrenches)
+    shares = strain_shares(model, shapes)
+    return [tuple(largest((name, float(each[place])) for name, each in shares.items())) for place in range(twists.shape[1])]

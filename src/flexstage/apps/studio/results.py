@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -47,8 +48,10 @@ from flexstage.apps.studio.protocol import (
 from flexstage.apps.studio.wire import floats
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.labelled import Matrix as Labelled
+from flexstage.base.labelled import quiet
 from flexstage.base.number import Array
 from flexstage.base.session import SESSION
+from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.mechanism.store.lines import line_numbers, line_of
 from flexstage.models.linear.frequency import Response
 from flexstage.models.linear.model import LinearModel
@@ -121,7 +124,8 @@ def verdicts(text: str, file: str, stored: str, revision: int) -> Verdicts:
 def reach(text: str, file: str, stored: str, revision: int) -> Reach:
     """Strokes of the platform, and utilisation of hinges and columns."""
     timer, (found, missing) = Timer(), _reached(text, file)
-    strokes = () if found[0] is None else tuple(_strokes(found[0]))
+    known = bench(text, file)
+    strokes = tuple(_held(known) if known.forced else () if found[0] is None else _strokes(found[0]))
     return Reach(revision, tuple(_with_old(reach_figures(*found), "reach", stored, text, file)), strokes, missing, timer.spent)
 
 
@@ -175,8 +179,8 @@ def drawn(text: str, file: str) -> StageData:
 
 
 def matrix(found: Labelled) -> Matrix:
-    """A labelled matrix as a message."""
-    document = found.to_json()
+    """A labelled matrix as a message, without rounding noise."""
+    document = replace(found, values=quiet(found.values)).to_json()
     unit = document["unit"] if isinstance(document["unit"], str) else tuple(map(tuple, document["unit"]))
     return Matrix(tuple(document["rows"]), tuple(document["columns"]), unit, tuple(map(tuple, document["values"])))
 
@@ -201,7 +205,7 @@ def _stored_verdicts(stored: str, file: str) -> tuple[Verdict, ...]:
 def _reached(text: str, file: str) -> tuple[tuple[SingleAxis | None, HingeStress | None, Buckling | None], dict[str, str]]:
     """The shown part of the workspace: strokes, stress and buckling, as in `workspace`; with reasons for missing ones."""
     known, attempt = bench(text, file), Attempts()
-    strokes = attempt.of("workspace", lambda: single_strokes(known.mechanism, known.kinematics))
+    strokes = None if known.forced else attempt.of("workspace", lambda: single_strokes(known.mechanism, known.kinematics))
     if strokes is None:
         return (None, None, None), attempt.missing
     unloaded = known.limits.from_zero
@@ -219,6 +223,12 @@ def _corrected(known: StageResults) -> SingleAxis:
 
 def _strokes(found: SingleAxis) -> Iterator[Stroke]:
     return map(Stroke, found.coordinates, np.real(found.low).tolist(), np.real(found.high).tolist(), found.limiting)
+
+
+def _held(known: StageResults) -> Iterator[Stroke]:
+    """Strokes of a force-driven stage: its continuous elastic motion."""
+    found = known.force_workspace(PLATFORM)
+    return map(Stroke, found.coordinates, np.ravel(-found.held).tolist(), np.ravel(found.held).tolist(), found.limited_by)
 
 
 def _response(known: StageResults, choice: Choice) -> Response:
@@ -249,7 +259,7 @@ def _losses(lost: LostMotion) -> Iterator[Loss]:
 
 def _modes(model: LinearModel, found: Modes) -> Iterator[ModeShape]:
     count = min(len(found.names), max(_LISTED, *(index + 1 for index in found.platform), 0))
-    strained = _strain_shares(model, found.shapes[:, :count])
+    strained = strain_shares(model, found.shapes[:, :count])
     for index in range(count):
         yield ModeShape(
             index + 1,
@@ -259,12 +269,12 @@ def _modes(model: LinearModel, found: Modes) -> Iterator[ModeShape]:
             index in found.local,
             float(found.share[index]),
             tuple(found.platform_shapes[:, index].tolist()),
-            _largest(zip(found.bodies, found.energies[:, index].tolist(), strict=True)),
-            _largest((name, float(shares[index])) for name, shares in strained.items()),
+            largest(zip(found.bodies, found.energies[:, index].tolist(), strict=True)),
+            largest((name, float(shares[index])) for name, shares in strained.items()),
         )
 
 
-def _strain_shares(model: LinearModel, shapes: Array) -> dict[str, Array]:
+def strain_shares(model: LinearModel, shapes: Array) -> dict[str, Array]:
     """Share of the strain energy (k,) of shapes (n, k) in every link."""
     parts = {
         name: np.einsum("ik,ij,jk->k", each, model.stiffness[name].law, each) for name, each in part_deformation(model, shapes).items()
@@ -273,8 +283,9 @@ def _strain_shares(model: LinearModel, shapes: Array) -> dict[str, Array]:
     return {name: each / np.where(total > 0.0, total, np.inf) for name, each in parts.items()}
 
 
-def _largest(shares: Iterable[tuple[str, float]]) -> dict[str, float]:
-    return dict(sorted(((name, share) for name, share in shares if share >= _SHOWN), key=lambda each: -each[1]))
+def largest(shares: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """Shares of at least one per cent, the largest first."""
+    return dict(sorted(((name, share) for name, share in shares if share >= _SHOWN), key=lambda each: -round(each[1], 6)))
 
 
 def _key_figures(found: Modes | None, stiff: Statics | None, lost: LostMotion | None) -> tuple[KeyFigure, ...]:

@@ -6,6 +6,7 @@ import asyncio
 import os
 from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, ClassVar
 
 from flexstage.apps.studio import protocol as say
@@ -17,6 +18,7 @@ from flexstage.apps.studio.engine import Outcome, failure, problem
 from flexstage.apps.studio.helper import Helper, Urgency, nobody
 from flexstage.apps.studio.jobs import Jobs
 from flexstage.base.finding import DesignError, refuse, suggest_nearest
+from flexstage.base.storage.store import write
 
 _QUIET = 0.3
 """Duration up to which a computation is not announced [s]."""
@@ -154,9 +156,50 @@ class Session:
         self._take(self.history.undo(page) if isinstance(request, say.Undo) else self.history.redo(page))
 
     async def _save(self, request: say.Save, *_: Any) -> None:
-        self.stored = self.stored.write(self.history.text, over=request.over)
+        path = self._in_folder(request.file) if request.file else self.stored.path
+        if path == self.stored.path:
+            self.stored = self.stored.write(self.history.text, over=request.over)
+        else:
+            if path.exists() and not request.over:
+                raise refuse(path.name, "file exists", "Choose another name, or overwrite it")
+            self._turn_to(replace(self.stored, path=path).write(self.history.text, over=True))
         self._protect()
         self._start(self._read())
+
+    async def _browse(self, request: say.Browse, *_: Any) -> say.Said:
+        files = sorted(each.name for each in self.stored.path.parent.glob("[!.]*.toml"))
+        return say.Folder(request.id, tuple(files), await self._task_value(self._quick, "gallery"))
+
+    async def _open(self, request: say.Open, *_: Any) -> None:
+        path = self._in_folder(request.file)
+        if self.history.text != self.stored.text and not request.discard:
+            raise refuse(self.stored.path.name, "it has unsaved changes", "Save or discard them first")
+        if request.case:
+            if path.exists():
+                raise refuse(path.name, "file exists", "Choose another name")
+            write(path, await self._task_value(self._quick, "shipped", request.case))
+        elif not path.is_file():
+            raise refuse(path.name, "file not found", "Choose one of this folder")
+        self._turn_to(Stored.read(path))
+        self.history = History(self.stored.text, revision=self.history.revision + 1)
+        self.reading, self.sound, self._warnings = None, "", ()
+        for each in (self.shown, self._failures, self._last):
+            each.clear()
+        await self.open()
+
+    def _in_folder(self, name: str) -> Path:
+        """The path of a design file next to the present one; raises `DesignError` for another kind of name."""
+        folder = self.stored.path.parent
+        if not name.isprintable() or Path(name).name != name or not name.endswith(".toml") or name.startswith("."):
+            raise refuse("file", f'must be a name that ends in .toml, without a folder (got "{name}")', "Use e.g. stage2.toml")
+        return folder / name
+
+    def _turn_to(self, stored: Stored) -> None:
+        """Continue with another file."""
+        self.journal.clear()
+        self.stored, self.jobs.path = stored, stored.path
+        self.journal = replace(self.journal, path=stored.path)
+        self.drafts = self._found_drafts()
 
     async def _reload(self, _: say.Reload, page: int, __: Tell) -> None:
         """Read the text of the file, which may have changed; the present one remains in the history."""
@@ -252,6 +295,9 @@ class Session:
         if self.sound and "figures" in self._last:
             self._start(self._compute(self._computed, self.sound))
 
+    async def _form(self, request: say.JobForm, *_: Any) -> say.Said:
+        return say.Blank(request.id, request.command, await self._task_value(self._quick, "form", request.command))
+
     async def _run(self, request: say.Run, *_: Any) -> say.Said:
         return say.Done(request.id, self.history.revision, self.jobs.start(request, self.history.text))
 
@@ -275,11 +321,14 @@ class Session:
         say.Undo: _undo,
         say.Redo: _undo,
         say.Save: _save,
+        say.Browse: _browse,
+        say.Open: _open,
         say.Reload: _reload,
         say.Recover: _recover,
         say.Palette: _palette,
         say.Insert: _insert,
         say.Look: _look,
+        say.JobForm: _form,
         say.Run: _run,
         say.Cancel: _cancel,
     }

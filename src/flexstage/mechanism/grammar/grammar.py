@@ -299,7 +299,7 @@ class RecordNode(Node):
         required = [key] if key else []
         wrapped: list[dict[str, Any]] = []
         for slot in self.fields.values():
-            properties |= {key: node.schema(definitions) for key, node in slot.alternatives}
+            properties |= {key: node.schema(definitions) | _default(slot) for key, node in slot.alternatives}
             if slot.wrapped is not None:
                 wrapped += [{"required": [option]} for option in slot.keys]
             elif slot.required:
@@ -453,6 +453,12 @@ class Slot:
         return present[0] if present else (self.key, self.node)
 
 
+def _default(slot: Slot) -> dict[str, Any]:
+    """The default of a field in a schema, if it is a single value."""
+    single = isinstance(slot.default, str | int | float | Enum)
+    return {"default": Writer().write(slot.node, slot.default, slot.key)} if single else {}
+
+
 def _is_table(raw: Any, where: str, reader: Reader) -> bool:
     fits = isinstance(raw, dict)
     if not fits:
@@ -465,8 +471,10 @@ def _strip_tags(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, An
     if not reader.tagged:
         return raw
     tags = raw.get(TAGS, {})
-    if not isinstance(tags, dict) or not all(isinstance(tag, str) for tag in tags.values()):
-        reader.refuse(join(where, TAGS), "a tag is a text", 'Write tags = { thickness = "stated paper 2.2" }, and quote a key with dots')
+    wrong = [key for key, tag in tags.items() if not isinstance(tag, str)] if isinstance(tags, dict) else [""]
+    if wrong:
+        own = join(join(where, TAGS), wrong[0]) if wrong[0] else join(where, TAGS)
+        reader.refuse(own, "a tag is a text", 'Write tags = { thickness = "stated paper 2.2" }, and quote a key with dots')
     else:
         reader.tags.update({join(where, key): tag for key, tag in tags.items()})
     return {key: value for key, value in raw.items() if key != TAGS}

@@ -54,6 +54,8 @@ def line_of(address: str, lines: Mapping[str, int]) -> int | None:
 
     >>> line_of("B1/front.thickness", {"units": 1, "units.lever.links.front": 4, "placements.B1": 9}), line_of("gravity", {})
     (4, None)
+    >>> line_of('tags."parts.leaf.width"', {"parts.leaf": 2, "parts.leaf.width": 3, "parts.leaf.tags.width": 5})
+    5
     """
     around = (table for each in _ways(address.replace('"', ""), lines) for table in _tables(each) if table != "tags")
     return next((lines[table] for table in around if table in lines), None)
@@ -70,6 +72,7 @@ def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
     """An address, and for a link in a unit or an instance (`B4/pivot.at`) its possible addresses in the file, nearest first."""
     result = _OWNER.fullmatch(address)
     if result is None:
+        yield from (each for each in lines if ".tags." in each and f"tags.{each.replace('.tags.', '.', 1)}" == address)
         yield from (address, address.removeprefix("tags."))
         yield from (f"{kind}.{address}" for kind in ("bodies", "links") if f"{kind}.{address.partition('.')[0]}" in lines)
         yield from (each for each in lines if each.startswith(f"{address}."))

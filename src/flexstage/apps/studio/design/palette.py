@@ -38,6 +38,21 @@ def insert(text: str, snippet: str, fields: Mapping[str, str]) -> str:
     return result
 
 
+def gallery() -> Mapping[str, str]:
+    """Summaries of the shipped cases."""
+    from flexstage.cases.registry import CASES  # takes long to import
+
+    return {name: each.summary for name, each in CASES.items()}
+
+
+def shipped(case: str) -> str:
+    """The design file of a shipped case. Raises `DesignError` for an unknown one."""
+    from flexstage.cases.registry import shipped_case
+
+    found = shipped_case(case)
+    return found.text({}, f"{case}: {found.summary}.")
+
+
 def _fill(text: str, fields: Mapping[str, str]) -> str:
     for name, value in fields.items():
         if any(not sign.isprintable() or sign in '"\\' for sign in value):

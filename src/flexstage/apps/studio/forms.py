@@ -1,0 +1,114 @@
+"""Forms of the studio's jobs: the JSON Schema of a command's input, and the key figures of its result."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from flexstage.apps.cli.option_groups import default_last
+from flexstage.apps.studio.protocol import Figure
+
+_STUDIES = ("sweep", "optimise")
+_OWN = ("--help", "--stage", "--report", "--json", "--csv", "--xlsx")
+"""Options without an entry: the studio sets them, or they concern the printed text."""
+
+
+def form(command: str) -> Mapping[str, Any]:
+    """The JSON Schema of a command's file: of its study or set-up; without one, of its options."""
+    if command == "loop":
+        from flexstage.control.study.file import setup_schema  # takes long to import
+
+        return setup_schema()
+    if command in _STUDIES:
+        from flexstage.studies.form import study_schema
+
+        return study_schema()
+    return {"properties": dict(_options(command))}
+
+
+def _options(command: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The schemas of the options of `verify` or `identify`."""
+    from typer import Context, Typer  # takes long to import
+    from typer.main import get_command
+
+    from flexstage.experiment.commands.identify import identify
+    from flexstage.solid.commands.solid import verify
+
+    app = Typer(add_completion=False)
+    app.command()(verify if command == "verify" else identify)
+    loaded = get_command(app)
+    for each in loaded.params:
+        if each.param_type_name == "option" and each.opts[0] not in _OWN and (record := each.get_help_record(Context(loaded))):
+            yield each.opts[0], _property(each, *record)
+
+
+def _property(option: Any, names: str, meaning: str) -> dict[str, Any]:
+    """The schema of an option: a switch, a choice of values, some values, or one."""
+    _, _, value = names.rpartition(" ")
+    choices = value.strip("<>").split("|") if value.startswith("<") and "|" in value else []
+    kind = {"enum": choices} if choices else {"type": "boolean" if option.is_flag else "string"}
+    many = {"minItems": option.nargs} if option.nargs > 1 else {}
+    return {"description": default_last(meaning), "examples": [value], **kind, **many}
+
+
+def key_figures(document: Mapping[str, Any]) -> tuple[Figure, ...]:
+    """The key figures of a command's result, in SI units and degrees, for a comparison of runs."""
+    kind = document["kind"]
+    return tuple(Figure(name, kind, unit, unit, 1.0, value, None) for name, value, unit in _FIGURES[kind](document))
+
+
+_Rows = Iterator[tuple[str, float | None, str]]
+
+
+def _verdicts(document: Mapping[str, Any]) -> _Rows:
+    return ((each["key"], each["value"], each["unit"]) for each in document["requirements"])
+
+
+def _ranges(document: Mapping[str, Any]) -> _Rows:
+    for each in document["responses"]:
+        yield f"{each['name']}, least", each["min_value"], each["unit"]
+        yield f"{each['name']}, largest", each["max_value"], each["unit"]
+
+
+def _optimum(document: Mapping[str, Any]) -> _Rows:
+    """Objectives and margins of the best design; none for a front."""
+    best = document.get("optimum", {"limits": ()})
+    for each in document["objectives"] if "objectives" in best else ():
+        yield each["name"], best["objectives"][each["name"]], each["unit"]
+    for each in best["limits"]:
+        yield f"margin of {each['measure']}", each["margin"], "1"
+
+
+def _differences(document: Mapping[str, Any]) -> _Rows:
+    rows = (each for each in document["rows"] if each["group"] == "stage")
+    return ((f"{each['figure']}, theory over finite elements - 1", each["difference"], "1") for each in rows)
+
+
+def _modes(document: Mapping[str, Any]) -> _Rows:
+    for each in document["modes"]:
+        yield f"mode {each['number']}", each["frequency_hz"], "Hz"
+        yield f"damping ratio of mode {each['number']}", each["damping"], "1"
+
+
+def _loop(document: Mapping[str, Any]) -> _Rows:
+    for name, each in document["bandwidths"]["coordinates"].items():
+        yield f"bandwidth {name}", each["tracking_hz"], "Hz"
+    for name, each in document["margins"]["loops"].items():
+        phase = each["phase_rad"]["value"]
+        yield f"gain margin {name}", each["gain_high"]["value"], "1"
+        yield f"phase margin {name}", None if phase is None else math.degrees(phase), "deg"
+    yield "peak sensitivity", document["peaks"]["sensitivity"]["value"], "1"
+    for name, value, unit in zip(*(document["noise"][key] for key in ("outputs", "rms", "units")), strict=True):
+        yield f"positioning noise {name}", value, unit
+
+
+_FIGURES: Mapping[str, Callable[[Mapping[str, Any]], _Rows]] = {
+    "analyse": _verdicts,
+    "sweep": _ranges,
+    "optimise": _optimum,
+    "verify": _differences,
+    "identify": _modes,
+    "loop": _loop,
+}
+"""Names, values and units of the key figures by command."""
