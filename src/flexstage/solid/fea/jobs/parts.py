@@ -12,7 +12,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from flexstage.base.finding import Finding, require
 from flexstage.base.number import Array
-from flexstage.base.processes.progress import Progress, duration
+from flexstage.base.processes.progress import Progress, Step, duration
 from flexstage.base.session import SESSION
 from flexstage.solid.fea.jobs.cache import Cache, Notice, find, folder_of, keep, key_of, warn
 from flexstage.solid.fea.jobs.content import KEPT, content
@@ -156,7 +156,11 @@ def _measure(jobs: Sequence[StoredJob], ways: Ways) -> list[StoredJob]:
     def take(job: Measure, found: tuple[Work, ...]) -> None:
         known.update({each.key: work for each, work in zip(job.reductions, found, strict=True)})
 
-    work_all([Measure(tuple(each)) for each in alike.values()], take, ways.limits, ways.progress, ways.pool)
+    def show(step: Step) -> None:
+        if ways.progress is not None:
+            ways.progress(Step(step.text, 0.0, None))
+
+    work_all([Measure(tuple(each)) for each in alike.values()], take, ways.limits, show, ways.pool)
     measured = [replace(job, measured=known[job.key]) if isinstance(job, Reduce) else job for job in jobs]
     require(
         Finding(
