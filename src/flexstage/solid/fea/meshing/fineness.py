@@ -8,6 +8,7 @@ from enum import Enum
 import numpy as np
 
 from flexstage.base.arguments import CheckedFields
+from flexstage.parts.body import Solid
 from flexstage.parts.section import Rectangle
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.piece import Piece, span, thinnest
@@ -24,6 +25,8 @@ may be flat, as strains vary slowly along the faces."""
 _MIDDLE, _SMOOTH = 0.7, 0.25
 """Size of elements in the middle plane of a notch, where the strain gradient is largest, over that on the faces of other hinges; its
 smallest share of the geometric mean of radius and thickness."""
+_BAR, _LONG, _BROAD = 2.0 / 3.0, 6.0, 5.0
+"""Share for bars of bodies, which bend: longer than this multiple of their thickness, and not broader than that one."""
 _STRUT = 0.4
 """Share for straight necks: elements as wide as thick, at low cost."""
 WARPS = 12
@@ -114,11 +117,13 @@ def element_size(piece: Piece, fineness: Fineness) -> float:
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> round(element_size(bar().pieces[0], Fineness(block=1.5)), 9)
-    0.015
+    0.01
     """
     form = piece.form
-    if piece.body is not None or not isinstance(form, Shaped):
-        return (fineness.neck if piece.body is None else fineness.block) * thinnest(form)
+    if isinstance(form, Solid):
+        short, middle, long = sorted(float(np.real(side)) for side in form.sides)
+        is_bar = long > _LONG * short and middle < _BROAD * short
+        return (fineness.neck if piece.body is None else fineness.block * (_BAR if is_bar else 1.0)) * thinnest(form)
     if is_leaf(form) or is_notch(form):
         flat = _FLAT * min(float(np.real(form.throat.width)), span(form))
         return fineness.neck * max((_NOTCH if is_notch(form) else 1.0) * thinnest(form), flat)
