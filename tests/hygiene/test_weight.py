@@ -21,9 +21,9 @@ CEILINGS = {
     "experiment": 98_800,
     "control": 153_900,
     "studies": 59_200,
-    "apps": 35_500,
+    "apps": 35_600,
     ".": 400,
-    "all": 806_700,
+    "all": 807_200,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
