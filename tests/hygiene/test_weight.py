@@ -17,7 +17,7 @@ CEILINGS = {
     "models": 97_900,
     "analysis": 70_300,
     "show": 63_600,
-    "solid": 75_600,
+    "solid": 76_100,
     "experiment": 98_800,
     "control": 153_900,
     "studies": 59_200,
