@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -15,6 +18,7 @@ from flexstage.analysis.assessment.requirements import measure
 from flexstage.base.finding import DesignError
 from flexstage.base.storage.document import as_text
 from flexstage.mechanism.addresses.address import set_value
+from flexstage.mechanism.geometry.contact import contact_findings
 from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.synthesis import answers, bounds
 from flexstage.studies.synthesis.answers import design, joint_front
@@ -37,6 +41,12 @@ box = { size = ["260 mm", "260 mm", "40 mm"] }
 actuators.like = "PSt 1000/10/150 VS18"
 requirements.frequency = "at least 500 Hz"
 """
+SHELL = """
+[amplified.ours]
+stroke = "300 um"
+diagonal = ["2 N/um", "1.4 N/um", "3 N/um", "160 N m/rad", "96 N m/rad", "64 N m/rad"]
+mass = "160 g"
+"""
 COIL = """
 [coils.ours]
 force_constant = "32 N/A"
@@ -58,16 +68,25 @@ requirements.unwanted = "at least 10 Hz"
 MOTIONS = {
     "guide": 'motion.z = "15 um"',
     "folded": 'motion.y = "0.5 mm"',
+    "lever": 'motion.x = "60 um"',
+    "bridge": 'motion.x = "60 um"',
+    "guide-amplified": 'motion.y = "100 um"',
+    "carriages-amplified": 'motion = { x = "60 um", y = "60 um" }',
+    "pivot": 'motion.rz = "0.4 mrad"',
+    "steering": 'motion = { rx = "5 mrad", ry = "5 mrad" }',
+    "three-rrr": 'motion = { x = "20 um", y = "20 um", rz = "300 urad" }',
     "carriages": 'motion = { x = "20 um", y = "20 um" }',
+    "nested": 'motion = { x = "15 um", y = "15 um" }',
     "travel": 'motion = { x = "2 mm", y = "2 mm" }',
     "tilt": 'motion = { rx = "1 mrad", ry = "1 mrad" }',
     "hexapod": "motion = " + '{ x = "30 um", y = "30 um", z = "60 um", rx = "300 urad", ry = "300 urad", rz = "100 urad" }',
+    "double-triangle": "motion = " + '{ x = "30 um", y = "30 um", z = "60 um", rx = "300 urad", ry = "300 urad", rz = "100 urad" }',
 }
 
 
 def specification(name: str, folder: Path) -> Specification:
     """A specification for an architecture, in a large box."""
-    (folder / "lab.toml").write_text(COIL)
+    (folder / "lab.toml").write_text(SHELL + COIL)
     text = (
         SCANNER.replace('motion = { x = "50 um", y = "50 um" }', MOTIONS[name]).replace("260 mm", "500 mm").replace('"40 mm"', '"400 mm"')
     )
@@ -135,11 +154,12 @@ def test_levers_with_mass_do_not_exceed_the_bound_of_forces() -> None:
 
 @pytest.mark.parametrize("name", architectures())
 def test_architectures_have_no_clash_for_any_values(name: str, tmp_path: Path) -> None:
-    """Random values in the ranges: no outlines overlap and every end lies on a face; no stage exceeds the bound."""
+    """Random values in the ranges: no outlines overlap or touch, and every end lies on a face; no stage exceeds the bound."""
     spec = specification(name, tmp_path)
     architecture, rng = architectures()[name], np.random.default_rng(4)
     actuators = catalogue_actuators(spec)[architecture.kind]
-    for number in range(200 if FULL else 3):
+    assert contact_findings(fs.loads(architecture.text)) == ()
+    for number in range(200 if FULL else 2):
         actuator = actuators[number % len(actuators)]
         stage = fs.loads(draw(architecture, spec, actuator))
         for each in variables(architecture, scope(architecture, spec, actuator)):
@@ -148,10 +168,20 @@ def test_architectures_have_no_clash_for_any_values(name: str, tmp_path: Path) -
             stage = set_value(stage, f"numbers.{each.name}", value)
         if any(float(stage.numbers[name].value) < 0.0 for name in ("rim", "gap") if name in stage.numbers):
             continue  # excluded by a limit of the architecture
-        told = [str(each) for each in fs.check(stage) if re.search("overlap|away from|end face", str(each))]
-        assert told == []
+        assert contact_findings(stage) == ()
         if actuator.kind != "voice_coil":
-            assert_below_bound(stage, spec, bounds.stroke_energy(actuator.stroke, actuator.stiffness, architecture.count))
+            with suppress_unstable():
+                assert_below_bound(stage, spec, bounds.stroke_energy(actuator.stroke, actuator.stiffness, architecture.count))
+
+
+@contextmanager
+def suppress_unstable() -> Generator[None]:
+    """Pass over stages that buckle under their weight: they have no frequency."""
+    try:
+        yield
+    except DesignError as error:
+        if "unstable" not in str(error):
+            raise
 
 
 def assert_below_bound(stage: fs.Mechanism, spec: Specification, energy: float) -> None:
@@ -183,7 +213,7 @@ def test_a_rotation_reaches_its_bound_with_the_motion_that_has_least_energy() ->
 
 def test_an_answer_keeps_its_requirements_and_stays_below_its_bound() -> None:
     spec = loads_specification(SCANNER)
-    found = fs.design(spec)
+    found = fs.design(spec, ("carriages",))
     answer = found.best
     assert answer is not None
     analysed = fs.analyse(answer.stage)
@@ -207,20 +237,43 @@ def test_elastic_bodies_keep_the_required_frequency() -> None:
     assert answer.values["frequency.1"] > answer.elastic["frequency.1"] >= 1000.0
 
 
-def test_heavier_carriages_do_not_raise_the_frequency() -> None:
-    spec = loads_specification(SCANNER)
-    stage = fs.loads(draw(architectures()["carriages"], spec, catalogue_actuators(spec)["piezo"][0]))
-    platform, before = measure(stage, "frequency.platform.1", "here"), np.inf
-    for factor in (1.0, 10.0, 100.0, 1000.0):
-        heavy = replace(
-            stage, materials={**stage.materials, "heavy": replace(stage.materials["body"], density=factor * 2810.0)}, formulas={}
+def with_density(bodies: Mapping[str, fs.Body], factor: float) -> dict[str, fs.Body]:
+    """Bodies of a stage or unit, all but the platform of a denser material."""
+    return {
+        name: body
+        if name == "platform" or body.of
+        else replace(
+            body, solids={key: replace(cast("Any", solid), material=f"{solid.material} {factor:g}") for key, solid in body.solids.items()}
         )
-        block = heavy.units["side"].bodies["carriage"].solids["block"]
-        carriage = replace(heavy.units["side"].bodies["carriage"], solids={"block": replace(block, material="heavy")})
-        units = {name: replace(unit, bodies={**unit.bodies, "carriage": carriage}) for name, unit in heavy.units.items() if name == "side"}
-        found = float(platform.kind.value(bench_of(replace(heavy, units={**heavy.units, **units})), platform))
+        for name, body in bodies.items()
+    }
+
+
+@pytest.mark.parametrize("name", architectures())
+def test_heavier_bodies_and_payloads_do_not_raise_the_frequency(name: str, tmp_path: Path) -> None:
+    """Carriages, levers and the like, up to 1000 times as heavy; then a payload 10 times as heavy."""
+    spec = specification(name, tmp_path)
+    architecture = architectures()[name]
+    stage = fs.loads(draw(architecture, spec, catalogue_actuators(spec)[architecture.kind][0]))
+    platform, before = measure(stage, "frequency.platform.1", "here"), np.inf
+    stages = []
+    for factor in (1.0, 10.0, 100.0, 1000.0) if FULL else (1.0, 1000.0):
+        denser = {f"{key} {factor:g}": replace(each, density=factor * each.density) for key, each in stage.materials.items()}
+        units = {key: replace(unit, bodies=with_density(unit.bodies, factor)) for key, unit in stage.units.items()}
+        own = replace(stage, materials={**stage.materials, **denser}, bodies=with_density(stage.bodies, factor), units=units, formulas={})
+        stages.append(own)
+    for own in (*stages, set_value(stages[-1], "payloads.load.mass", 10.0 * spec.payload.mass)):
+        found = float(platform.kind.value(bench_of(own), platform))
         assert found <= before * (1.0 + 1e-9)
         before = found
+
+
+def test_the_page_lists_all_architectures() -> None:
+    page = Path("docs/specification.md").read_text(encoding="utf-8").partition("## Architectures")[2].partition("## ")[0]
+    rows = dict(re.findall(r"^\| `([\w-]+)` \| ([^|]+) \|", page, re.MULTILINE))
+    sets = {name: {frozenset(each.split(", ")) for each in text.split("; ")} for name, text in rows.items()}
+    turned = {frozenset({"one of x", "y", "z"})}
+    assert sets == {name: turned if each.turns else set(each.serves) for name, each in architectures().items()}
 
 
 @pytest.mark.parametrize("name", ["parallelogram", "xy-stage", "hexapod", "double-triangle", "voice-coil-xy"])
@@ -247,7 +300,7 @@ def test_a_relaxed_value_gives_an_answer() -> None:
     text = SCANNER.replace('{ x = "50 um", y = "50 um" }', '{ x = "20 um" }').replace('"PSt 1000/10/150 VS18"', '"PiezoDrive SA050536"')
     text = text.replace('"260 mm", "260 mm"', '"60 mm", "200 mm"').replace('name = "scanner"', 'name = "scanner"\nstarts = 1')
     hard = loads_specification(text)
-    found = fs.design(hard)
+    found = fs.design(hard, ("guide",))
     assert found.best is None
     (relaxed,) = found.failed[0].relaxed
     assert relaxed.measure == "envelope.x"
@@ -273,6 +326,15 @@ def test_heat_limits_the_force_of_a_coil(tmp_path: Path) -> None:
     text = SCANNER.replace('actuators.like = "PSt 1000/10/150 VS18"', 'catalogue = "lab.toml"')
     (coil,) = catalogue_actuators(loads_specification(text, where=str(tmp_path / "spec.toml")))["voice_coil"]
     assert coil.force == pytest.approx(32.0 * (40.0 / 8.0 / 5.0) ** 0.5)
+
+
+def test_the_energy_of_an_amplified_actuator_is_that_of_its_blocked_deformation(tmp_path: Path) -> None:
+    """It contracts and turns: (s/2)^2 u'ku, as for its whole free deformation held at the ends, half of the stroke either way."""
+    (tmp_path / "lab.toml").write_text(SHELL + 'deformation = ["-300 um", 0, 0, 0, 0, "1 mrad"]\n')
+    text = SCANNER.replace('actuators.like = "PSt 1000/10/150 VS18"', 'catalogue = "lab.toml"')
+    (actuator,) = catalogue_actuators(loads_specification(text, where=str(tmp_path / "spec.toml")))["amplified"]
+    energy = 0.25 * (2e6 * 300e-6**2 + 64.0 * 1e-3**2)
+    assert bounds.stroke_energy(actuator.stroke, actuator.stiffness) == pytest.approx(energy, rel=1e-9)
 
 
 def test_motions_of_one_axis_are_turned(tmp_path: Path) -> None:

@@ -121,10 +121,10 @@ class CatalogueActuator:
 
     @property
     def stiffness(self) -> float:
-        """Stiffness along the stroke [N/m]."""
+        """Stiffness along the stroke [N/m]; u'ku for an amplified actuator of free deformation u times its stroke."""
         if self.kind == "piezo":
             return float(self.part.stiffness)
-        return float(np.real(self.part.stiffness_matrix[0, 0]))
+        return float(self.part.free_deformation @ self.part.between @ self.part.free_deformation)
 
     @property
     def force(self) -> float:
