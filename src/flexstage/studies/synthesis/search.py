@@ -242,7 +242,7 @@ def front(
     if found.interrupted:
         raise KeyboardInterrupt
     unit = found.definition.objectives[1].measure.quantity.si
-    return tuple(FrontPoint(*each.objectives.values(), unit, each.variables) for each in found.front)
+    return tuple(FrontPoint(each.objectives["goal"], each.objectives["second"], unit, each.variables) for each in found.front)
 
 
 def _study(spec: Specification, pair: CandidatePair, goals: Sequence[tuple[str, str]], replaced: Mapping[str, str | None]) -> Study:
