@@ -87,7 +87,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("stroke", _ANALYSE, "Compute force, stiffness and frequencies over a stroke.", f"{_APPS}.displaced:stroke",
             'flexstage stroke stage.toml --drive platform.x --to "50 um" --steps 3'),
     Command("buckle", _ANALYSE, "Find the load at which the stage buckles.", f"{_APPS}.displaced:buckle",
-            'flexstage buckle stage.toml --scale-load "platform.fz=-100 kN" --post-buckling 3'),
+            'flexstage buckle stage.toml --scale-load "platform.fz=-100 kN"'),
     Command("misalign", _ANALYSE, "Compute loads of a misaligned, over-constrained stage.", f"{_APPS}.displaced:misalign",
             "flexstage misalign stage.toml --instance B4 --rotation y --steps 3"),
     Command("workspace", _ANALYSE, "Compute strokes, forces, clearances and safety.", f"{_APPS}.accuracy:workspace",
