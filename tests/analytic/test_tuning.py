@@ -127,7 +127,7 @@ def test_an_unstable_attempt_is_called_so(sampled):
     """Beyond the edge of stability the growth is said; where hold and delay take part, faster samples are advised."""
     with pytest.raises(DesignError, match=r"with PI is unstable: it grows by .* 1/s; .* is the highest found with PI") as error:
         tune(sampled, platform_loops(sampled.coordinates), TuningSpec(PI_FAMILY, 900.0, spread=0.0, automatic=False))
-    assert "hold and delay take 24 deg at 900 Hz" in str(error.value)  # 360 x 900 Hz x (50 + 25) us
+    assert "hold and delay cost 24 deg at 900 Hz" in str(error.value)  # 360 x 900 Hz x (50 + 25) us
 
 
 @pytest.mark.parametrize("name", ["xy-stage", "tip-tilt", pytest.param("tip-tilt-four", marks=pytest.mark.full), "bridge"])

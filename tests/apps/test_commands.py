@@ -98,7 +98,7 @@ def test_examples_run_and_their_tables_fit_a_terminal(
         write(tmp_path / "stack.csv", example_record())
     shown: list[Table] = []
     monkeypatch.setattr(answer, "to_rich", lambda table, width: [shown.append(table), *to_rich(table, width)][1:])
-    ended = flexstage(*words[1:], *(["--full"] if words[1] == "analyse" else []))
+    ended = flexstage(*words[1:], *{"analyse": ["--full"], "design": ["--architecture", "guide"]}.get(words[1], []))
     assert ended.code == 0, ended.err
     assert [(width, table.title, *found[:5]) for width in (60, 80, 100, 120) for table in shown if (found := broken(table, width))] == []
     assert ended.out or "Wrote" in ended.err

@@ -73,8 +73,8 @@ def test_the_loop_of_the_shipped_stage_is_closed_judged_and_told(flexstage: Comm
 def test_options_of_records_need_a_record_and_are_heard(guide: Command, tmp_path: Path) -> None:
     ended = guide("loop", "stage.toml", "--units", "S*=um", "--channels", "S")
     assert ended.code == 2
-    assert "--units: it is of records" in ended.err
-    assert "--channels: it is of records" in ended.err
+    assert "--units: needs a record" in ended.err
+    assert "--channels: needs a record" in ended.err
     write(tmp_path / "record.h5", one_mode_record())
     ended = guide("loop", "stage.toml", "--record", "record.h5", "--units", "=um", "--accept-fault", "everything")
     assert ended.code == 2

@@ -66,4 +66,4 @@ def test_where_a_drive_ends_that_is_not_told(flexstage: Command, two: Path) -> N
         found = json.loads((two / "found.json").read_text())["along"]
         assert [row[0] for row in found["values"]] == pytest.approx([0.0, end])
     ended = flexstage("stroke", "stage.toml", "--drive", "platform.fx")
-    assert (ended.code, "it is not said where platform.fx ends" in ended.err) == (2, True)
+    assert (ended.code, "the last value of platform.fx is missing" in ended.err) == (2, True)

@@ -241,14 +241,14 @@ def test_every_command_with_a_report_is_looked_at() -> None:
 @pytest.mark.usefixtures("undrawn")
 def test_the_warnings_of_designed_stages_are_counted_and_those_of_their_check(flexstage: Command, tmp_path: Path) -> None:
     (tmp_path / "spec.toml").write_text(SPECIFICATION)
-    ended = flexstage("design", "spec.toml", "-o", "answers", "--json", "out.json", "--report", "out.html")
+    ended = flexstage("design", "spec.toml", "-o", "answers", "--architecture", "guide", "--json", "out.json", "--report", "out.html")
     assert ended.code == 0, ended.err
     (answer,) = json.loads((tmp_path / "out.json").read_text())["answers"]
     assert any("platform: it is taken as rigid" in each for each in answer["warnings"])
     (line,) = (each.split() for each in ended.out.splitlines() if each.startswith(" 1 "))
     assert line[-1] == str(len(answer["warnings"]))
     assert "Warnings: number of those that flexstage check prints." in (tmp_path / "out.html").read_text(encoding="utf-8")
-    (design,) = (each for each in (tmp_path / "answers").iterdir() if not each.name.endswith(".study.toml"))
+    (design,) = (each for each in (tmp_path / "answers").iterdir() if each.suffix == ".toml" and each.suffixes == [".toml"])
     checked = [each.removeprefix("warning: ") for each in flexstage("check", str(design)).out.splitlines() if each.startswith("warning: ")]
     assert checked == answer["warnings"]
 

@@ -17,13 +17,13 @@ CEILINGS = {
     "models": 97_800,
     "analysis": 70_400,
     "show": 63_600,
-    "solid": 76_200,
+    "solid": 75_700,
     "experiment": 98_800,
     "control": 154_000,
     "studies": 63_600,
-    "apps": 38_000,
+    "apps": 37_900,
     ".": 400,
-    "all": 814_600,
+    "all": 814_000,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

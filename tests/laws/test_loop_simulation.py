@@ -249,7 +249,7 @@ def test_unstable_loops_are_told_with_the_time():
     [
         ({"reference": np.zeros((5, 2))}, r"reference: it is \(5, 2\)"),
         ({"reference": np.full((5, 6), np.nan)}, r"reference at index 0, 0: must be a finite number \(got nan\)"),
-        ({"named": {"ground.q": np.zeros(5)}}, r"ground\.q: unknown input of the loop\. Use ground\.z, ground\.y"),
+        ({"named": {"ground.q": np.zeros(5)}}, r"ground\.q: unknown input of the loop\. Use ground\.x, ground\.y"),
         ({"named": {"noise.S1": np.zeros(4)}}, r"noise.S1: wrong length \(got \(4,\), expected 5 samples"),
     ],
 )

@@ -407,7 +407,7 @@ def test_finite_elements_raise_the_limits_of_the_next_search(tmp_path: Path) -> 
         lumped = required_values(stage)
         return Estimate({"frequency.1": 0.8 * lumped["frequency.1"], "stroke.x": 0.9 * lumped["stroke.x"]}, {"frequency.1": 0.01})
 
-    answer = fs.design(spec, verify=verify, tolerance=FULL).best
+    answer = fs.design(spec, ("guide",), verify=verify, tolerance=FULL).best
     assert answer is not None
     assert answer.verified["frequency.1"] >= 1000.0 * (1.0 - 1e-9)
     assert answer.verified["stroke.x"] >= 20e-6 * (1.0 - 1e-9)
@@ -440,12 +440,12 @@ def test_large_displacements_reduce_the_stroke_as_the_force_that_holds_them_grow
 def test_results_of_pairs_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Resumed without a search: the same bytes; as by two processes."""
     spec = replace(loads_specification(SCANNER), actuators=ActuatorTable(like=("PSt 1000/10/150 VS18", "PSt 1000/16/200 VS25")), starts=1)
-    first = as_text(fs.design(spec, keep=tmp_path, how=Run(workers=2)))
+    first = as_text(fs.design(spec, ("carriages",), keep=tmp_path, how=Run(workers=2)))
     assert len(list(tmp_path.iterdir())) == 2
     monkeypatch.setattr(answers, "search", None)
-    assert as_text(fs.design(spec, keep=tmp_path, how=Run(workers=1, resume=True))) == first
+    assert as_text(fs.design(spec, ("carriages",), keep=tmp_path, how=Run(workers=1, resume=True))) == first
     monkeypatch.undo()
-    assert not FULL or as_text(fs.design(spec)) == first
+    assert not FULL or as_text(fs.design(spec, ("carriages",))) == first
 
 
 def test_an_interrupted_design_returns_its_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -458,14 +458,14 @@ def test_an_interrupted_design_returns_its_answers(tmp_path: Path, monkeypatch: 
         return real(spec, pair)
 
     monkeypatch.setattr(answers, "search", once)
-    found = fs.design(spec, keep=tmp_path)
+    found = fs.design(spec, ("carriages",), keep=tmp_path)
     assert found.interrupted
     assert len(found.answers) + len(found.failed) == 1
 
 
 def test_a_front_has_the_goal_at_its_first_end(tmp_path: Path) -> None:
     """Two goals: the answer maximises the first; along the front both fall, and no design of it breaks a requirement."""
-    found = fs.design(guide_specification('goals = { maximise = "frequency", minimise = "envelope.z" }'))
+    found = fs.design(guide_specification('goals = { maximise = "frequency", minimise = "envelope.z" }'), ("guide",))
     points = joint_front(found)
     assert found.best is not None
     assert points[0][1].goal == pytest.approx(found.best.goal, rel=2e-3)

@@ -145,7 +145,7 @@ def test_short_records_miss_modes_and_say_so(seconds: float) -> None:
     for seed in range(SEEDS):
         found = identify(record(truth(seed=1000 + seed), seed, seconds=seconds))
         if len(found.frequencies) < 6:
-            assert any("may be missing" in each or "Too few lines" in each for each in found.data_warnings)
+            assert any("may be missing" in each or "Too few frequency lines" in each for each in found.data_warnings)
             assert any(f"{seconds:g} s" in each for each in found.data_warnings)
 
 
@@ -177,7 +177,7 @@ def test_what_noise_hides_is_told_in_numbers() -> None:
     alone = changed(
         values, lambda each: each.__setitem__((slice(None), slice(6, 12)), np.random.default_rng(3).standard_normal((len(each), 6)))
     )
-    assert "narrower than the 1.2 Hz between lines" in identify(alone).data_warnings[0]
+    assert "narrower than the 1.2 Hz between frequency lines" in identify(alone).data_warnings[0]
     assert "although inputs explain" not in identify(alone).data_warnings[0]
     assert "no mode can be identified, although inputs explain 39.5%" in identify(record(truth(), 0, seconds=1.0)).data_warnings[0]
 

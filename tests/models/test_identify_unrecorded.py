@@ -107,7 +107,7 @@ def test_two_free_decays_tell_both_modes_of_a_pair_and_one_says_that_there_may_b
 
 def test_what_moved_the_stage_is_never_guessed() -> None:
     made = floor_record(PAIR, 20.0, 1)
-    with pytest.raises(DesignError, match="or say what else moved the stage"):
+    with pytest.raises(DesignError, match="or specify the excitation"):
         usable_measurement([made])
     driven = Record((Channel("u", "um", Role.INPUT), *made.channels[1:]), made.rate, made.samples)
     with pytest.raises(DesignError, match="u: taken for inputs, where none is said to have been recorded"):

@@ -119,7 +119,7 @@ kind = "steps"
     assert told[0].startswith("loop.toml:2: rate: unit missing (got 5000)")
     assert told[1].startswith("loop.toml:3: seed: must be a whole number (got 1.5)")
     assert any(each.startswith('loop.toml:6: controller.kind: unknown value (got "pidd")') for each in told)
-    assert any(":8: controller.notches: frequency missing" in each for each in told)
+    assert any(":8: controller.notches.1: frequency missing" in each for each in told)
     assert any(each.startswith('loop.toml:11: trajectory.kind: unknown kind (got "steps"). Use step') for each in told)
     assert any(each.startswith("loop.toml:12: gages: unknown key. Use gauges") for each in told)
 

@@ -475,12 +475,12 @@ export interface Welcome {
 }
 
 /**
- * The text and its contents; pushed at every change. `digest` is that of the file on disk.
+ * The text and its contents; pushed at every change. `digest` belongs to the file on disk.
  *
- * `sound`: the design has no error. If not, `problems` list them; for errors of the text, numbers and figures are those of the last
- * text without. `changed` counts numbers that differ from the file's, `warnings` are the last reported ones, `page` is the one whose
- * request made the change (0: the server), `pins` the pinned designs. `links` are those of the expanded stage, with the line of each.
- * `unprotected` is the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
+ * `sound`: the design has no error, otherwise `problems` lists the errors. If the text has errors, numbers and figures belong to the
+ * last text without errors. `changed` counts numbers that differ from the file's, `warnings` are the last reported ones, `page` is the
+ * one whose request made the change (0: the server), `pins` the pinned designs. `links` belong to the expanded stage, with the line of
+ * each. `unprotected` is the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
  */
 export interface State {
   kind: "state";

@@ -415,7 +415,7 @@ def pierce(solids: Mapping[str, PlacedSolid]) -> dict[str, PlacedSolid]:
     >>> plate, bolt = Block("steel", (0.1, 0.1, 0.01)), Cylinder("steel", 0.005, 0.02, subtract=True)
     >>> placed = {"plate": PlacedSolid(plate, plate.frame), "bolt": PlacedSolid(bolt, bolt.frame)}
     >>> [type(each.solid).__name__ for each in pierce(placed).values()]
-    ['Pierced']
+    ['SolidWithHoles']
     """
     holes = [item for item in solids.values() if item.solid.subtract]
     return {name: _pierced(item, holes) for name, item in solids.items() if not item.solid.subtract}

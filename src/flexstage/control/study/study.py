@@ -245,6 +245,7 @@ def loop_study(
     )
 
 
+@check_arguments
 def sensitivity_crossover(mechanism: Mechanism) -> float | None:
     """Return the lowest sensitivity crossover [Hz] of all coordinates with the default controller. Raises as `loop_study` does.
 

@@ -234,6 +234,7 @@ def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
     )
 
 
+@check_arguments
 def required_values(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Estimate:
     """Compute the values of a stage's requirements by finite elements, with estimated errors. Unknown ones are left out.
 

@@ -22,7 +22,7 @@ def answer_report(found: Answers) -> str:
     """Write the answers as an HTML page: tables, frequencies below their bounds, a picture of each stage.
 
     >>> from flexstage.studies.synthesis.specification import example
-    >>> "No stage keeps" in answer_report(Answers(example(), (), (), ()))
+    >>> "No stage meets" in answer_report(Answers(example(), (), (), ()))
     True
     """
     tables = list(answer_tables(found))
