@@ -251,7 +251,7 @@ def test_interruption_is_told(flexstage: Command, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(analyses, "platform_modes", interrupted)
     ended = flexstage("modes", "stage.toml")
     assert ended.code == 130
-    assert ended.err.startswith("Interrupted; nothing was written.")
+    assert ended.err.startswith("Interrupted. Nothing was written.")
 
 
 def test_leaving_runs_what_is_registered_for_the_end_and_keeps_the_code() -> None:

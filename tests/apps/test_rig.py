@@ -130,6 +130,6 @@ def test_an_interrupted_test_leaves_nothing(flexstage: Command, tmp_path: Path, 
     monkeypatch.setattr(Simulated, "_compute_block", interrupted)
     ended = flexstage("rig", "stage.toml", "--seconds", "60", "--model", "mapped", "-o", name)
     assert ended.code == 130
-    assert ended.err.startswith("Interrupted; nothing was written.")
+    assert ended.err.startswith("Interrupted. Nothing was written.")
     assert (tmp_path / name).read_text() == "old"
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([name, "stage.toml"])

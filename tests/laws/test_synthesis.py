@@ -15,7 +15,7 @@ import pytest
 import flexstage as fs
 from flexstage.analysis.assessment.judge import Estimate, bench_of, required_values
 from flexstage.analysis.assessment.requirements import measure
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, Finding
 from flexstage.base.storage.document import as_text
 from flexstage.mechanism.addresses.address import set_value
 from flexstage.mechanism.geometry.contact import contact_findings
@@ -23,7 +23,7 @@ from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.synthesis import answers, bounds
 from flexstage.studies.synthesis.answers import design, joint_front
 from flexstage.studies.synthesis.architecture import architectures, catalogue_actuators, draw, scope, variables
-from flexstage.studies.synthesis.corrections import displaced_values
+from flexstage.studies.synthesis.corrections import displaced_values, missed_limits
 from flexstage.studies.synthesis.pairs import CandidatePair, shortfalls
 from flexstage.studies.synthesis.search import Answer, FailedPair, search
 from flexstage.studies.synthesis.show.report import answer_report
@@ -412,12 +412,47 @@ def test_finite_elements_raise_the_limits_of_the_next_search(tmp_path: Path) -> 
     assert answer.verified["frequency.1"] >= 1000.0 * (1.0 - 1e-9)
     assert answer.verified["stroke.x"] >= 20e-6 * (1.0 - 1e-9)
     assert answer.values["frequency.1"] >= 1250.0 * (1.0 - 1e-9)
-    assert answer.rounds == len(tried) == 2
+    assert (answer.rounds, len(tried)) == (3, 2)  # the first two searches for elastic bodies
     assert answer.errors == {"frequency.1": 0.01}
     assert 'frequency.1" = "at least 1 kHz"' in answer.design
     assert not FULL or 0.0 < (answer.manufactured or 0.0) < 1.0
     (tmp_path / "stage.toml").write_text(answer.design)
     assert "frequency.1" in {each.key for each in loads_tolerance(answer.scatter, folder=tmp_path).limits}
+
+
+def test_an_answer_that_cannot_be_verified_says_why() -> None:
+    def verify(stage: fs.Mechanism) -> Estimate:
+        raise DesignError([Finding(stage.name, "no mesh", "Thicken it")])
+
+    found = fs.design(guide_specification(), ("guide",), verify=verify)
+    assert found.best is not None
+    assert not found.best.verified
+    assert any("is not verified: scanner" in note for note in next(iter(answer_tables(found))).notes)
+
+
+def coil_stage(folder: Path) -> fs.Mechanism:
+    """A stage with a required safety at its strokes."""
+    spec = specification("folded", folder)
+    return fs.loads(draw(architectures()["folded"], spec, catalogue_actuators(spec)["voice_coil"][0]), checked=False)
+
+
+def test_corrected_limits_of_strokes_and_stresses(tmp_path: Path) -> None:
+    """A stroke that is 20 % shorter is required 25 % longer: there the stress is 25 % higher, which the limit of its safety allows."""
+    stage = coil_stage(tmp_path)
+    drawn = {"stroke.x": 0.5e-3, "safety.at_strokes": 2.0, "frequency.1": 20.0}
+    better = {"stroke.x": 0.8 * drawn["stroke.x"], "safety.at_strokes": 2.2, "frequency.1": 25.0}
+    limits = missed_limits(stage, drawn, (better,))
+    assert {key: float(text.split()[2]) for key, text in limits.items()} == pytest.approx({"stroke.x": 625.0, "safety.at_strokes": 1.6})
+    weaker = missed_limits(stage, drawn, ({**better, "safety.at_strokes": 1.0},))
+    assert float(weaker["safety.at_strokes"].split()[2]) == pytest.approx(3.2)
+    assert missed_limits(stage, drawn, ({"stroke.x": 0.5e-3}, {"stroke.x": 0.6e-3})) == {}
+
+
+def test_a_requirement_without_a_value_is_not_met(tmp_path: Path) -> None:
+    stage = replace(coil_stage(tmp_path), requirements={"loss": "at most 1 %"})
+    assert missed_limits(stage, {"loss": 0.0}, ({"loss": 0.005},)) == {}
+    with pytest.raises(DesignError, match="zero with rigid bodies only"):
+        missed_limits(stage, {"loss": 0.0}, ({"loss": 0.02},))
 
 
 def test_large_displacements_reduce_the_stroke_as_the_force_that_holds_them_grows(tmp_path: Path) -> None:

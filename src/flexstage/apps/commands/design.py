@@ -65,7 +65,7 @@ def design(
     if output is not None and found.answers:
         _write(found, output)
     if found.interrupted:
-        raise KeyboardInterrupt
+        raise KeyboardInterrupt(*["The answers so far were written."] if output is not None and found.answers else [])
     tables, page = lambda: answer_tables(found), partial(answer_report, found)
     return CommandResult(None, lambda: found, tables, page, Model.LUMPED, failed=found.best is None)
 
@@ -76,4 +76,4 @@ def _write(found: Answers, folder: Path) -> None:
         write(folder / f"{name}.toml", answer.design, "--output")
         for ending, study in (("study", answer.study), ("tolerance", answer.scatter)):
             write(folder / f"{name}.{ending}.toml", study.replace(f'"{DESIGN}"', f'"{name}.toml"'), "--output")
-    announce(f"Wrote {len(found.answers)} design files, each with a study and a tolerance study, in {folder}")
+    announce(f"Wrote {len(found.answers)} design file(s) in {folder}, each with a study and a tolerance study")

@@ -83,7 +83,7 @@ def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...]
     except KeyboardInterrupt:
         best = _best_of(spec, plain, found)
         reason = "none" if begun is None else begun.reason if best is None else best.tuning.reason
-        raise KeyboardInterrupt(f"The best controller so far: {reason}.") from None
+        raise KeyboardInterrupt(f"Nothing was written. The best controller so far: {reason}.") from None
     best = _best_of(spec, plain, found)
     if best is None and begun is not None and not any((spec.rejection, spec.settling, spec.delay_margin)):
         return replace(begun, reason=f"{begun.reason}; none stable with modes up to {100.0 * farthest(spec):g} % off was found")

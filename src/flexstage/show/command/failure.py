@@ -23,7 +23,7 @@ ENDINGS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasat
 _DISKS = {getattr(errno, name, None) for name in ("ENAMETOOLONG", "EACCES", "EPERM", "ENOTDIR", "ELOOP", "EROFS", "EIO", "ENOSPC")}
 _DEBUG = "FLEXSTAGE_DEBUG"
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-_KEPT = "Kept are only finished finite elements, in the cache, and designs of a study, in its results file (--resume)."
+_KEPT = "Kept: finished finite elements (cache), designs of a study (results file) and pairs of a specification (folder); see --resume."
 
 
 def run_guarded(action: Callable[[], object]) -> int:
@@ -80,7 +80,7 @@ def _run_and_flush(action: Callable[[], object]) -> None:
 def _interrupted(interruption: BaseException | None) -> int:
     """The exit code; an interruption may name the best result so far."""
     best = f"{interruption} " if isinstance(interruption, KeyboardInterrupt) and interruption.args else ""
-    print_note(f"Interrupted; nothing was written. {best}{_KEPT}")
+    print_note(f"Interrupted. {best or 'Nothing was written. '}{_KEPT}")
     return INTERRUPTED
 
 

@@ -168,6 +168,6 @@ Report: TypeAlias = Annotated[Path | None, text_option("--report", "FILE", "HTML
 
 Study: TypeAlias = Annotated[Path, typer.Argument(help="File of the study (TOML).", metavar="STUDY.TOML", show_default=False)]
 
-Resume: TypeAlias = Annotated[bool, typer.Option("--resume", help="Continuation of an incomplete results file.")]
+Resume: TypeAlias = Annotated[bool, typer.Option("--resume", help="Continuation of an interrupted run from its kept results.")]
 
 Workers: TypeAlias = Annotated[int | None, text_option("--workers", "N", "Number of processes. Default: one per core.")]

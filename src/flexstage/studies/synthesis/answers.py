@@ -102,12 +102,8 @@ def design(
     try:
         for pair, result in _searched(store, open_pairs, progress, cores() if how.workers is None else how.workers):
             found[pair.name] = result
-        if verify is not None:
-            found |= _verified(store, open_pairs, found, verify, progress)
-        if tolerance:
-            found |= _extended(store, open_pairs, found, ("manufactured", manufacturing_yield), progress)
-        if close_loop is not None:
-            found |= _extended(store, open_pairs, found, ("crossover", lambda answer: close_loop(answer.stage)), progress)
+        for name, compute in _steps(specification, verify, close_loop, tolerance=tolerance):
+            _extend(store, open_pairs, found, (name, compute), progress)
         if not any(isinstance(each, Answer) for each in found.values()):
             found |= _relaxed(store, open_pairs, found, progress)
     except KeyboardInterrupt:
@@ -202,49 +198,34 @@ def _notify(progress: Progress | None, subject: str) -> Callable[[float, str], N
     return lambda share, text: None if progress is None else progress(f"{subject}: {text}", share)
 
 
-def _verified(
-    store: _Store,
-    pairs: Sequence[CandidatePair],
-    found: Mapping[str, Answer | FailedPair],
-    verify: Estimator,
-    progress: Progress | None,
-) -> dict[str, Answer | FailedPair]:
-    """The first answers by finite elements. Where one of them falls behind or fails, the next is verified too."""
-    by_name, done = {pair.name: pair for pair in pairs}, dict[str, Answer | FailedPair]()
-    while True:
-        first = _ranked(store.specification, {**found, **done})[:FIRST]
-        names = [f"{each.architecture} with {each.actuator}" for each in first]
-        name = next((each for each in names if each not in done), None)
-        if name is None:
-            return done
-        pair, answer = by_name[name], {**found, **done}[name]
-        assert isinstance(answer, Answer)  # noqa: S101  it is among the ranked ones
-        said = partial(_notify(progress, name), len(done) / FIRST)
-        kept = store.kept(pair, "verified")
-        said("finite elements")
-        done[name] = kept or store.put(pair, "verified", search(store.specification, pair, said, answer=answer, verify=verify))
+_Step = tuple[str, Callable[[CandidatePair, Answer, Callable[[str], None]], Answer | FailedPair]]
+"""A computation for an answer of a pair, and its name."""
 
 
-def _extended(
-    store: _Store,
-    pairs: Sequence[CandidatePair],
-    found: Mapping[str, Answer | FailedPair],
-    more: tuple[str, Callable[[Answer], float | None]],
-    progress: Progress | None,
-) -> dict[str, Answer | FailedPair]:
-    """The first answers with one more result, its field and function."""
-    field, compute = more
-    by_name, done = {pair.name: pair for pair in pairs}, dict[str, Answer | FailedPair]()
-    for number, answer in enumerate(_ranked(store.specification, found)[:FIRST]):
-        name = f"{answer.architecture} with {answer.actuator}"
-        _notify(progress, name)(number / FIRST, field)
-        what = f"{field} of {digest(answer.design)}"
-        kept = store.kept(by_name[name], what)
-        if isinstance(kept, Answer):
-            done[name] = replace(answer, **{field: getattr(kept, field)}, warnings=kept.warnings)
-        else:
-            done[name] = store.put(by_name[name], what, _with(answer, field, compute))
-    return done
+def _steps(
+    spec: Specification, verify: Estimator | None, close_loop: Callable[[Mechanism], float | None] | None, *, tolerance: bool
+) -> Iterator[_Step]:
+    """The computations for the first answers."""
+    if verify is not None:
+        yield "finite elements", lambda pair, answer, said: search(spec, pair, said, answer=answer, verify=verify)
+    if tolerance:
+        yield "yield", lambda _pair, answer, _said: _with(answer, "manufactured", manufacturing_yield)
+    if close_loop is not None:
+        yield "loop", lambda _pair, answer, _said: _with(answer, "crossover", lambda each: close_loop(each.stage))
+
+
+def _extend(
+    store: _Store, pairs: Sequence[CandidatePair], found: dict[str, Answer | FailedPair], step: _Step, progress: Progress | None
+) -> None:
+    """Compute a step of the first answers. Where one of them falls behind or fails, the next one is computed too."""
+    (name, compute), by_name, done = step, {pair.name: pair for pair in pairs}, set[str]()
+    while left := [each for each in _ranked(store.specification, found)[:FIRST] if each.pair not in done]:
+        answer, pair = left[0], by_name[left[0].pair]
+        said = partial(_notify(progress, pair.name), len(done) / FIRST)
+        said(name)
+        what = f"{name} of {digest(dataclasses.asdict(answer))}"
+        found[pair.name] = store.kept(pair, what) or store.put(pair, what, compute(pair, answer, said))
+        done.add(pair.name)
 
 
 def _with(answer: Answer, field: str, compute: Callable[[Answer], float | None]) -> Answer:

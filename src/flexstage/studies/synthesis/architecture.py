@@ -6,6 +6,7 @@ import functools
 import json
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from importlib import resources
 from types import MappingProxyType
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexstage.base.finding import refuse
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.lazy import LazyModule
 from flexstage.base.number import Array
 from flexstage.base.units.dimension import dimension_of
@@ -21,9 +22,11 @@ from flexstage.base.units.expression import Amount, evaluate, parse_expression
 from flexstage.base.units.quantity import Quantity
 from flexstage.base.units.unit import quantity_of_dimension, show
 from flexstage.mechanism.catalogue import shipped_catalogue
+from flexstage.mechanism.store import loads
 from flexstage.mechanism.store.decode import catalogue_of, mechanism_from
 from flexstage.spatial.frame import COMPONENTS
 from flexstage.studies.synthesis.specification import FREQUENCY_KEYS, Specification
+from flexstage.studies.tolerances.reach import reach
 
 if TYPE_CHECKING:
     import tomlkit
@@ -376,7 +379,10 @@ def tolerance_text(architecture: Architecture, spec: Specification, actuator: Ca
     lines = ['format = "flexstage study 1"', f"name = {json.dumps(spec.name)}", f'design = "{DESIGN}"', ""]
     lines += ["[tolerance]", "requirements = false", "crosstalk = false", f"copies = {_COPIES}", f"seed = {spec.seed}", "", "[limits]"]
     lines += [f"{json.dumps(key)} = {json.dumps(text)}" for key, text in limits.items() if not key.startswith("numbers.")]
-    lines += ["", "[scatter]", f'hinges = {{ address = "hinges.thickness", {spread}, independent = true }}']
+    lines += ["", "[scatter]"]
+    with suppress(DesignError):  # no hinges
+        reach(loads(architecture.text, checked=False), "hinges.thickness")
+        lines.append(f'hinges = {{ address = "hinges.thickness", {spread}, independent = true }}')
     lengths = [each.name for each in variables(architecture, scope(architecture, spec, actuator)) if each.quantity.si != "rad"]
     return "\n".join([*lines, *(f'{name} = {{ address = "numbers.{name}", {spread} }}' for name in lengths), ""])
 

@@ -70,6 +70,8 @@ def displaced_values(stage: Mechanism) -> Estimate:
             found[line.key] = float(np.min(of.limit / np.max(of.stress, axis=0), initial=np.inf))
         elif line.kind is stroke:
             found[line.key] = float(np.real(line.kind.value(bench, line))) * reached.ratio
+    if unknown := [key for key, value in found.items() if np.isnan(value)]:
+        raise refuse(unknown[0], "it has no value at the corners of the required displacements", "Reduce the displacements")
     return Estimate({key: value for key, value in found.items() if np.isfinite(value)})
 
 
@@ -113,7 +115,7 @@ def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Ma
     """Return the limits with which the lumped model keeps the requirements also by the better ones; empty if it does already.
 
     Each value changes by the ratios of the better models to the lumped one (space mapping): a limit becomes limit / ratio where that is
-    stricter.
+    stricter. Raises `DesignError` if a missed one has no such ratio.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> drawn = required_values(parallelogram())
@@ -121,6 +123,9 @@ def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Ma
     {'frequency.platform.1': 'at least 2000 Hz'}
     """
     lines = {line.key: line for line in requirements(stage) if line.key in drawn}
+    for key, line in lines.items():
+        if not drawn[key] and not all(Verdict(line, np.asarray(each.get(key, 0.0))).passed for each in better):
+            raise refuse(key, "it is zero with rigid bodies only: no limit of the lumped model meets the requirement", "Relax it")
     ratios = {key: float(np.prod([each[key] / drawn[key] for each in better if key in each])) for key in lines if drawn[key]}
     if all(Verdict(lines[key], np.asarray(drawn[key] * ratio)).passed for key, ratio in ratios.items()):
         return {}

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
 
-from flexstage.analysis.assessment.judge import Estimate, required_values
+from flexstage.analysis.assessment.judge import required_values
 from flexstage.analysis.assessment.requirements import Sense, requirement, requirements
 from flexstage.analysis.caveats import check
-from flexstage.base.finding import DesignError
+from flexstage.base.finding import DesignError, refuse
 from flexstage.base.record import INNER, Heading
 from flexstage.base.units.quantity import FREQUENCY, RATIO
 from flexstage.mechanism.mechanism import Mechanism
@@ -82,7 +83,7 @@ class Answer:
 
     `values` are those of the lumped model, `elastic` those with elastic bodies, estimated from their outlines, `displaced` the worst at the
     corners of the displacements, where these are large. `verified` are those of finite elements with their estimated relative `errors`,
-    if requested; `unverified` is the reason without them. `rounds` is the number of searches until all these kept the requirements.
+    if requested; `unverified` is the reason without them. `rounds` is the number of searches until all these met the requirements.
 
     `manufactured` is the yield: the share of stages with scatter of dimensions that keep all requirements, lumped, if requested.
     `crossover` is the lowest sensitivity crossover of its control loop with the default controller, if requested.
@@ -122,6 +123,11 @@ class Answer:
         return loads(self.design)
 
     @property
+    def pair(self) -> Annotated[str, INNER]:
+        """Name of its pair: architecture and actuator."""
+        return f"{self.architecture} with {self.actuator}"
+
+    @property
     def file(self) -> str:
         """Name of its files, without ending."""
         sign = "".join(each if each.isalnum() else "-" for each in self.actuator.lower()).strip("-")
@@ -148,22 +154,19 @@ def search(
     'carriages'
     """
     names = (pair.architecture.name, pair.actuator.name)
-    limits, known = dict[str, str](), answer
-    for rounds in range(1, _ROUNDS + 1):
-        if known is None:
-            found = optimum(spec, pair, specified_goals(pair.architecture, spec)[0], limits, progress)
-            if isinstance(found, str):
-                return FailedPair(*names, None, {}, found)
-            if found.final is None:
-                return _failed(spec, pair, found, limits)
-            known = _answer(spec, pair, found, limits)
+    limits, known, searches = dict[str, str](), answer, 0 if answer is None else answer.rounds
+    for _ in range(_ROUNDS):
         try:
-            known = _estimated(replace(known, rounds=rounds), spec, pair, verify)
+            if known is None:
+                searches += 1
+                found = optimum(spec, pair, specified_goals(pair.architecture, spec)[0], limits, progress)
+                if found.final is None:
+                    return _failed(spec, pair, found, limits)
+                known = replace(_answer(spec, pair, found, limits), rounds=searches)
+            known = _estimated(known, spec, pair, verify)
+            missed = missed_limits(known.stage, known.values, ({**known.elastic, **known.verified}, known.displaced))
         except DesignError as error:
-            if verify is not None:
-                return replace(known, unverified=str(error))
             return FailedPair(*names, None, {}, str(error))
-        missed = missed_limits(known.stage, known.values, ({**known.elastic, **known.verified}, known.displaced))
         if not missed:
             return known if known.front or spec.second_goal is None else replace(known, front=front(spec, pair, limits, progress))
         limits, known = missed, None
@@ -175,14 +178,22 @@ def _models(verify: Estimator | None) -> str:
 
 
 def _estimated(answer: Answer, spec: Specification, pair: CandidatePair, verify: Estimator | None) -> Answer:
-    """The answer with values of better models."""
+    """The answer with values of better models; all requirements are known with elastic bodies."""
     stage = answer.stage
     travel = max((value for axis, value in spec.displacements.items() if axis in "xyz"), default=0.0)
     large = pair.actuator.kind == "voice_coil" or travel > _LARGE * spec.make.thinnest
-    displaced = displaced_values(stage) if large else Estimate({})
-    elastic = Estimate(answer.elastic) if verify is not None and answer.elastic else elastic_values(stage)
-    verified = Estimate({}) if verify is None else verify(stage)
-    return replace(answer, elastic=elastic.values, displaced=displaced.values, verified=verified.values, errors=verified.errors)
+    elastic = answer.elastic or elastic_values(stage).values
+    if unknown := [key for key in stage.requirements if key not in elastic]:
+        raise refuse(unknown[0], "it has no value with elastic bodies", "Leave the requirement out")
+    displaced = answer.displaced or (displaced_values(stage).values if large else {})
+    answer = replace(answer, elastic=elastic, displaced=displaced)
+    if verify is None:
+        return answer
+    try:
+        verified = verify(stage)
+    except DesignError as error:
+        return replace(answer, unverified=str(error))
+    return replace(answer, verified=verified.values, errors=verified.errors)
 
 
 def manufacturing_yield(answer: Answer) -> float | None:
@@ -209,10 +220,11 @@ def relaxations(
         done |= group
         line = lines[key]
         goal = ("maximise" if line.sense is Sense.AT_LEAST else "minimise", key)
-        found = optimum(spec, pair, goal, {**failed.corrected, **dict.fromkeys(group)}, progress)
-        if isinstance(found, Optimum) and found.final is not None:
-            raised = requirement(stage, key, failed.corrected.get(key, line.text), key).limit
-            yield Relaxation(key, line.text, float(found.final.values[0]) * line.limit / raised, line.quantity.si)
+        with suppress(DesignError):
+            found = optimum(spec, pair, goal, {**failed.corrected, **dict.fromkeys(group)}, progress)
+            if found.final is not None:
+                raised = requirement(stage, key, failed.corrected.get(key, line.text), key).limit
+                yield Relaxation(key, line.text, float(found.final.values[0]) * line.limit / raised, line.quantity.si)
 
 
 def optimum(
@@ -221,13 +233,10 @@ def optimum(
     goal: tuple[str, str],
     replaced: Mapping[str, str | None],
     progress: Callable[[str], None] | None = None,
-) -> Optimum | str:
-    """The optimum of a pair for a goal with some requirements `replaced`; the reason where it cannot be drawn or analysed."""
-    try:
-        study = _study(spec, pair, [goal], replaced)
-        found = optimise(study, load_optimisation(study), progress)
-    except DesignError as error:
-        return str(error)
+) -> Optimum:
+    """The optimum of a pair for a goal with some requirements `replaced`. Raises `DesignError` where it cannot be drawn or analysed."""
+    study = _study(spec, pair, [goal], replaced)
+    found = optimise(study, load_optimisation(study), progress)
     if found.interrupted:
         raise KeyboardInterrupt
     return found

@@ -26,21 +26,22 @@ def answer_report(found: Answers) -> str:
     True
     """
     tables = list(answer_tables(found))
+    points = joint_front(found)
+    excluded = tables[2:] if points else tables[1:]
     bounded = [(each, each.efficiency) for each in found.answers if each.efficiency]
     caption = "frequency and width of the answers"
     picture = Picture(to_svg(bound_figure(bounded), "bound", caption), _BOUND) if bounded else None
-    if points := joint_front(found):
-        extra = Picture(to_svg(front_figure(found, points), "front", "front of both goals"), "Front of both goals.")
-    else:
-        extra = None
+    fronts: list[Any] = []
+    if points:
+        fronts = [tables[1], Picture(to_svg(front_figure(found, points), "front", "front of both goals"), "Front of both goals.")]
     stages = [_picture(each, number) for number, each in enumerate(found.answers, 1)]
     count = len(found.answers)
     said = Headline(f"{count} stage{'' if count == 1 else 's'} meet{'s' if count == 1 else ''} the specification.", count > 0)
     sections = [
         section("Answers", [tables[0], picture]),
-        section("Front", [extra]),
+        section("Front", fronts),
         section("Stages", [BlockRow(tuple(stages[place : place + 2])) for place in range(0, count, 2)]),
-        section("Excluded pairs", tables[1:]),
+        section("Excluded pairs", excluded),
     ]
     head = Head(found.specification.name, "Answers to a specification", (("flexstage", __version__),), said)
     return page(head, [each for each in sections if each is not None])

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
-from flexstage.base.units.quantity import LENGTH, Quantity
+from flexstage.base.units.quantity import Quantity
 from flexstage.base.units.unit import show
 from flexstage.show.display import format_value
 from flexstage.show.table import Cell, Column, Mark, Table, make_table
@@ -55,42 +56,64 @@ def _answer_table(found: Answers) -> Table:
     if not found.answers:
         counts = [("failed", str(len(found.failed))), ("impossible", str(len(found.impossible)))]
         return make_table(f'No stage meets the specification "{spec.name}"', ["pairs", Column("number")], counts)
-    rows = [(str(number), *_answer_cells(each)) for number, each in enumerate(found.answers, 1)]
-    numbers = map(Column, (f"{key}, {way}d", "elastic bodies", "finite elements", "yield", "loop", "size", "efficiency"))
+    more = [each for each in _MORE if any(each.cell(answer) is not None for answer in found.answers)]
+    rows = [(str(number), *_answer_cells(each, more)) for number, each in enumerate(found.answers, 1)]
+    numbers = map(Column, (f"{key}, {way}d", "elastic bodies", *(each.heading for each in more), "size", "efficiency"))
     columns = ["", "architecture", "actuator", *numbers, "active requirements", "warnings"]
     notes = [
         "Efficiency: stroke energy that the first frequency needs for the payload alone, over that of the actuators; at most 100 %.",
         "Warnings: number of those that flexstage check prints.",
         "Elastic bodies: the required frequency with the flexibility of bodies, estimated from their outlines.",
-        "Finite elements: the required frequency, all requirements kept; - not verified. Verify the first answers with --prove.",
-        f"Yield: share of stages that keep all requirements with dimensions within +-{_length(spec.make.tolerance)}; see --tolerance.",
-        "Loop: lowest sensitivity crossover with the default controller and assumed sensors; see --loop.",
-        *(f"{each.architecture} with {each.actuator} is not verified: {each.unverified}." for each in found.answers if each.unverified),
+        *(each.note for each in more),
+        *(f"{each.pair} is not verified: {each.unverified}." for each in found.answers if each.unverified),
     ]
     return make_table(f'Stages for "{spec.name}"', columns, rows, notes=notes)
 
 
-def _answer_cells(answer: Answer) -> tuple[str | Cell, ...]:
+def _answer_cells(answer: Answer, more: Sequence[_Extra]) -> tuple[str | Cell, ...]:
     size = " x ".join(f"{1e3 * answer.values[f'envelope.{axis}']:.0f}" for axis in "xyz")
     used = "-" if answer.efficiency is None else f"{100.0 * answer.efficiency:.0f} %"
-    goals = (format_value(answer.goal, answer.unit, _DIGITS), _frequency(answer.elastic), _frequency(answer.verified))
-    made = "-" if answer.manufactured is None else f"{100.0 * answer.manufactured:.0f} %"
-    loop = "-" if answer.crossover is None else format_value(answer.crossover, "Hz", 3)
+    goals = (format_value(answer.goal, answer.unit, _DIGITS), _frequency(answer.elastic) or "-")
     active, warnings = ", ".join(answer.active), str(len(answer.warnings))
-    return Cell(answer.architecture, Mark.STRONG), answer.actuator, *goals, made, loop, f"{size} mm", used, active, warnings
+    extra = (each.cell(answer) or "-" for each in more)
+    return Cell(answer.architecture, Mark.STRONG), answer.actuator, *goals, *extra, f"{size} mm", used, active, warnings
+
+
+@dataclass(frozen=True)
+class _Extra:
+    """A column of results that are computed on request, its note, and the cell of an answer, if it has one."""
+
+    heading: str
+    note: str
+    cell: Callable[[Answer], str | None]
+
+
+_MORE = (
+    _Extra(
+        "finite elements",
+        "Finite elements: the required frequency; all requirements are met. -: not verified.",
+        lambda answer: _frequency(answer.verified),
+    ),
+    _Extra(
+        "yield",
+        "Yield: share of stages that meet all requirements when dimensions vary within the tolerance of the specification.",
+        lambda answer: None if answer.manufactured is None else f"{100.0 * answer.manufactured:.0f} %",
+    ),
+    _Extra(
+        "loop",
+        "Loop: lowest sensitivity crossover with the default controller and assumed sensors.",
+        lambda answer: None if answer.crossover is None else format_value(answer.crossover, "Hz", 3),
+    ),
+)
 
 
 def _front_cells(answer: Answer, point: FrontPoint) -> tuple[str, str]:
     return format_value(point.goal, answer.unit, _DIGITS), format_value(point.second, point.unit, _DIGITS)
 
 
-def _frequency(values: Mapping[str, float]) -> str:
+def _frequency(values: Mapping[str, float]) -> str | None:
     found = next((value for key, value in values.items() if key in ("frequency.1", "frequency.unwanted")), None)
-    return "-" if found is None else format_value(found, "Hz", _DIGITS)
-
-
-def _length(value: float) -> str:
-    return show(value, LENGTH, digits=3)
+    return None if found is None else format_value(found, "Hz", _DIGITS)
 
 
 def _violation(pair: FailedPair) -> str:
