@@ -17,7 +17,7 @@ from flexstage.parts.part import Part, inner, strut_of
 from flexstage.parts.shape import Shaped
 
 ENDS = 12
-_SLENDER, _STOUT = (8, 8, 8), (0, 2, 2)
+_SLENDER, _STOUT = (12, 12, 12), (0, 2, 2)
 """Numbers of inner shapes of twist about x and of bending about y and z: for leaves and rods; for all other parts."""
 _CROSS = np.zeros((3, 3, 3))
 _CROSS[[0, 1, 2], [1, 2, 0], [2, 0, 1]], _CROSS[[0, 1, 2], [2, 0, 1], [1, 2, 0]] = 1.0, -1.0
@@ -139,8 +139,8 @@ def _shapes(beam: Beam, inner: tuple[int, int, int]) -> tuple[Array, Array, Arra
     Bending by both ends is f (a + b x) with f the flexibility, twist is f a. The inner shapes f p(x) move no end: p are the next
     polynomials orthogonal to the former under f.
 
-    Their error is 1e-4 for column loads. For lateral buckling, in which bending in two planes and twist are coupled, it is 1 %, mostly
-    1e-3. Without inner shapes columns are wrong by 1 % if one end is guided, by 20 % if both ends are pinned.
+    Their error is 1e-4 for column loads. For lateral buckling, in which bending in two planes and twist are coupled, it is 5e-3, mostly
+    1e-4. Without inner shapes columns are wrong by 1 % if one end is guided, by 20 % if both ends are pinned.
     """
     points = beam.points
     half = points.position

@@ -199,7 +199,8 @@ def step_along(loading: ProportionalLoading, last: Point, length: float) -> Poin
             if not isinstance(system.matrix, np.ndarray):
                 pose = walk_tree(model, pose, loading.at(factor + change)[0])
             factor, scaled = factor + change, scaled + (scale * step if iteration else 0.0)
-            if iteration and max(size, float(inside[0])) < enough and abs(change) <= options.step * (own + abs(factor)):
+            rest = max(float(np.max(np.abs(scale * step))), float(inside[0]))  # the largest: a norm grows with rounding of many bodies
+            if iteration and rest < enough and abs(change) <= options.step * (own + abs(factor)):
                 gap = float(lack(model, system)[0])
                 if gap < options.gap:
                     return point_at(loading, _one(pose, iteration + 1, gap), factor, step=scaled, start=last)
