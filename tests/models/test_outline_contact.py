@@ -8,9 +8,11 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from flexstage.analysis.assessment.judge import measure_all
+from flexstage.analysis.assessment.requirements import measure
 from flexstage.cases.registry import CASES, case
 from flexstage.mechanism.assembly.pattern import Pose
-from flexstage.mechanism.geometry.contact import contact_findings
+from flexstage.mechanism.geometry.contact import contact_findings, gaps, least_gap
 from flexstage.mechanism.geometry.pieces import SAGITTA, pieces
 from flexstage.mechanism.mechanism import Link, Mechanism, Probe
 from flexstage.parts.body import Block, Body, Cylinder, Extrusion, Solid, Sphere
@@ -285,3 +287,44 @@ def test_pieces_of_hinges_lie_within_their_cuts_and_fill_them(name: str) -> None
         assert np.all(below >= -1e-12)
         upright = height * curved / np.sqrt(np.maximum(1e-12, 1.0 - np.minimum(1.0, curved) ** 2)) / along
         assert np.all(below / np.sqrt(1.0 + upright**2) <= 2.0 * SAGITTA)
+
+
+def with_post(apart: float) -> Mechanism:
+    """The parallelogram guide with a post on the ground, this far in front of the end face of its block, x = 30 mm."""
+    guide = case("parallelogram")
+    post = Body(solids={"bar": Block("steel", (0.002, 0.01, 0.01), at=(0.031 + apart, 0.0, 0.0))})
+    foot = Link(("ground", "post"), "fixed", (0.031 + apart, 0.0, 0.0), (0.0, 0.0, 1.0))
+    return replace(
+        guide, bodies={**guide.bodies, "post": post}, links={**guide.links, "foot": foot}, parts={**guide.parts, "fixed": Joint()}
+    )
+
+
+@pytest.mark.parametrize("apart", [2e-5, 1e-4, -5e-4])
+def test_required_strokes_reduce_the_clearance(apart: float) -> None:
+    """By 18 um towards the post, and 8 nm as the block tilts; an overlap grows by as much. Without required strokes it is that at rest."""
+    moved, still = with_post(apart), replace(with_post(apart), requirements={})
+    found = [float(measure_all(each, (measure(each, "clearance", "here"),))[0]) for each in (moved, still)]
+    assert found == pytest.approx([apart - 18e-6, apart], abs=1e-8)
+
+
+def test_gaps_follow_the_twists_of_bodies() -> None:
+    """A bar of 20 mm, turned by 45 degrees about its middle, comes nearer by (sqrt(2) - 1) half sides; a link moves by half its bodies'."""
+    bars = {"near": Block("steel", (0.02, 0.02, 0.02)), "far": Block("steel", (0.02, 0.02, 0.02), at=(0.05, 0.0, 0.0))}
+    bodies = {name: Body(solids={"bar": solid}, reference=solid.at) for name, solid in bars.items()}
+    drawn = replace(random_stage(0), links={}, bodies={"platform": bodies.pop("near"), **bodies})
+    turned = {"platform": np.array([0.002, 0.0, 0.0, 0.0, 0.0, 0.25 * np.pi])}
+    for twists, apart in (
+        ({}, 0.03),
+        (turned, 0.038 - 0.01 * np.sqrt(2.0)),
+        ({"far": np.array([-0.035, 0.0, 0.0, 0.0, 0.0, 0.0])}, -0.005),
+    ):
+        found = least_gap(drawn, twists)
+        assert found is not None
+        assert found.distance == pytest.approx(apart, abs=1e-9)
+    wall = Block("steel", (0.01, 0.002, 0.02), at=(0.0, 0.01, 0.0))
+    beside = replace(stage({"s": BLOCK}), bodies={"platform": Body(solids={"s": BLOCK}), "far": Body(solids={"wall": wall})})
+    gaps_of_link = [
+        next(each.distance for each in gaps(beside, 0.05, twists) if "link" in {each.first, each.second})
+        for twists in ({}, {"platform": np.array([0.0, 0.004, 0.0, 0.0, 0.0, 0.0])})
+    ]
+    assert np.diff(gaps_of_link) == pytest.approx(-0.002, abs=1e-4)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,6 +50,8 @@ else:
 
 KEPT = 48
 """Number of cached benches of single designs of a batch; each uses about a megabyte."""
+_TOGETHER = 3
+"""Number of required strokes up to which all corners of their box are computed; of more, the end of each."""
 
 
 class StageResults:
@@ -207,7 +210,7 @@ class StageResults:
         """Stress of hinges over the box of required strokes, from zero voltage."""
         box = {name: value for name, value in self.box().items() if value > 0.0}
         start = np.zeros(len(self.limits.actuators)) if self.limits.zero is None else -self.limits.zero
-        mapping = self.force_workspace(PLATFORM).per_motion if self.forced else self.lost.correction
+        mapping = self.per_motion
         known = dict(zip(self.limits.actuators, np.moveaxis(start, -1, 0), strict=True))
         start = stack([known.get(name, 0.0) for name in mapping.rows])
         for name in box.keys() - set(mapping.columns):
@@ -215,6 +218,18 @@ class StageResults:
         half = stack(list(box.values()))
         limits, command = StrokeLimits(tuple(box), -half, half), Command(mapping, start)
         return hinge_stress(self.mechanism, self.model, limits, command=command, condition="of the required strokes")
+
+    @property
+    def per_motion(self) -> Matrix:
+        """Inputs per displacement of the platform, lost motion corrected."""
+        return self.force_workspace(PLATFORM).per_motion if self.forced else self.lost.correction
+
+    def corners(self) -> tuple[tuple[str, ...], Array]:
+        """Axes and corners (c, k) of the box of required strokes that actuators reach; of more than three axes, the end of each."""
+        box = {axis: value for axis, value in self.box().items() if axis in self.per_motion.columns}
+        each = np.eye(len(box))
+        together = np.array(list(product((-1.0, 1.0), repeat=len(box)))) if len(box) <= _TOGETHER else np.concatenate([each, -each])
+        return tuple(box), together * np.array(list(box.values()))
 
     @cached_property
     def _loaded(self) -> StrokeLimits:

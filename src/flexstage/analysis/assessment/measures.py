@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial, wraps
@@ -43,7 +43,9 @@ from flexstage.base.units.quantity import (
 )
 from flexstage.beams.mass import mass as link_mass
 from flexstage.mechanism.design import designs, step_size
+from flexstage.mechanism.geometry.contact import least_gap
 from flexstage.mechanism.mechanism import PLATFORM
+from flexstage.models.linear.static import input_motion
 from flexstage.parts.condensation import condense
 from flexstage.parts.voice_coil import Coil
 from flexstage.spatial.frame import COMPONENTS, transport
@@ -591,6 +593,34 @@ def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
     mode = np.einsum("...ji,...j->...i", inverse, lowest)
     square = np.einsum("...i,...ij,...j->...", mode, stiffness, mode) / np.einsum("...i,...ij,...j->...", mode, mass, mode)
     return np.sqrt(square) / (2.0 * np.pi)
+
+
+@partial(MeasureKind, "clearance", LENGTH, analytic=False)
+@_each_design
+def clearance(bench: StageResults, asked: Measure) -> float:
+    """Smallest gap of outlines that no joint connects, at rest and at the corners of the required strokes; negative for an overlap.
+
+    Corners by the linear model: of more than three strokes, the end of each. Bodies are rigid, a link moves by the mean of its bodies.
+    Without required strokes or actuators, at rest.
+    """
+    found = [least_gap(bench.mechanism, each) for each in ({}, *_corner_twists(bench))]
+    known = [each.distance for each in found if each is not None]
+    if not known:
+        raise refuse(asked.key, "no two outlines could touch", "Add solids to the bodies")
+    return min(known)
+
+
+def _corner_twists(bench: StageResults) -> Iterator[dict[str, Array]]:
+    """Twists (6,) of all bodies at the corners of the required strokes."""
+    if not bench.command or not bench.kinematics.actuated:
+        return
+    mapping, (axes, corners) = bench.per_motion, bench.corners()
+    inputs = np.real(mapping.values[:, [mapping.columns.index(axis) for axis in axes]]) @ corners.T
+    model = bench.model
+    motion = input_motion(model, model.input_index(mapping.rows), inputs)
+    rows = {body: model.output_index(tuple(f"{body}.{axis}" for axis in COMPONENTS)) for body in bench.assembly.bodies}
+    for place in range(len(corners)):
+        yield {body: np.real(model.seen(own, motion[..., [place]]))[:, 0] for body, own in rows.items()}
 
 
 @partial(MeasureKind, "numbers.<number>", RATIO)

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import product
+from types import MappingProxyType
 
 import numpy as np
 
@@ -28,6 +29,7 @@ from flexstage.parts.section import Section
 from flexstage.parts.shape import Shaped
 from flexstage.spatial.convex import Convex, distance, polytope_corners, separation
 from flexstage.spatial.frame import Frame
+from flexstage.spatial.rotation import exponential
 
 TOUCHING = 1e-6
 """Distance below which faces touch [m]."""
@@ -35,6 +37,8 @@ _SHARE = 1e-3
 """Largest share of an end face outside its body."""
 _BRACKET = 0.05
 """Largest distance of a gauge's target on an undrawn bracket, relative to its body's longest side."""
+_REACHES = (1e-3, 1e-2, 1e-1, 1.0)
+"""Distances [m] up to which the smallest gap is searched."""
 _ENOUGH = 300
 """Number of pairs of pieces examined for the deepest overlap."""
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 128, endpoint=False)
@@ -142,27 +146,71 @@ class Gap:
     distance: float
 
 
-def gaps(mechanism: Mechanism, within: float) -> tuple[Gap, ...]:
+def gaps(mechanism: Mechanism, within: float, moved: Mapping[str, Array] = MappingProxyType({})) -> tuple[Gap, ...]:
     """Return overlaps, and gaps of at most `within` [m], between unconnected outlines; on the first design of a batch.
 
     A pair consists of different bodies, of two links, or of a link and a body that it does not join. Round faces are approximated within
     `SAGITTA`. Imported shapes are omitted.
 
+    Bodies are displaced by twists `moved` (6,) [m, rad], translation and rotation vector at their references; a link moves by the mean of
+    the bodies that it joins, without its deformation.
+
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> gaps(parallelogram(), 1e-4)
     ()
     """
-    things = _things(expand(with_drawn_parts(mechanism)))
+    pairs = _unconnected(mechanism, within, moved)
+    found = (Gap(first.name, second.name, _apart(first, second, within)) for first, second in pairs)
+    return tuple(each for each in found if each.distance <= within)
+
+
+def least_gap(mechanism: Mechanism, moved: Mapping[str, Array] = MappingProxyType({})) -> Gap | None:
+    """Return the smallest gap between unconnected outlines, as `gaps`; `None` without any pair within a metre.
+
+    >>> from flexstage.cases.parallelogram import parallelogram
+    >>> least_gap(parallelogram()).distance > 1e-4
+    True
+    """
+    for within in _REACHES:
+        least: Gap | None = None
+        for first, second in _unconnected(mechanism, within, moved):
+            most = within if least is None else least.distance
+            apart = _apart(first, second, most)
+            least = Gap(first.name, second.name, apart) if apart < most else least
+        if least is not None:
+            return least
+    return None
+
+
+def _unconnected(mechanism: Mechanism, within: float, moved: Mapping[str, Array]) -> Iterator[tuple[_Thing, _Thing]]:
+    """Pairs of unconnected outlines whose boxes are within a distance."""
+    assembly = expand(with_drawn_parts(mechanism))
+    things = {name: _displaced(thing, moved, assembly) if moved else thing for name, thing in _things(assembly).items()}
     seen = [thing for thing in things.values() if not isinstance(thing.form, Imported)]
     drawn_bodies = {thing.bodies[0] for thing in seen if not thing.is_link}
-    results: list[Gap] = []
     for one, other in near_pairs([thing.outline for thing in seen], within):
         first, second = seen[one], seen[other]
         if not _belong(first, second) and not _meet_in_a_point(first, second, drawn_bodies):
-            deep = _overlap(first.pieces, second.pieces, [*first.holes, *second.holes])[0]
-            apart = -deep if deep > TOUCHING else _gap(first, second)
-            results += [Gap(first.name, second.name, apart)] if apart <= within else []
-    return tuple(results)
+            yield first, second
+
+
+def _apart(first: _Thing, second: _Thing, most: float) -> float:
+    """Distance of two outlines [m], negative for an overlap; infinite if it is above `most`."""
+    apart = _gap(first, second, most)
+    deep = _overlap(first.pieces, second.pieces, [*first.holes, *second.holes])[0] if apart <= TOUCHING else 0.0
+    return -deep if deep > TOUCHING else apart
+
+
+def _displaced(thing: _Thing, moved: Mapping[str, Array], assembly: Assembly) -> _Thing:
+    """The outline displaced by the mean of its bodies' twists at its centre; the ground does not move."""
+    shift, turn = np.zeros(3), np.zeros(3)
+    for body in thing.bodies:
+        if body in moved:
+            arm = thing.frame.position - first_design(np.real(assembly.bodies[body].reference), 1)
+            shift += (moved[body][:3] + exponential(moved[body][3:]) @ arm - arm) / len(thing.bodies)
+            turn += moved[body][3:] / len(thing.bodies)
+    frame = Frame(exponential(turn) @ thing.frame.rotation, thing.frame.position + shift)
+    return replace(thing, frame=frame, outline=replace(thing.outline, frame=frame))
 
 
 def _things(assembly: Assembly) -> dict[str, _Thing]:
@@ -393,8 +441,18 @@ def _is_joined(first: _Thing, second: _Thing) -> bool:
     return False
 
 
-def _gap(first: _Thing, second: _Thing) -> float:
-    return min(distance(one.points, other.points) for one, other in product(first.pieces, second.pieces))
+def _gap(first: _Thing, second: _Thing, most: float = np.inf) -> float:
+    """Least distance of two outlines [m], of their pieces from the nearest boxes on; infinite if it is above `most`."""
+    (low, high), (lows, highs) = (np.array([piece.box for piece in each.pieces]).swapaxes(0, 1) for each in (first, second))
+    apart = np.linalg.norm(np.maximum(0.0, np.maximum(lows - high[:, None], low[:, None] - highs)), axis=-1)
+    least, found = most, np.inf
+    for place in np.argsort(apart, axis=None):
+        one, other = np.unravel_index(place, apart.shape)
+        if apart[one, other] > least:
+            break
+        found = min(found, distance(first.pieces[one].points, second.pieces[other].points))
+        least = min(least, found)
+    return found
 
 
 # Clashes

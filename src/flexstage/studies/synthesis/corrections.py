@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from flexstage.analysis.assessment.judge import Estimate, bench_of, required_values
-from flexstage.analysis.assessment.measures import safety_at_strokes, stroke
+from flexstage.analysis.assessment.measures import clearance, safety_at_strokes, stroke
 from flexstage.analysis.assessment.requirements import Requirement, Sense, Verdict, requirements
 from flexstage.analysis.bench import StageResults
 from flexstage.base.finding import refuse
 from flexstage.base.units.unit import show
+from flexstage.mechanism.geometry.contact import TOUCHING, Gap, least_gap
 from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.flexible_bodies import body_flexibilities, with_flexible_bodies
 from flexstage.models.nonlinear.elements.strain import strains
@@ -24,8 +24,6 @@ from flexstage.spatial.frame import COMPONENTS
 
 _DIGITS = 9
 _STEPS = 12
-_TOGETHER = 3
-"""Number of displacements up to which all corners are computed; of more, each displacement alone."""
 _CLOSE = 1e-4
 """Largest distance from the required displacement, relative to it."""
 
@@ -51,7 +49,8 @@ def displaced_values(stage: Mechanism) -> Estimate:
 
     Frequencies and stiffnesses change as those of the models linearised there and at rest, stresses include stretch. A stroke is the
     lumped one times the least ratio of linear to nonlinear inputs at the corners: it is enough exactly if the actuators reach the corners.
-    Requirements that do not depend on the displacement are left out. Raises `DesignError` without equilibrium.
+    Requirements that do not depend on the displacement are left out. Raises `DesignError` without equilibrium, and for outlines that
+    overlap at a corner.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> {key: round(value) for key, value in displaced_values(parallelogram()).values.items() if key.startswith("frequency")}
@@ -60,7 +59,11 @@ def displaced_values(stage: Mechanism) -> Estimate:
     bench, lines = bench_of(stage), requirements(stage)
     reached = _at_corners(bench)
     about, rest = bench.with_model(linearise(reached.state, inner=False)), bench.with_model(linearise(reached.rest, inner=False))
-    found = dict[str, float]()
+    found, gap = dict[str, float](), _least_gap(bench.mechanism, reached)
+    if gap is not None and gap.distance < -TOUCHING:
+        raise refuse(
+            "motion", f"{gap.first} and {gap.second} overlap at a corner of the required displacements", "Reduce the displacements"
+        )
     for line in lines:
         if line.kind.softening:
             values = np.real(line.kind.value(about, line)) / np.real(line.kind.value(rest, line)) * np.real(line.kind.value(bench, line))
@@ -68,11 +71,20 @@ def displaced_values(stage: Mechanism) -> Estimate:
         elif line.kind is safety_at_strokes:
             of = strains(reached.state)
             found[line.key] = float(np.min(of.limit / np.max(of.stress, axis=0), initial=np.inf))
+        elif line.kind is clearance and gap is not None:
+            found[line.key] = gap.distance
         elif line.kind is stroke:
             found[line.key] = float(np.real(line.kind.value(bench, line))) * reached.ratio
     if unknown := [key for key, value in found.items() if np.isnan(value)]:
         raise refuse(unknown[0], "it has no value at the corners of the required displacements", "Reduce the displacements")
     return Estimate({key: value for key, value in found.items() if np.isfinite(value)})
+
+
+def _least_gap(stage: Mechanism, reached: _Corners) -> Gap | None:
+    """The smallest gap of outlines over all states, displaced from rest; deformation of links is left out."""
+    moved = {body: reached.state.twist(body) - reached.rest.twist(body) for body in reached.state.model.bodies}
+    found = [least_gap(stage, {body: each[case] for body, each in moved.items()}) for case in range(len(reached.state.converged))]
+    return min((each for each in found if each is not None), key=lambda each: each.distance, default=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,14 +98,9 @@ class _Corners:
 
 def _at_corners(bench: StageResults) -> _Corners:
     """Equilibria at the corners of the required displacements, by the inputs that reach them (with the lumped model's derivatives)."""
-    mapping = bench.force_workspace(PLATFORM).per_motion if bench.forced else bench.lost.correction
-    box = {axis: value for axis, value in bench.box().items() if axis in mapping.columns}
-    half = np.diag(list(box.values()))
-    wanted = (
-        np.array(list(itertools.product((-1.0, 1.0), repeat=len(box)))) @ half if len(box) <= _TOGETHER else np.concatenate([half, -half])
-    )
-    places = [COMPONENTS.index(axis) for axis in box]
-    gain = np.real(mapping.values[:, [mapping.columns.index(axis) for axis in box]])
+    mapping, (axes, wanted) = bench.per_motion, bench.corners()
+    places = [COMPONENTS.index(axis) for axis in axes]
+    gain = np.real(mapping.values[:, [mapping.columns.index(axis) for axis in axes]])
     model = nonlinear(bench.mechanism)
     rest = equilibrium(model)
     require_equilibrium(rest)
@@ -104,7 +111,7 @@ def _at_corners(bench: StageResults) -> _Corners:
         if not np.all(state.converged):
             break
         away = wanted - (state.twist(PLATFORM) - rest.twist(PLATFORM))[:, places]
-        if np.max(np.abs(away) @ np.linalg.inv(half)) < _CLOSE:
+        if np.max(np.abs(away) @ np.diag(1.0 / np.max(wanted, axis=0))) < _CLOSE:
             moved = np.max(np.abs(linear), axis=0) > 0.0
             return _Corners(rest, state, float(np.min(np.max(np.abs(linear), axis=0)[moved] / np.max(np.abs(inputs), axis=0)[moved])))
         inputs = inputs + away @ gain.T
