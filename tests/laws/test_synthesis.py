@@ -237,6 +237,19 @@ def test_elastic_bodies_keep_the_required_frequency() -> None:
     assert answer.values["frequency.1"] > answer.elastic["frequency.1"] >= 1000.0
 
 
+def test_the_price_of_a_requirement_is_what_its_relaxation_gives() -> None:
+    """1 % less displacement along x and y: the frequency rises by the mean price of both answers, though their limits are corrected."""
+    text = f'{SCANNER}make.step = "1 nm"'  # the prices are those before rounding
+    before, after = (fs.design(loads_specification(each), ("carriages",)).best for each in (text, text.replace('"50 um"', '"49.5 um"')))
+    assert before is not None
+    assert after is not None
+    assert before.rounds > 1
+    assert [each.binding[0].name for each in (before, after)] == ["stroke.x at least 50 um", "stroke.x at least 49.5 um"]
+    price = 0.5 * (before.binding[0].price + after.binding[0].price)
+    assert after.goal - before.goal == pytest.approx(-0.5e-6 * price, rel=1e-2)
+    assert before.active == tuple(each.name for each in before.binding)
+
+
 def with_density(bodies: Mapping[str, fs.Body], factor: float) -> dict[str, fs.Body]:
     """Bodies of a stage or unit, all but the platform of a denser material."""
     return {
@@ -474,7 +487,9 @@ def test_a_front_has_the_goal_at_its_first_end(tmp_path: Path) -> None:
         assert len(values) > 2
         assert values == sorted(values, reverse=True)
     assert "Front of both goals" in [each.title for each in answer_tables(found)]
-    assert "front of both goals" in answer_report(found)
+    report = answer_report(found)
+    assert "front of both goals" in report
+    assert f"Binding limits of 1: {found.best.architecture} with {found.best.actuator}" in report
 
 
 def test_rotations_need_an_inertia() -> None:

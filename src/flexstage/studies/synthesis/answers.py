@@ -20,6 +20,7 @@ from flexstage.base.storage.digest import digest
 from flexstage.base.storage.store import write
 from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.optimisation.result import Binding
 from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.synthesis.architecture import catalogue_actuators, draw, find_architectures, specified_goals, study_text
 from flexstage.studies.synthesis.corrections import Estimator
@@ -167,8 +168,8 @@ def _from_text(text: str) -> Answer | FailedPair:
     """A result from its file."""
     tree: dict[str, Any] = json.loads(text)
     if tree.pop("kind") == Answer.__name__:
-        points = tuple(FrontPoint(**each) for each in tree["front"])
-        return replace(Answer(**tree), active=tuple(tree["active"]), warnings=tuple(tree["warnings"]), front=points)
+        points, binding = tuple(FrontPoint(**each) for each in tree["front"]), tuple(Binding(**each) for each in tree["binding"])
+        return replace(Answer(**tree), active=tuple(tree["active"]), warnings=tuple(tree["warnings"]), front=points, binding=binding)
     return replace(FailedPair(**tree), relaxed=tuple(Relaxation(**each) for each in tree["relaxed"]))
 
 
