@@ -68,6 +68,7 @@ def design(
     close_loop: Callable[[Mechanism], float | None] | None = None,
     keep: Path | None = None,
     how: Run = _ALONE,
+    finished: Callable[[Answer | FailedPair], None] | None = None,
 ) -> Answers:
     """Design stages for a specification: every architecture that has its motions, with every allowed actuator of the catalogue.
 
@@ -75,6 +76,8 @@ def design(
     `studies.optimise` does, and again with corrected limits while elastic bodies or large displacements miss a requirement. With `verify`,
     e.g. `solid.required_values`, finite elements do the same for the first three answers; with `tolerance`, these get their yield, and with
     `close_loop`, e.g. `control.sensitivity_crossover`, the sensitivity crossover of their control loop. An empty `architectures` means all.
+
+    `finished` receives each result of a pair as soon as it is known; a later one of the same pair replaces it.
 
     Results of pairs are written to the folder `keep`, and taken from there if `how` resumes. Results do not depend on the number of
     processes. A keyboard interrupt ends the search with the answers so far. Raises `DesignError` where no architecture has the motions.
@@ -98,7 +101,7 @@ def design(
     ]
     screened = [(pair, list(shortfalls(specification, pair))) for pair in pairs]
     open_pairs = sorted((pair for pair, faults in screened if not faults), key=lambda pair: (demand(specification, pair), pair.name))
-    store = _Store(specification, keep, resume=how.resume)
+    store = _Store(specification, keep, resume=how.resume, finished=finished)
     found, interrupted = dict[str, Answer | FailedPair](), False
     try:
         for pair, result in _searched(store, open_pairs, progress, cores() if how.workers is None else how.workers):
@@ -139,6 +142,7 @@ class _Store:
     specification: Specification
     folder: Path | None
     resume: bool
+    finished: Callable[[Answer | FailedPair], None] | None
 
     def path(self, pair: CandidatePair, what: str) -> Path | None:
         """File of a result; `None` if it is not kept: without a folder, or if the pair cannot be drawn."""
@@ -154,13 +158,18 @@ class _Store:
     def kept(self, pair: CandidatePair, what: str) -> Answer | FailedPair | None:
         """An earlier result."""
         path = self.path(pair, what) if self.resume else None
-        return None if path is None or not path.exists() else _from_text(path.read_text(encoding="utf-8"))
+        return None if path is None or not path.exists() else self._announced(_from_text(path.read_text(encoding="utf-8")))
 
     def put(self, pair: CandidatePair, what: str, result: Answer | FailedPair) -> Answer | FailedPair:
         """Keep a result, and return it."""
         if (path := self.path(pair, what)) is not None:
             path.parent.mkdir(parents=True, exist_ok=True)
             write(path, json.dumps({"kind": type(result).__name__, **dataclasses.asdict(result)}))
+        return self._announced(result)
+
+    def _announced(self, result: Answer | FailedPair) -> Answer | FailedPair:
+        if self.finished is not None:
+            self.finished(result)
         return result
 
 

@@ -30,7 +30,7 @@ FORMAT = "flexstage specification 1"
 FREQUENCY_KEYS = ("frequency", "unwanted")
 """Requirements of their own: the first natural frequency, and the first of a motion that is not required."""
 
-_EXAMPLE = """
+EXAMPLE = """\
 format = "flexstage specification 1"
 name = "scanner"
 motion = { x = "50 um", y = "50 um" }
@@ -39,6 +39,7 @@ box = { size = ["260 mm", "260 mm", "40 mm"] }
 actuators = { kinds = ["piezo"] }
 requirements.frequency = "at least 500 Hz"
 """
+"""The specification of an XY scanner."""
 _Texts = Annotated[tuple[str, ...], TextsNode()]
 _Length = Annotated[float, LENGTH, POSITIVE]
 _Box = tuple[_Length, _Length, _Length]
@@ -210,7 +211,7 @@ def load_specification(path: str | os.PathLike[str]) -> Specification:
 def loads_specification(text: str, *, where: str = "text") -> Specification:
     """Read a specification from its text; a catalogue that it names is in the folder of `where`.
 
-    >>> found = loads_specification(_EXAMPLE)
+    >>> found = loads_specification(EXAMPLE)
     >>> found.displacements, found.least("frequency"), found.goal
     ({'x': 5e-05, 'y': 5e-05}, 500.0, ('maximise', 'frequency'))
     """
@@ -233,7 +234,7 @@ def example() -> Specification:
     >>> example().displacements
     {'x': 5e-05, 'y': 5e-05}
     """
-    return loads_specification(_EXAMPLE)
+    return loads_specification(EXAMPLE)
 
 
 def specification_schema() -> dict[str, Any]:
