@@ -400,9 +400,10 @@ def test_bad_specifications(old: str) -> None:
 
 def test_one_run_names_unreadable_numbers_and_those_out_of_bounds() -> None:
     text = SCANNER.replace('"30 g"', '"30 mm"').replace('x = "50 um"', 'x = "-50 um"').replace('"40 mm"', '"0 mm"')
+    text = text.replace("500 Hz", "500 mm")
     with pytest.raises(DesignError) as caught:
         loads_specification(text)
-    assert [str(each).split(": ")[1] for each in caught.value.findings] == ["payload.mass", "motion.x", "box.size.z"]
+    assert [str(each).split(": ")[1] for each in caught.value.findings] == ["payload.mass", "motion.x", "box.size.z", "requirements.frequency"]
 
 
 def guide_specification(goal: str = 'goals.minimise = "envelope.z"') -> Specification:

@@ -66,7 +66,7 @@ export class SpecificationPane {
     const save = (): void => void ready().then(() => saveSpecification(this.studio, this.text, this.file, String((this.form?.value() as Table | undefined)?.["name"] ?? "")));
     const details = h(
       "details",
-      { className: "blank", open: true },
+      { className: "blank", open: !this.pairs.childElementCount },
       h("summary", {}, h("h3", {}, "Specification")),
       h(
         "form",
@@ -135,7 +135,7 @@ export class SpecificationPane {
         const pair = at === 0 && job.pairs.find((each) => each.file && row.includes(each.architecture) && row.includes(each.actuator));
         return pair ? [this.opener(job, pair, `open ${row[0]}`), ...row.slice(1)] : row;
       });
-      return [h("h4", {}, title), h("div", { className: "wide" }, table(head, cells, "pairs")), ...notes.map((each) => h("p", { className: "quiet" }, each))];
+      return [h("h4", {}, title), h("div", { className: "wide" }, table(head, cells, "pairs")), h("details", {}, h("summary", {}, "notes"), ...notes.map((each) => h("p", { className: "quiet" }, each)))];
     });
   }
 

@@ -219,13 +219,23 @@ def loads_specification(text: str, *, where: str = "text") -> Specification:
     try:
         if isinstance(raw.get("requirements"), dict):
             raw["requirements"] = dotted("requirements", raw["requirements"])
-        found = record_from(Specification, raw, FORMAT, tagged=False)
+        found = _record(raw)
         if found.catalogue is not None:
             found = replace(found, catalogue=str((Path(where).parent / found.catalogue).resolve()))
         require([*_findings(found), *actuator_findings(found, where)])
     except DesignError as error:
         raise DesignError(with_lines(error.findings, text, where)) from None
     return found
+
+
+def _record(raw: dict[str, Any]) -> Specification:
+    """The specification of a file; of one that cannot be read, errors of its requirements too."""
+    try:
+        return record_from(Specification, raw, FORMAT, tagged=False)
+    except DesignError as error:
+        given = raw.get("requirements")
+        texts = {key: text for key, text in given.items() if isinstance(text, str)} if isinstance(given, dict) else {}
+        raise DesignError([*error.findings, *_requirement_findings(replace(example(), requirements=texts))]) from None
 
 
 def example() -> Specification:
