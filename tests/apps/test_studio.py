@@ -917,7 +917,9 @@ async def test_the_tables_of_a_design_job_are_those_of_the_command(page, studio)
         (each.title, each.texts(), each.notes) for each in expected
     ]
     assert found.report
-    assert {(each.architecture, each.actuator) for each in found.pairs if each.file} == {(row[1], row[2]) for row in found.tables[0].rows[1:]}
+    assert {(each.architecture, each.actuator) for each in found.pairs if each.file} == {
+        (row[1], row[2]) for row in found.tables[0].rows[1:]
+    }
 
 
 @pytest.mark.full

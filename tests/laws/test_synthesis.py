@@ -403,7 +403,12 @@ def test_one_run_names_unreadable_numbers_and_those_out_of_bounds() -> None:
     text = text.replace("500 Hz", "500 mm")
     with pytest.raises(DesignError) as caught:
         loads_specification(text)
-    assert [str(each).split(": ")[1] for each in caught.value.findings] == ["payload.mass", "motion.x", "box.size.z", "requirements.frequency"]
+    assert [str(each).split(": ")[1] for each in caught.value.findings] == [
+        "payload.mass",
+        "motion.x",
+        "box.size.z",
+        "requirements.frequency",
+    ]
 
 
 def guide_specification(goal: str = 'goals.minimise = "envelope.z"') -> Specification:
@@ -454,10 +459,14 @@ def test_large_displacements_reduce_the_stroke_as_the_force_that_holds_them_grow
 def test_results_of_pairs_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Resumed without a search: the same bytes; as by two processes."""
     spec = replace(loads_specification(SCANNER), actuators=ActuatorTable(like=("PSt 1000/10/150 VS18", "PSt 1000/16/200 VS25")), starts=1)
-    first = as_text(fs.design(spec, ("carriages",), keep=tmp_path, how=Run(workers=2)))
+    heard = list[Answer | FailedPair]()
+    found = fs.design(spec, ("carriages",), keep=tmp_path, how=Run(workers=2), finished=heard.append)
+    first = as_text(found)
+    assert {id(each) for each in (*found.answers, *found.failed)} == {id(each) for each in heard}
     assert len(list(tmp_path.iterdir())) == 2
     monkeypatch.setattr(answers, "search", None)
-    assert as_text(fs.design(spec, ("carriages",), keep=tmp_path, how=Run(workers=1, resume=True))) == first
+    assert as_text(fs.design(spec, ("carriages",), keep=tmp_path, how=Run(workers=1, resume=True), finished=heard.append)) == first
+    assert len(heard) == 4
     monkeypatch.undo()
     assert not FULL or as_text(fs.design(spec, ("carriages",))) == first
 

@@ -58,7 +58,7 @@ class Answers(InNotebook):
 
 
 @check_arguments
-def design(
+def design(  # noqa: PLR0913 (its options)
     specification: Specification,
     architectures: tuple[str, ...] = (),
     progress: Progress | None = None,
