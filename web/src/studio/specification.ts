@@ -135,7 +135,7 @@ export class SpecificationPane {
         const pair = at === 0 && job.pairs.find((each) => each.file && row.includes(each.architecture) && row.includes(each.actuator));
         return pair ? [this.opener(job, pair, `open ${row[0]}`), ...row.slice(1)] : row;
       });
-      return [h("h4", {}, title), h("div", { className: "wide" }, table(head, cells, "pairs")), h("details", {}, h("summary", {}, "notes"), ...notes.map((each) => h("p", { className: "quiet" }, each)))];
+      return [h("h4", {}, title), h("div", { className: "wide" }, table(head, cells, "pairs final")), h("details", {}, h("summary", {}, "notes"), ...notes.map((each) => h("p", { className: "quiet" }, each)))];
     });
   }
 
