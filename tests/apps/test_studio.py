@@ -7,6 +7,7 @@ import json
 import os
 import random
 import signal
+import tomllib
 import types
 from dataclasses import replace
 from typing import Literal, Union, get_args, get_origin, get_type_hints
@@ -55,6 +56,9 @@ from flexstage.models.ideal import ideal
 from flexstage.models.lumped import lumped
 from flexstage.models.nonlinear.stage import nonlinear
 from flexstage.models.theory import Model
+from flexstage.studies.synthesis.answers import design as find_designs
+from flexstage.studies.synthesis.show.tables import answer_tables
+from flexstage.studies.synthesis.specification import loads_specification
 from tests.analytic.test_load_effect import upright
 from tests.apps.studio_page import PATIENCE, array, opened, served
 
@@ -762,6 +766,7 @@ async def test_jobs_that_cannot_be_are_refused(page, studio):
         {"command": "identify", "study": None, "record": "nowhere.uff", "options": ()},
         {"command": "loop", "study": None, "record": "nowhere.uff", "options": ()},
         {"command": "sweep", "study": None, "record": None, "options": ()},
+        {"command": "design", "study": None, "record": None, "options": ()},
         {"command": "loop", "study": None, "record": None, "options": ("--json=/tmp/x",)},
         {"command": "loop", "study": None, "record": None, "options": ("--hardware=x.c",)},
     ):
@@ -791,6 +796,130 @@ def test_key_figures_are_those_of_the_result(command, tmp_path):
         assert 0.0 < found["phase margin x"][0] < 90.0
     else:
         assert found
+
+
+SPECIFICATION = """# ours
+format = "flexstage specification 1"
+name = "scanner"
+motion = { x = "20 um" }  # both directions
+payload.mass = "30 g"
+box.size = ["200 mm", "200 mm", "40 mm"]
+requirements.frequency = "at least 500 Hz"
+requirements.drift.z = "at most 1 um/K"
+"""
+VALUES = """format = "flexstage specification 1"
+name = "scanner"
+payload = { mass = "40 g", height = "2 mm" }
+box = { size = ["200 mm", "200 mm", "40 mm"] }
+requirements = { frequency = "at least 500 Hz", "drift.z" = "at most 2 um/K" }
+motion = { x = "20 um", y = "20 um" }
+make = { step = "1 um" }
+together = true
+"""
+
+
+@on_page
+async def test_a_specification_keeps_its_comments_and_has_all_errors_by_address(page, studio):
+    found = await page.ask(say.Specify, text="", file="", values="")
+    assert loads_specification(found.text) is not None
+    found = await page.ask(say.Specify, text=SPECIFICATION, file="", values="")
+    assert (found.text, found.problems) == (SPECIFICATION, ())
+    assert found.values["requirements"] == {"frequency": "at least 500 Hz", "drift.z": "at most 1 um/K"}
+    changed = await page.ask(say.Specify, text=SPECIFICATION, file="", values=VALUES)
+    assert changed.values == tomllib.loads(VALUES)
+    assert "# ours" in changed.text
+    assert "# both directions" in changed.text
+    again = await page.ask(say.Specify, text="", file="", values="")
+    assert again.text == changed.text  # a page that is loaded again begins with the last one
+    wrong = await page.ask(say.Specify, text=SPECIFICATION, file="", values=VALUES.replace('"20 um"', '"20"').replace("mass", "weight"))
+    assert {each.where for each in wrong.problems} == {"motion.x", "motion.y", "payload", "payload.weight"}
+    torn = await page.ask(say.Specify, text="x = ", file="", values="")
+    assert torn.values is None
+    assert [each.where for each in torn.problems] == ["specification"]
+
+
+@on_page
+async def test_a_specification_is_saved_and_is_no_design(page, studio):
+    folder = jobs_folder(studio)
+    await page.ask(say.SaveSpecification, text=SPECIFICATION, file="spec.toml", over=False)
+    assert (folder / "spec.toml").read_text() == SPECIFICATION
+    for file, over in (("spec.toml", False), (studio.session.stored.path.name, True), ("../spec.toml", True)):
+        assert isinstance(await page.ask(say.SaveSpecification, text="", file=file, over=over), say.Refusal)
+    await page.ask(say.SaveSpecification, text=VALUES, file="spec.toml", over=True)
+    assert (await page.ask(say.Specify, text="", file="spec.toml", values="")).text == VALUES
+    listed = await page.ask(say.Browse)
+    assert "spec.toml" in listed.files
+    assert listed.specifications == ("spec.toml",)
+
+
+DESIGN = """
+import json, pathlib, sys, time
+words = sys.argv[1:]
+design = pathlib.Path(words[words.index("--answer") + 1]).read_text()
+assert "20 um" in pathlib.Path(words[1]).read_text()
+say = lambda **part: print("result", json.dumps(part), file=sys.stderr, flush=True)
+row = {"architecture": "guide", "goal": "", "file": "", "design": ""}
+say(pair={**row, "actuator": "small", "reason": "too weak"})
+say(pair={**row, "actuator": "large", "goal": "1 kHz", "reason": "", "file": "guide-large", "design": design})
+print("result {", file=sys.stderr, flush=True)
+while "--wait" in words:
+    time.sleep(0.1)
+say(pair={**row, "actuator": "large", "goal": "2 kHz", "reason": "", "file": "guide-large", "design": design})
+say(tables=[("Stages", [["", "architecture"], ["1", "guide"]], ["A note."])])
+"""
+
+
+@on_page
+async def test_pairs_of_a_design_appear_as_they_finish_stay_after_a_stop_and_open(page, studio):
+    """A program in the place of the command line, which writes its lines."""
+    jobs, path = studio.session.jobs, studio.session.stored.path
+    answer = path.with_name("other.toml")
+    answer.write_text(TEXT.replace("A guide.", "An answer."))
+    jobs.program, real = ("-c", DESIGN), jobs.program
+    options = ("--answer", str(answer))
+    try:
+        stopped = await page.ask(say.Run, command="design", study=SPECIFICATION, record=None, options=(*options, "--wait"))
+        await page.until(lambda page: len(_job(page, stopped).pairs) == 2)
+        assert _job(page, stopped).state == "runs"
+        await page.ask(say.Cancel, job=stopped.job)
+        ended = await page.ask(say.Run, command="design", study=SPECIFICATION, record=None, options=options)
+        await page.until(lambda page: _job(page, ended).state == "done")
+    finally:
+        jobs.program = real
+    rows = [(each.actuator, each.goal, each.reason) for each in _job(page, stopped).pairs]
+    assert rows == [("small", "", "too weak"), ("large", "1 kHz", "")]
+    assert [(each.actuator, each.goal) for each in _job(page, ended).pairs] == [("small", ""), ("large", "2 kHz")]
+    assert _job(page, ended).tables == (say.ResultTable("Stages", (("", "architecture"), ("1", "guide")), ("A note.",)),)
+    asked = {"file": "new.toml", "case": "", "job": stopped.job, "pair": "guide with large"}
+    await page.ask(say.Set, address=THICKNESS, text="0.8 mm")
+    for fields in ({"discard": False}, {"discard": True, "pair": "guide with small"}, {"discard": True, "file": "other.toml"}):
+        assert isinstance(await page.ask(say.Open, **asked | fields), say.Refusal)
+    assert not path.with_name("new.toml").exists()
+    assert '"0.8 mm"' in page.state.text
+    await page.ask(say.Open, **asked, discard=True)
+    assert studio.session.stored.path.name == "new.toml"
+    assert studio.session.stored.text == answer.read_text()
+    late = await opened(studio)
+    await late.until(lambda page: say.Jobs in page.told)  # a page that is loaded again shows the rows
+    await late.close()
+    await page.ask(say.Open, file=path.name, case="", discard=True, job=None, pair="")
+
+
+@pytest.mark.full
+@on_page
+async def test_the_tables_of_a_design_job_are_those_of_the_command(page, studio):
+    spec = SPECIFICATION.replace("requirements.drift", "# requirements.drift")
+    said = await page.ask(say.Run, command="design", study=spec, record=None, options=("--architecture", "guide", "--workers", "1"))
+    await page.until(lambda page: _job(page, said).state in ("done", "failed"))
+    expected = list(answer_tables(find_designs(loads_specification(spec), ("guide",))))
+    found = _job(page, said)
+    assert [(each.title, [list(row) for row in each.rows], each.notes) for each in found.tables] == [
+        (each.title, each.texts(), each.notes) for each in expected
+    ]
+    assert found.report
+    assert {(each.architecture, each.actuator) for each in found.pairs if each.file} == {
+        (row[1], row[2]) for row in found.tables[0].rows[1:]
+    }
 
 
 @pytest.mark.full

@@ -13,6 +13,7 @@ from playwright.sync_api import Browser, Page
 
 import flexstage as fs
 from flexstage.models.lumped import lumped
+from flexstage.studies.synthesis.specification import load_specification
 from tests.apps.studio_page import served as served_studio
 from tests.browser.conftest import Watch, browser_path
 
@@ -529,3 +530,52 @@ def test_a_design_is_begun_from_a_shipped_case_saved_under_another_name_and_open
     until(made, "window.studio?.state.value?.file === 'stage.toml' && !studio.state.value.undo")
     assert "# mine" not in file.with_name("copy.toml").read_text(encoding="utf-8")
     made.close()
+
+
+def test_a_specification_shows_errors_at_fields_rows_as_pairs_finish_and_an_answer_opens(browser: Browser, serve: Serve) -> None:
+    url, file = serve(fs.dumps(fs.case("parallelogram")))
+    watch = Watch(LOCAL)
+    made = watch.over(browser.new_page(viewport={"width": 1440, "height": 900}))
+    made.goto(url)
+    until(made, "studio.state.value?.name")
+    made.get_by_role("tab", name="Specification").click()
+    pane = made.locator("#pane-specification")
+    until(made, "document.querySelector('#pane-specification [aria-label=mass]')?.value === '30 g'")
+    pane.get_by_label("mass", exact=True).fill("30")
+    pane.get_by_label("y", exact=True).fill("5 kg")
+    pane.get_by_label("limit").fill("at least 5 mm")
+    until(made, "document.querySelectorAll('#pane-specification .fault').length === 3")
+    faults = {each: pane.locator("label", has=made.get_by_label(each, exact=True)).locator(".fault").inner_text() for each in ("mass", "y")}
+    assert faults["mass"].startswith('unit missing (got "30")')
+    assert faults["y"].startswith('must be a displacement (got "5 kg", a mass)')
+    pane.get_by_role("button", name="Start design").click()
+    made.get_by_text("The specification has errors: correct them first.").wait_for()
+    for name, text in {"mass": "40 g", "y": "50 um", "limit": "at least 400 Hz", "like": "PSt 1000/10/150 VS18", "starts": "1"}.items():
+        field = pane.get_by_label(name, exact=True)
+        field.evaluate("each => { for (let at = each; at; at = at.parentElement) if ('open' in at) at.open = true; }")
+        field.fill(text)
+    until(made, "!document.querySelector('#pane-specification .fault')")
+    pane.get_by_role("button", name="Save as").click()
+    made.locator("dialog").get_by_role("button", name="save").click()
+    made.locator("dialog").wait_for(state="detached")
+    assert load_specification(file.with_name("scanner.toml")).payload.mass == pytest.approx(0.04)
+
+    pane.get_by_label("options").fill("--architecture carriages")
+    pane.get_by_role("button", name="Start design").click()
+    until(made, "document.querySelector('#pane-specification .pairs tbody button')")
+    until(made, "document.querySelector('#pane-specification h4')?.textContent === 'Stages for \"scanner\"'")
+    made.evaluate("() => studio.ask({ kind: 'edit', text: studio.state.value.text + '# mine', revision: studio.state.value.revision })")
+    until(made, "!studio.state.value.saved")
+    pane.get_by_role("button", name="open 1").click()
+    made.locator("dialog").get_by_role("button", name="open").click()
+    made.get_by_text("stage.toml: it has unsaved changes. Save or discard them first.").wait_for()
+    made.get_by_label("discard the unsaved changes").check()
+    with made.expect_navigation():
+        made.locator("dialog").get_by_role("button", name="open").click()
+    until(made, "window.studio?.state.value?.file === 'carriages-pst-1000-10-150-vs18.toml'")
+    assert made.evaluate("() => studio.state.value.problems") == []
+    made.get_by_role("tab", name="Specification").click()
+    until(made, "document.querySelector('#pane-specification .pairs tbody button')")
+    until(made, "document.querySelector('#pane-specification [aria-label=mass]')?.value === '40 g'")
+    made.close()
+    watch.require_silence()

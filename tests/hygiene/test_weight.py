@@ -16,14 +16,14 @@ CEILINGS = {
     "cases": 1_200,
     "models": 97_800,
     "analysis": 70_400,
-    "show": 63_600,
+    "show": 63_700,
     "solid": 75_700,
     "experiment": 98_800,
     "control": 154_000,
-    "studies": 63_600,
-    "apps": 37_900,
+    "studies": 64_000,
+    "apps": 39_200,
     ".": 400,
-    "all": 814_000,
+    "all": 815_800,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

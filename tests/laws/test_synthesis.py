@@ -237,6 +237,19 @@ def test_elastic_bodies_keep_the_required_frequency() -> None:
     assert answer.values["frequency.1"] > answer.elastic["frequency.1"] >= 1000.0
 
 
+def test_the_price_of_a_requirement_is_what_its_relaxation_gives() -> None:
+    """1 % less displacement along x and y: the frequency rises by the mean price of both answers, though their limits are corrected."""
+    text = f'{SCANNER}make.step = "1 nm"'  # the prices are those before rounding
+    before, after = (fs.design(loads_specification(each), ("carriages",)).best for each in (text, text.replace('"50 um"', '"49.5 um"')))
+    assert before is not None
+    assert after is not None
+    assert before.rounds > 1
+    assert [each.binding[0].name for each in (before, after)] == ["stroke.x at least 50 um", "stroke.x at least 49.5 um"]
+    price = 0.5 * (before.binding[0].price + after.binding[0].price)
+    assert after.goal - before.goal == pytest.approx(-0.5e-6 * price, rel=1e-2)
+    assert before.active == tuple(each.name for each in before.binding)
+
+
 def with_density(bodies: Mapping[str, fs.Body], factor: float) -> dict[str, fs.Body]:
     """Bodies of a stage or unit, all but the platform of a denser material."""
     return {
@@ -387,9 +400,15 @@ def test_bad_specifications(old: str) -> None:
 
 def test_one_run_names_unreadable_numbers_and_those_out_of_bounds() -> None:
     text = SCANNER.replace('"30 g"', '"30 mm"').replace('x = "50 um"', 'x = "-50 um"').replace('"40 mm"', '"0 mm"')
+    text = text.replace("500 Hz", "500 mm")
     with pytest.raises(DesignError) as caught:
         loads_specification(text)
-    assert [str(each).split(": ")[1] for each in caught.value.findings] == ["payload.mass", "motion.x", "box.size.z"]
+    assert [str(each).split(": ")[1] for each in caught.value.findings] == [
+        "payload.mass",
+        "motion.x",
+        "box.size.z",
+        "requirements.frequency",
+    ]
 
 
 def guide_specification(goal: str = 'goals.minimise = "envelope.z"') -> Specification:
@@ -475,10 +494,14 @@ def test_large_displacements_reduce_the_stroke_as_the_force_that_holds_them_grow
 def test_results_of_pairs_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Resumed without a search: the same bytes; as by two processes."""
     spec = replace(loads_specification(SCANNER), actuators=ActuatorTable(like=("PSt 1000/10/150 VS18", "PSt 1000/16/200 VS25")), starts=1)
-    first = as_text(fs.design(spec, ("carriages",), keep=tmp_path, how=Run(workers=2)))
+    heard = list[Answer | FailedPair]()
+    found = fs.design(spec, ("carriages",), keep=tmp_path, how=Run(workers=2), finished=heard.append)
+    first = as_text(found)
+    assert {id(each) for each in (*found.answers, *found.failed)} == {id(each) for each in heard}
     assert len(list(tmp_path.iterdir())) == 2
     monkeypatch.setattr(answers, "search", None)
-    assert as_text(fs.design(spec, ("carriages",), keep=tmp_path, how=Run(workers=1, resume=True))) == first
+    assert as_text(fs.design(spec, ("carriages",), keep=tmp_path, how=Run(workers=1, resume=True), finished=heard.append)) == first
+    assert len(heard) == 4
     monkeypatch.undo()
     assert not FULL or as_text(fs.design(spec, ("carriages",))) == first
 
@@ -509,7 +532,9 @@ def test_a_front_has_the_goal_at_its_first_end(tmp_path: Path) -> None:
         assert len(values) > 2
         assert values == sorted(values, reverse=True)
     assert "Front of both goals" in [each.title for each in answer_tables(found)]
-    assert "front of both goals" in answer_report(found)
+    report = answer_report(found)
+    assert "front of both goals" in report
+    assert f"Binding limits of 1: {found.best.architecture} with {found.best.actuator}" in report
 
 
 def test_rotations_need_an_inertia() -> None:

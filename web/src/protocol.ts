@@ -8,7 +8,7 @@
  * the requests except for `Drag` and `Pose`. Of these the newest is answered, and older ones are `Done`. Everything else is pushed to all
  * pages when it changes. Numbers are in SI units, null if unknown.
  */
-export const VERSION = 5;
+export const VERSION = 6;
 
 /** A finding: its object or address, problem, advice; line and column from 1 if the text shows them. */
 export interface Problem {
@@ -194,7 +194,27 @@ export interface Snippet {
   fields: Record<string, string>;
 }
 
-/** A job: its state, fraction done and estimated seconds left, its output, its report's address if any, its key figures. */
+/** A pair of a design job: its goal, or the reason of its failure; `file` is a name for its design, empty without an answer. */
+export interface PairRow {
+  architecture: string;
+  actuator: string;
+  goal: string;
+  reason: string;
+  file: string;
+}
+
+/** A table of a result as text: its heads are the first row. */
+export interface ResultTable {
+  title: string;
+  rows: string[][];
+  notes: string[];
+}
+
+/**
+ * A job: its state, fraction done and estimated seconds left, its output, its report's address if any, its key figures.
+ *
+ * A design job has its finished `pairs`, and at its end the `tables` of its command.
+ */
 export interface JobState {
   job: number;
   command: string;
@@ -205,6 +225,8 @@ export interface JobState {
   said: string[];
   report: string | null;
   figures: Figure[];
+  pairs: PairRow[];
+  tables: ResultTable[];
 }
 
 /** The unsaved text of an ended studio: its last change [s since 1970], and whether the file was changed since. */
@@ -387,19 +409,25 @@ export interface Save {
   file: string;
 }
 
-/** Request for the design files of the folder, and the shipped cases. */
+/** Request for the files of the folder, and the shipped cases. */
 export interface Browse {
   kind: "browse";
   id: number;
 }
 
-/** Open a file of the folder, written first from a shipped `case` if named. Refused with unsaved changes, unless `discard`. */
+/**
+ * Open a file of the folder, written first from a shipped `case` or from the answer for a `pair` of a `job` if named.
+ *
+ * Refused with unsaved changes, unless `discard`.
+ */
 export interface Open {
   kind: "open";
   id: number;
   file: string;
   case: string;
   discard: boolean;
+  job: number | null;
+  pair: string;
 }
 
 /** Read the text from disk; the present one remains in undo. */
@@ -445,14 +473,36 @@ export interface Look {
 export interface JobForm {
   kind: "jobform";
   id: number;
-  command: "sweep" | "optimise" | "verify" | "identify" | "loop";
+  command: "sweep" | "optimise" | "verify" | "identify" | "loop" | "design";
 }
 
-/** Start a command as a job; `study` is the text of its study or set-up if it needs one, `record` a file's path. */
+/**
+ * Check a specification: a `text`, with the `values` of its form if there are any, as TOML.
+ *
+ * An empty text is that of a `file` of the folder if named, or else the last one, at first an example.
+ */
+export interface Specify {
+  kind: "specify";
+  id: number;
+  text: string;
+  file: string;
+  values: string;
+}
+
+/** Write a specification to a file of the folder. Refused if the file exists, unless `over` allows overwriting. */
+export interface SaveSpecification {
+  kind: "savespecification";
+  id: number;
+  text: string;
+  file: string;
+  over: boolean;
+}
+
+/** Start a command as a job; `study` is the text of its study, set-up or specification if it needs one, `record` a file's path. */
 export interface Run {
   kind: "run";
   id: number;
-  command: "analyse" | "sweep" | "optimise" | "verify" | "identify" | "loop";
+  command: "analyse" | "sweep" | "optimise" | "verify" | "identify" | "loop" | "design";
   study: string | null;
   record: string | null;
   options: string[];
@@ -723,11 +773,12 @@ export interface Snippets {
   snippets: Snippet[];
 }
 
-/** The design files of the folder, and the shipped cases with their summaries. */
+/** The files of the folder, those of them that are specifications, and the shipped cases with their summaries. */
 export interface Folder {
   kind: "folder";
   to: number;
   files: string[];
+  specifications: string[];
   cases: Record<string, string>;
 }
 
@@ -737,6 +788,15 @@ export interface Blank {
   to: number;
   command: string;
   schema: unknown;
+}
+
+/** A specification: its text and values, null if it cannot be read, and its errors by address. */
+export interface Specified {
+  kind: "specified";
+  to: number;
+  text: string;
+  values: unknown;
+  problems: Problem[];
 }
 
 /** All jobs; pushed at each progress. */
@@ -792,6 +852,8 @@ export type Request =
   | Insert
   | Look
   | JobForm
+  | Specify
+  | SaveSpecification
   | Run
   | Cancel;
 
@@ -819,6 +881,7 @@ export type Said =
   | Snippets
   | Folder
   | Blank
+  | Specified
   | Jobs
   | Done
   | Refusal;

@@ -69,7 +69,7 @@ export class Header {
   }
 
   /** Until what was typed and dragged has come to the server. */
-  private settled(): Promise<void> {
+  settled(): Promise<void> {
     this.editor.flush();
     return this.studio.connection.idle("edit", "rest");
   }

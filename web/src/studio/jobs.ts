@@ -6,7 +6,7 @@ import { Form, filled, options, toml } from "./form";
 import type { Entry, Schema } from "./form";
 import type { Studio } from "./studio";
 
-type Command = Run["command"];
+type Command = Exclude<Run["command"], "design">; // the pane of specifications starts a design
 
 interface Kind {
   title: string;
@@ -106,30 +106,31 @@ export class JobsPane {
   private show(said: Jobs): void {
     const best = said.jobs.filter((each) => each.command === "optimise" && each.state === "done").at(-1);
     const newest = new Map(said.jobs.filter((each) => each.figures.length).map((each) => [each.command, each]));
-    fill(this.list, ...[...said.jobs].reverse().map((each) => this.job(each, each === best && this.studio.state.value?.pins.includes(OPTIMUM), newest.get(each.command) === each ? said.jobs : [])));
+    fill(this.list, ...[...said.jobs].reverse().map((each) => jobArticle(this.studio, each, each === best && this.studio.state.value?.pins.includes(OPTIMUM), newest.get(each.command) === each ? said.jobs : [])));
     for (const each of said.jobs) if (this.live.has(each.job) && isOver(each)) this.studio.tell(`${each.command}: ${each.state}.`, each.state === "failed");
     for (const each of said.jobs) if (isOver(each) && this.wanted.delete(each.job) && each.report) showReport(each.report, "Report");
     this.live = new Set(said.jobs.filter((each) => !isOver(each)).map((each) => each.job));
   }
+}
 
-  private job(each: JobState, hasOptimum = false, runs: JobState[] = []): HTMLElement {
-    const isLive = !isOver(each);
-    const left = each.left === null ? "" : `, ${digits(Math.ceil(each.left), 3)} s left`;
-    const cancel = h("button", { type: "button", click: () => this.studio.ask({ kind: "cancel", job: each.job }) }, "cancel");
-    const address = each.report;
-    const show = address && h("button", { type: "button", click: () => showReport(address, `Report of ${each.command}`) }, "show the report");
-    const take = h("button", { type: "button", title: "make it the present design; undo takes it back", click: () => this.studio.ask({ kind: "recall", name: OPTIMUM }) }, "take the optimum");
-    const bar = h("progress", { ariaLabel: each.command, max: 1, ...(each.fraction === null ? {} : { value: each.fraction }) });
-    return h(
-      "article",
-      { className: `job ${each.state}` },
-      h("h3", {}, `${each.job}. ${each.command} `, h("span", { className: "quiet" }, `${each.state}${left}`), isLive && cancel, show, hasOptimum && take),
-      isLive && bar,
-      each.text !== each.state && h("p", {}, each.text),
-      runs.length > 0 && compared(runs.filter((one) => one.command === each.command && one.figures.length)),
-      each.said.length > 0 && h("details", { open: each.state !== "done" }, h("summary", {}, "output"), h("pre", {}, each.said.join("\n"))),
-    );
-  }
+/** A job: its state, progress, report, key figures and output. */
+export function jobArticle(studio: Studio, each: JobState, hasOptimum = false, runs: JobState[] = []): HTMLElement {
+  const isLive = !isOver(each);
+  const left = each.left === null ? "" : `, ${digits(Math.ceil(each.left), 3)} s left`;
+  const cancel = h("button", { type: "button", click: () => studio.ask({ kind: "cancel", job: each.job }) }, "cancel");
+  const address = each.report;
+  const show = address && h("button", { type: "button", click: () => showReport(address, `Report of ${each.command}`) }, "show the report");
+  const take = h("button", { type: "button", title: "make it the present design; undo takes it back", click: () => studio.ask({ kind: "recall", name: OPTIMUM }) }, "take the optimum");
+  const bar = h("progress", { ariaLabel: each.command, max: 1, ...(each.fraction === null ? {} : { value: each.fraction }) });
+  return h(
+    "article",
+    { className: `job ${each.state}` },
+    h("h3", {}, `${each.job}. ${each.command} `, h("span", { className: "quiet" }, `${each.state}${left}`), isLive && cancel, show, hasOptimum && take),
+    isLive && bar,
+    each.text !== each.state && h("p", {}, each.text),
+    runs.length > 0 && compared(runs.filter((one) => one.command === each.command && one.figures.length)),
+    each.said.length > 0 && !each.tables.length && h("details", { open: each.state !== "done" }, h("summary", {}, "output"), h("pre", {}, each.said.join("\n"))),
+  );
 }
 
 /** The key figures of runs of one command, a column for each. */
@@ -210,4 +211,4 @@ class StudyForm {
   }
 }
 
-const isOver = (each: JobState): boolean => each.state !== "waits" && each.state !== "runs";
+export const isOver = (each: JobState): boolean => each.state !== "waits" && each.state !== "runs";

@@ -3,7 +3,7 @@
 import { byId, fill, h } from "./dom";
 import type { Studio } from "./studio";
 
-const TABS = { figures: "Figures", part: "Part", freedom: "Freedom", gaps: "Gaps", build: "Build", jobs: "Jobs" };
+const TABS = { figures: "Figures", part: "Part", freedom: "Freedom", gaps: "Gaps", build: "Build", specification: "Specification", jobs: "Jobs" };
 
 export function tabs(studio: Studio): void {
   const show = (name: string): void => {

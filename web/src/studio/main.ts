@@ -19,6 +19,7 @@ import { ModeBar, motionStrip } from "./modes";
 import { Numbers } from "./numbers";
 import { PartCard } from "./part";
 import { Responses } from "./response";
+import { SpecificationPane } from "./specification";
 import { StageView } from "./stage";
 import { Studio } from "./studio";
 import { Travel } from "./travel";
@@ -40,6 +41,7 @@ new FigureTable(studio);
 new FreedomPane(studio, stage);
 new GapsPane(studio);
 new BuildPane(studio);
+new SpecificationPane(studio, () => header.settled());
 new Responses(studio);
 
 /** A part of the picture was clicked: a link has a card, the rest has its line. */

@@ -21,7 +21,7 @@ from flexstage.studies.synthesis.answers import Answers, all_names
 from flexstage.studies.synthesis.answers import design as find_designs
 from flexstage.studies.synthesis.architecture import DESIGN
 from flexstage.studies.synthesis.show.report import answer_report
-from flexstage.studies.synthesis.show.tables import answer_tables
+from flexstage.studies.synthesis.show.tables import answer_tables, pair_row
 from flexstage.studies.synthesis.specification import load_specification
 
 _KEPT = ".pairs"
@@ -61,7 +61,9 @@ def design(
             close_loop=sensitivity_crossover if loop else None,
             keep=None if output is None else output / _KEPT,
             how=Run(workers, resume),
+            finished=lambda result: shown.result("pair", pair_row(result)),
         )
+        shown.result("tables", [(table.title, table.texts(), table.notes) for table in answer_tables(found)])
     if output is not None and found.answers:
         _write(found, output)
     if found.interrupted:

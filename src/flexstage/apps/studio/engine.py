@@ -41,6 +41,7 @@ TASKS: Mapping[str, str] = {
     "solid_modes": "solids:solid_modes",
     "compared": "results:all_figures",
     "form": "forms:form",
+    "specify": "forms:specify",
 }
 """Tasks by name: module and function, imported at the first call."""
 TELLING = frozenset({"travelled"})

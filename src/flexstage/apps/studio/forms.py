@@ -1,13 +1,14 @@
-"""Forms of the studio's jobs: the JSON Schema of a command's input, and the key figures of its result."""
+"""Forms of the studio's jobs: the JSON Schema of a command's input, a specification and its values, the key figures of a result."""
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from flexstage.apps.cli.option_groups import default_last
-from flexstage.apps.studio.protocol import Figure
+from flexstage.apps.studio.protocol import Figure, Problem, Specified
 
 _STUDIES = ("sweep", "optimise")
 _OWN = ("--help", "--stage", "--report", "--json", "--csv", "--xlsx")
@@ -24,6 +25,10 @@ def form(command: str) -> Mapping[str, Any]:
         from flexstage.studies.form import study_schema
 
         return study_schema()
+    if command == "design":
+        from flexstage.studies.synthesis.specification import specification_schema
+
+        return specification_schema()
     return {"properties": dict(_options(command))}
 
 
@@ -50,6 +55,55 @@ def _property(option: Any, names: str, meaning: str) -> dict[str, Any]:
     kind = {"enum": choices} if choices else {"type": "boolean" if option.is_flag else "string"}
     many = {"minItems": option.nargs} if option.nargs > 1 else {}
     return {"description": default_last(meaning), "examples": [value], **kind, **many}
+
+
+def specify(number: int, text: str, file: str, values: str) -> Specified:
+    """A specification's text in the folder of `file`, an example without one, with other `values` (TOML) if any; its values and errors."""
+    from flexstage.base.finding import DesignError
+    from flexstage.mechanism.store.decode import dotted
+    from flexstage.mechanism.store.file import parse_toml
+    from flexstage.mechanism.store.lines import spot_of
+    from flexstage.studies.synthesis.specification import EXAMPLE, loads_specification
+
+    text, tree, problems = text or EXAMPLE, None, list[Problem]()
+    try:
+        text = _with_values(text, values, parse_toml(values, file)) if values else text
+        tree = parse_toml(text, file)
+        if isinstance(tree.get("requirements"), dict):
+            tree["requirements"] = dotted("requirements", tree["requirements"])
+        loads_specification(text, where=file)
+    except DesignError as error:
+        for each in error.findings:
+            spot = spot_of(each, file)
+            where = "specification" if spot.address in (file, "file", "") else spot.address
+            problems.append(Problem(where, each.what, each.advice, spot.line, spot.column))
+    return Specified(number, text, json.loads(json.dumps(tree, default=str)), tuple(problems))
+
+
+def _with_values(text: str, values: str, tree: Mapping[str, Any]) -> str:
+    """A TOML text with other values, its comments preserved where its layout allows that."""
+    import tomllib
+
+    import tomlkit  # takes long to import
+    from tomlkit.exceptions import TOMLKitError
+
+    try:
+        document = tomlkit.parse(text)
+        _replace_values(document, tree)
+        changed = tomlkit.dumps(document)
+        return changed if tomllib.loads(changed) == tree else values
+    except (TOMLKitError, tomllib.TOMLDecodeError):
+        return values
+
+
+def _replace_values(table: Any, values: Mapping[str, Any]) -> None:
+    for key in [key for key in table if key not in values]:
+        del table[key]
+    for key, value in values.items():
+        if isinstance(value, Mapping) and isinstance(table.get(key), Mapping):
+            _replace_values(table[key], value)
+        elif key not in table or table[key] != value:
+            table[key] = value
 
 
 def key_figures(document: Mapping[str, Any]) -> tuple[Figure, ...]:
@@ -80,6 +134,10 @@ def _optimum(document: Mapping[str, Any]) -> _Rows:
         yield f"margin of {each['measure']}", each["margin"], "1"
 
 
+def _answers(document: Mapping[str, Any]) -> _Rows:
+    return ((f"{each['architecture']}, {each['actuator']}", each["goal"], each["unit"]) for each in document["answers"])
+
+
 def _differences(document: Mapping[str, Any]) -> _Rows:
     rows = (each for each in document["rows"] if each["group"] == "stage")
     return ((f"{each['figure']}, theory over finite elements - 1", each["difference"], "1") for each in rows)
@@ -107,6 +165,7 @@ _FIGURES: Mapping[str, Callable[[Mapping[str, Any]], _Rows]] = {
     "analyse": _verdicts,
     "sweep": _ranges,
     "optimise": _optimum,
+    "design": _answers,
     "verify": _differences,
     "identify": _modes,
     "loop": _loop,

@@ -9,26 +9,29 @@ import os
 import secrets
 import signal
 import sys
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from flexstage.apps.studio import protocol as say
 from flexstage.apps.studio.design.history import Stored
 from flexstage.apps.studio.forms import key_figures
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.processes.jobs import environment
-from flexstage.base.processes.progress import LINE, LINES
+from flexstage.base.processes.progress import LINE, LINES, RESULT
 from flexstage.base.storage.store import make_temporary_folder, write
 
 _WRITING = ("--report", "--json", "--csv", "--mat", "--output", "-o", "--export", "--xlsx", "--hardware", "--example")
-_STUDIES = ("sweep", "optimise")
+_STUDIES, _DESIGN = ("sweep", "optimise"), "design"
 _ENDS = {"optimise": "done; the optimum is pinned among the figures"}
 _LINES = 12
 """Number of stored last output lines of a job."""
 _PATIENCE = 3.0
 """Time limit for the cleanup of an ended job [s]."""
 _MOST = 50
+_LONGEST = 2**20
+"""Stored characters of a line of output: the design of an answer is one."""
 
 
 @dataclass
@@ -43,6 +46,8 @@ class _Job:
     state: say.JobState
     process: asyncio.subprocess.Process | None = None
     files: list[Path] = field(default_factory=list[Path])
+    designs: dict[str, str] = field(default_factory=dict[str, str])
+    """Texts of the answers of a design job by pair."""
     names: dict[str, str] = field(default_factory=dict[str, str])
     """Names of the studio's temporary files, and their replacements for the user; longer ones first."""
 
@@ -74,6 +79,8 @@ class Jobs:
             raise refuse(request.command, f"{_MOST} jobs are waiting", "Cancel some of them")
         if request.command in _STUDIES and request.study is None:
             raise refuse(request.command, "study missing", "Write one, see docs/studies.md")
+        if request.command == _DESIGN and request.study is None:
+            raise refuse(request.command, "specification missing", "Fill in its form")
         if (request.record or request.command == "identify") and not (request.record and self._is_file(request.record)):
             raise refuse(request.command, "record not found", "Name a file, relative to the folder of the design")
         for option in request.options:
@@ -96,6 +103,13 @@ class Jobs:
         with contextlib.suppress(OSError, ValueError):  # an invalid name
             return (self.path.parent / record).is_file()
         return False
+
+    def answer(self, number: int | None, pair: str) -> str:
+        """The design of a pair of a job; refused for an unknown one."""
+        job = self._jobs.get(number or 0)
+        if job is None or pair not in job.designs:
+            raise refuse(pair, "unknown answer", "Choose one of a design job")
+        return job.designs[pair]
 
     def cancel(self, number: int) -> None:
         """End a job; refused for an unknown number."""
@@ -173,6 +187,8 @@ class Jobs:
     def _arguments(self, job: _Job) -> list[str]:
         """The files for its command; an unsaved text is stored temporarily next to its file."""
         request, folder = job.request, self._folder or Path()
+        if request.command == _DESIGN:
+            return [str(self._beside(job, "specification.toml", "specification", request.study or ""))]
         design = job.path
         if not design.is_file() or Stored.read(design).text != job.text:
             design = self._beside(job, "toml", job.path.name, job.text)
@@ -196,6 +212,10 @@ class Jobs:
         return write(path, text)
 
     def _hear(self, job: _Job, line: str) -> None:
+        if line.startswith(f"{RESULT} "):
+            with contextlib.suppress(ValueError):  # the output of another process in this line
+                self._take(job, **json.loads(line.partition(" ")[2]))
+            return
         if not line.startswith(f"{LINE} "):
             if line.strip() and not (self._folder and line.startswith(f"Wrote {self._folder}")):  # the page shows its results
                 job.state = replace(job.state, said=(*job.state.said, job.as_read(line))[-_LINES:])
@@ -203,6 +223,16 @@ class Jobs:
         _, fraction, left, text = [*job.as_read(line).split(" ", 3), ""][:4]
         with contextlib.suppress(ValueError):
             self._set(job, replace(job.state, text=text, fraction=float(fraction), left=None if left == "-" else float(left)))
+
+    def _take(self, job: _Job, pair: Mapping[str, str] | None = None, tables: Iterable[tuple[Any, ...]] = ()) -> None:
+        """Take a pair of a design job, in place of its earlier result, or the tables at its end."""
+        state = replace(job.state, tables=tuple(say.ResultTable(title, rows, notes) for title, rows, notes in tables))
+        if pair is not None:
+            row = say.PairRow(**{key: value for key, value in pair.items() if key != "design"})
+            names = row.architecture, row.actuator
+            job.designs[" with ".join(names)] = pair["design"]
+            state = replace(state, pairs=(*(each for each in state.pairs if (each.architecture, each.actuator) != names), row))
+        self._set(job, state)
 
     def _set(self, job: _Job, state: say.JobState) -> None:
         if job.state.state != "cancelled":
@@ -254,6 +284,6 @@ async def _lines(stream: asyncio.StreamReader) -> AsyncIterator[str]:
         *whole, rest = (rest + chunk).split(b"\n")
         for line in whole:
             yield line.decode(errors="replace").rstrip("\r")
-        rest = rest[-65536:]
+        rest = rest[-_LONGEST:]
     if rest:
         yield rest.decode(errors="replace")

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-VERSION = 5
+VERSION = 6
 """Increased if a message changes its meaning."""
 
 # --- parts of messages ---
@@ -230,8 +230,31 @@ class Snippet:
 
 
 @dataclass(frozen=True)
+class PairRow:
+    """A pair of a design job: its goal, or the reason of its failure; `file` is a name for its design, empty without an answer."""
+
+    architecture: str
+    actuator: str
+    goal: str
+    reason: str
+    file: str
+
+
+@dataclass(frozen=True)
+class ResultTable:
+    """A table of a result as text: its heads are the first row."""
+
+    title: str
+    rows: tuple[tuple[str, ...], ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class JobState:
-    """A job: its state, fraction done and estimated seconds left, its output, its report's address if any, its key figures."""
+    """A job: its state, fraction done and estimated seconds left, its output, its report's address if any, its key figures.
+
+    A design job has its finished `pairs`, and at its end the `tables` of its command.
+    """
 
     job: int
     command: str
@@ -242,6 +265,8 @@ class JobState:
     said: tuple[str, ...]
     report: str | None
     figures: tuple[Figure, ...] = ()
+    pairs: tuple[PairRow, ...] = ()
+    tables: tuple[ResultTable, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -453,19 +478,24 @@ class Save:
 
 @dataclass(frozen=True)
 class Browse:
-    """Request for the design files of the folder, and the shipped cases."""
+    """Request for the files of the folder, and the shipped cases."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Open:
-    """Open a file of the folder, written first from a shipped `case` if named. Refused with unsaved changes, unless `discard`."""
+    """Open a file of the folder, written first from a shipped `case` or from the answer for a `pair` of a `job` if named.
+
+    Refused with unsaved changes, unless `discard`.
+    """
 
     id: int
     file: str
     case: str
     discard: bool
+    job: int | None
+    pair: str
 
 
 @dataclass(frozen=True)
@@ -516,15 +546,38 @@ class JobForm:
     """Request for the form of a command."""
 
     id: int
-    command: Literal["sweep", "optimise", "verify", "identify", "loop"]
+    command: Literal["sweep", "optimise", "verify", "identify", "loop", "design"]
+
+
+@dataclass(frozen=True)
+class Specify:
+    """Check a specification: a `text`, with the `values` of its form if there are any, as TOML.
+
+    An empty text is that of a `file` of the folder if named, or else the last one, at first an example.
+    """
+
+    id: int
+    text: str
+    file: str
+    values: str
+
+
+@dataclass(frozen=True)
+class SaveSpecification:
+    """Write a specification to a file of the folder. Refused if the file exists, unless `over` allows overwriting."""
+
+    id: int
+    text: str
+    file: str
+    over: bool
 
 
 @dataclass(frozen=True)
 class Run:
-    """Start a command as a job; `study` is the text of its study or set-up if it needs one, `record` a file's path."""
+    """Start a command as a job; `study` is the text of its study, set-up or specification if it needs one, `record` a file's path."""
 
     id: int
-    command: Literal["analyse", "sweep", "optimise", "verify", "identify", "loop"]
+    command: Literal["analyse", "sweep", "optimise", "verify", "identify", "loop", "design"]
     study: str | None
     record: str | None
     options: tuple[str, ...]
@@ -818,10 +871,11 @@ class Snippets:
 
 @dataclass(frozen=True)
 class Folder:
-    """The design files of the folder, and the shipped cases with their summaries."""
+    """The files of the folder, those of them that are specifications, and the shipped cases with their summaries."""
 
     to: int
     files: tuple[str, ...]
+    specifications: tuple[str, ...]
     cases: dict[str, str]
 
 
@@ -832,6 +886,16 @@ class Blank:
     to: int
     command: str
     schema: Any
+
+
+@dataclass(frozen=True)
+class Specified:
+    """A specification: its text and values, null if it cannot be read, and its errors by address."""
+
+    to: int
+    text: str
+    values: Any
+    problems: tuple[Problem, ...]
 
 
 @dataclass(frozen=True)
@@ -890,6 +954,8 @@ Request: TypeAlias = (
     | Insert
     | Look
     | JobForm
+    | Specify
+    | SaveSpecification
     | Run
     | Cancel
 )
@@ -917,6 +983,7 @@ Said: TypeAlias = (
     | Snippets
     | Folder
     | Blank
+    | Specified
     | Jobs
     | Done
     | Refusal

@@ -61,6 +61,8 @@ class Session:
         self.drafts = self._found_drafts()
         """Unsaved texts of ended studios, by the name of their journal."""
         self._unprotected = ""
+        self._specification = ""
+        """The last text of a specification."""
         self.history = History(stored.text)
         self.reading: Reading | None = None
         self.problems: tuple[say.Problem, ...] = ()
@@ -167,23 +169,26 @@ class Session:
         self._start(self._read())
 
     async def _browse(self, request: say.Browse, *_: Any) -> say.Said:
-        files = sorted(each.name for each in self.stored.path.parent.glob("[!.]*.toml"))
-        return say.Folder(request.id, tuple(files), await self._task_value(self._quick, "gallery"))
+        paths = sorted(each for each in self.stored.path.parent.glob("[!.]*.toml") if each.is_file())
+        specifications = tuple(each.name for each in paths if b'"flexstage specification ' in each.read_bytes())
+        return say.Folder(request.id, tuple(each.name for each in paths), specifications, await self._task_value(self._quick, "gallery"))
 
     async def _open(self, request: say.Open, *_: Any) -> None:
         path = self._in_folder(request.file)
         if self.history.text != self.stored.text and not request.discard:
             raise refuse(self.stored.path.name, "it has unsaved changes", "Save or discard them first")
-        if request.case:
+        if request.case or request.pair:
+            text = self.jobs.answer(request.job, request.pair) if request.pair else None
             if path.exists():
                 raise refuse(path.name, "file exists", "Choose another name")
-            write(path, await self._task_value(self._quick, "shipped", request.case))
+            write(path, text or await self._task_value(self._quick, "shipped", request.case))
         elif not path.is_file():
             raise refuse(path.name, "file not found", "Choose one of this folder")
         self._turn_to(Stored.read(path))
         self.history = History(self.stored.text, revision=self.history.revision + 1)
         self.reading, self.sound, self._warnings = None, "", ()
-        for each in (self.shown, self._failures, self._last):
+        self.shown = {kind: each for kind, each in self.shown.items() if kind is say.Jobs}
+        for each in (self._failures, self._last):
             each.clear()
         await self.open()
 
@@ -298,6 +303,19 @@ class Session:
     async def _form(self, request: say.JobForm, *_: Any) -> say.Said:
         return say.Blank(request.id, request.command, await self._task_value(self._quick, "form", request.command))
 
+    async def _specify(self, request: say.Specify, *_: Any) -> say.Said:
+        path = self._in_folder(request.file) if request.file else self.stored.path
+        text = request.text or (Stored.read(path).text if request.file else self._specification)
+        found = await self._task_value(self._quick, "specify", request.id, text, str(path), request.values)
+        self._specification = found.text
+        return found
+
+    async def _save_specification(self, request: say.SaveSpecification, *_: Any) -> None:
+        path = self._in_folder(request.file)
+        if path.exists() and (path == self.stored.path or not request.over):
+            raise refuse(path.name, "file exists", "Choose another name")
+        replace(self.stored, path=path).write(request.text, over=True)
+
     async def _run(self, request: say.Run, *_: Any) -> say.Said:
         return say.Done(request.id, self.history.revision, self.jobs.start(request, self.history.text))
 
@@ -329,6 +347,8 @@ class Session:
         say.Insert: _insert,
         say.Look: _look,
         say.JobForm: _form,
+        say.Specify: _specify,
+        say.SaveSpecification: _save_specification,
         say.Run: _run,
         say.Cancel: _cancel,
     }

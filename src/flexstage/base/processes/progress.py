@@ -10,6 +10,8 @@ _MINUTES, _HOURS = 90.0, 2.0 * 3600.0
 
 LINES, LINE = "FLEXSTAGE_PROGRESS", "progress"
 """Environment variable for progress lines of a command, and the prefix of each line."""
+RESULT = "result"
+"""Prefix of a line with a part of the result by its name, as JSON, where progress lines are printed."""
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import time
@@ -12,7 +13,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
-from flexstage.base.processes.progress import LINE, LINES, Step, seconds_left
+from flexstage.base.processes.progress import LINE, LINES, RESULT, Step, seconds_left
 from flexstage.base.text import printable
 
 
@@ -34,6 +35,9 @@ class ProgressBar:
         """Show the completed share of a computation, and the remaining time at this rate."""
         self.step(Step(text, share, seconds_left(share, time.monotonic() - self._begun)))
 
+    def result(self, name: str, value: Any) -> None:
+        """Pass on a part of the result; a bar shows none."""
+
     def _show(self, text: str, fraction: float) -> None:
         if self._shown is not None:
             left = "" if self.left is None else f"{_clock(self.left)} left"
@@ -41,10 +45,17 @@ class ProgressBar:
 
 
 class ProgressLines(ProgressBar):
-    """Prints each step as a line on stderr for other programs: `progress`, the fraction, remaining seconds or a dash, the text."""
+    """Prints each step as a line on stderr for other programs: `progress`, the fraction, remaining seconds or a dash, the text.
+
+    Parts of the result are lines of `result` and JSON.
+    """
 
     def __init__(self) -> None:
         super().__init__(None)
+
+    def result(self, name: str, value: Any) -> None:
+        """Print a part of the result."""
+        print(f"{RESULT} {json.dumps({name: value})}", file=sys.stderr, flush=True)  # noqa: T201
 
     def _show(self, text: str, fraction: float) -> None:
         left = "-" if self.left is None else f"{self.left:.1f}"

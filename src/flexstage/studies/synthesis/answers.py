@@ -20,6 +20,7 @@ from flexstage.base.storage.digest import digest
 from flexstage.base.storage.store import write
 from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
+from flexstage.studies.optimisation.result import Binding
 from flexstage.studies.sweeps.execution.run import Run
 from flexstage.studies.synthesis.architecture import catalogue_actuators, draw, find_architectures, specified_goals, study_text
 from flexstage.studies.synthesis.corrections import Estimator
@@ -57,7 +58,7 @@ class Answers(InNotebook):
 
 
 @check_arguments
-def design(
+def design(  # noqa: PLR0913 (its options)
     specification: Specification,
     architectures: tuple[str, ...] = (),
     progress: Progress | None = None,
@@ -67,6 +68,7 @@ def design(
     close_loop: Callable[[Mechanism], float | None] | None = None,
     keep: Path | None = None,
     how: Run = _ALONE,
+    finished: Callable[[Answer | FailedPair], None] | None = None,
 ) -> Answers:
     """Design stages for a specification: every architecture that has its motions, with every allowed actuator of the catalogue.
 
@@ -74,6 +76,8 @@ def design(
     `studies.optimise` does, and again with corrected limits while elastic bodies or large displacements miss a requirement. With `verify`,
     e.g. `solid.required_values`, finite elements do the same for the first three answers; with `tolerance`, these get their yield, and with
     `close_loop`, e.g. `control.sensitivity_crossover`, the sensitivity crossover of their control loop. An empty `architectures` means all.
+
+    `finished` receives each result of a pair as soon as it is known; a later one of the same pair replaces it.
 
     Results of pairs are written to the folder `keep`, and taken from there if `how` resumes. Results do not depend on the number of
     processes. A keyboard interrupt ends the search with the answers so far. Raises `DesignError` where no architecture has the motions.
@@ -97,7 +101,7 @@ def design(
     ]
     screened = [(pair, list(shortfalls(specification, pair))) for pair in pairs]
     open_pairs = sorted((pair for pair, faults in screened if not faults), key=lambda pair: (demand(specification, pair), pair.name))
-    store = _Store(specification, keep, resume=how.resume)
+    store = _Store(specification, keep, resume=how.resume, finished=finished)
     found, interrupted = dict[str, Answer | FailedPair](), False
     try:
         for pair, result in _searched(store, open_pairs, progress, cores() if how.workers is None else how.workers):
@@ -134,6 +138,7 @@ class _Store:
     specification: Specification
     folder: Path | None
     resume: bool
+    finished: Callable[[Answer | FailedPair], None] | None
 
     def path(self, pair: CandidatePair, what: str) -> Path | None:
         """File of a result; `None` if it is not kept: without a folder, or if the pair cannot be drawn."""
@@ -149,13 +154,18 @@ class _Store:
     def kept(self, pair: CandidatePair, what: str) -> Answer | FailedPair | None:
         """An earlier result."""
         path = self.path(pair, what) if self.resume else None
-        return None if path is None or not path.exists() else _from_text(path.read_text(encoding="utf-8"))
+        return None if path is None or not path.exists() else self._announced(_from_text(path.read_text(encoding="utf-8")))
 
     def put(self, pair: CandidatePair, what: str, result: Answer | FailedPair) -> Answer | FailedPair:
         """Keep a result, and return it."""
         if (path := self.path(pair, what)) is not None:
             path.parent.mkdir(parents=True, exist_ok=True)
             write(path, json.dumps({"kind": type(result).__name__, **dataclasses.asdict(result)}))
+        return self._announced(result)
+
+    def _announced(self, result: Answer | FailedPair) -> Answer | FailedPair:
+        if self.finished is not None:
+            self.finished(result)
         return result
 
 
@@ -163,8 +173,8 @@ def _from_text(text: str) -> Answer | FailedPair:
     """A result from its file."""
     tree: dict[str, Any] = json.loads(text)
     if tree.pop("kind") == Answer.__name__:
-        points = tuple(FrontPoint(**each) for each in tree["front"])
-        return replace(Answer(**tree), active=tuple(tree["active"]), warnings=tuple(tree["warnings"]), front=points)
+        points, binding = tuple(FrontPoint(**each) for each in tree["front"]), tuple(Binding(**each) for each in tree["binding"])
+        return replace(Answer(**tree), active=tuple(tree["active"]), warnings=tuple(tree["warnings"]), front=points, binding=binding)
     return replace(FailedPair(**tree), relaxed=tuple(Relaxation(**each) for each in tree["relaxed"]))
 
 

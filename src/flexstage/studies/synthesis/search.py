@@ -18,7 +18,7 @@ from flexstage.base.units.quantity import FREQUENCY, RATIO
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
 from flexstage.studies.optimisation.file import load_optimisation
-from flexstage.studies.optimisation.result import Optimum
+from flexstage.studies.optimisation.result import Binding, Optimum
 from flexstage.studies.optimisation.search.front import pareto_front
 from flexstage.studies.optimisation.search.optimum import optimise
 from flexstage.studies.optimisation.stage_text import write_optimum
@@ -88,6 +88,7 @@ class Answer:
     `manufactured` is the yield: the share of stages with scatter of dimensions that keep all requirements, lumped, if requested.
     `crossover` is the lowest sensitivity crossover of its control loop with the default controller, if requested.
     `front` are its best designs in two goals, if there are two.
+    `binding` are the active requirements and range ends with their sensitivities, before dimensions are rounded to steps.
 
     `efficiency` is the stroke energy that it uses as a share of that of its actuators, at most 1 by `bounds.frequency_bound`; `None` of
     coils. `warnings` are those of `flexstage check`.
@@ -112,6 +113,7 @@ class Answer:
     manufactured: Annotated[float | None, RATIO] = None
     crossover: Annotated[float | None, FREQUENCY] = None
     front: tuple[FrontPoint, ...] = ()
+    binding: tuple[Binding, ...] = ()
     rounds: int = 1
     design: Annotated[str, INNER] = ""
     study: Annotated[str, INNER] = ""
@@ -276,6 +278,7 @@ def _answer(spec: Specification, pair: CandidatePair, found: Optimum, corrected:
     text = write_optimum(draw(pair.architecture, spec, pair.actuator), found.study, found.definition, values_of(found.study, point.shares))
     stage = loads(text)
     values = required_values(stage)
+    binding = tuple(_as_specified(each, stage, corrected) for each in found.binding)
     first, coil = values.get("frequency.1"), pair.actuator.kind == "voice_coil"
     used = None if coil or first is None else max(bounds.efficiency(first, *each, spec.masses) for each in energy_groups(spec, pair))
     return Answer(
@@ -284,19 +287,23 @@ def _answer(spec: Specification, pair: CandidatePair, found: Optimum, corrected:
         float(point.values[0]),
         found.definition.objectives[0].measure.quantity.si,
         values,
-        tuple(_stated(each.name, stage, corrected) for each in found.binding),
+        tuple(each.name for each in binding),
         used,
         found.agreeing,
         len(found.starts),
         found.evaluated,
         tuple(map(str, check(stage))),
+        binding=binding,
         design=text,
         study=study_text(pair.architecture, spec, pair.actuator, specified_goals(pair.architecture, spec)),
         scatter=tolerance_text(pair.architecture, spec, pair.actuator, stage.requirements),
     )
 
 
-def _stated(active: str, stage: Mechanism, corrected: Mapping[str, str]) -> str:
-    """An active requirement as stated: its limit in the search may be a corrected one."""
-    key = active.partition(" ")[0]
-    return f"{key} {stage.requirements[key]}" if key in corrected else active
+def _as_specified(binding: Binding, stage: Mechanism, corrected: Mapping[str, str]) -> Binding:
+    """A binding limit as specified: that of the search may be a corrected one, in a constant ratio to it."""
+    key = binding.name.partition(" ")[0]
+    if key not in corrected:
+        return binding
+    line = requirement(stage, key, str(stage.requirements[key]), key)
+    return replace(binding, name=f"{key} {line.text}", limit=line.limit, price=binding.price * binding.limit / line.limit)

@@ -30,7 +30,7 @@ FORMAT = "flexstage specification 1"
 FREQUENCY_KEYS = ("frequency", "unwanted")
 """Requirements of their own: the first natural frequency, and the first of a motion that is not required."""
 
-_EXAMPLE = """
+EXAMPLE = """\
 format = "flexstage specification 1"
 name = "scanner"
 motion = { x = "50 um", y = "50 um" }
@@ -39,6 +39,7 @@ box = { size = ["260 mm", "260 mm", "40 mm"] }
 actuators = { kinds = ["piezo"] }
 requirements.frequency = "at least 500 Hz"
 """
+"""The specification of an XY scanner."""
 _Texts = Annotated[tuple[str, ...], TextsNode()]
 _Length = Annotated[float, LENGTH, POSITIVE]
 _Box = tuple[_Length, _Length, _Length]
@@ -210,7 +211,7 @@ def load_specification(path: str | os.PathLike[str]) -> Specification:
 def loads_specification(text: str, *, where: str = "text") -> Specification:
     """Read a specification from its text; a catalogue that it names is in the folder of `where`.
 
-    >>> found = loads_specification(_EXAMPLE)
+    >>> found = loads_specification(EXAMPLE)
     >>> found.displacements, found.least("frequency"), found.goal
     ({'x': 5e-05, 'y': 5e-05}, 500.0, ('maximise', 'frequency'))
     """
@@ -218,7 +219,7 @@ def loads_specification(text: str, *, where: str = "text") -> Specification:
     try:
         if isinstance(raw.get("requirements"), dict):
             raw["requirements"] = dotted("requirements", raw["requirements"])
-        found = record_from(Specification, raw, FORMAT, tagged=False)
+        found = _record(raw)
         if found.catalogue is not None:
             found = replace(found, catalogue=str((Path(where).parent / found.catalogue).resolve()))
         require([*_findings(found), *actuator_findings(found, where)])
@@ -227,13 +228,23 @@ def loads_specification(text: str, *, where: str = "text") -> Specification:
     return found
 
 
+def _record(raw: dict[str, Any]) -> Specification:
+    """The specification of a file; of one that cannot be read, errors of its requirements too."""
+    try:
+        return record_from(Specification, raw, FORMAT, tagged=False)
+    except DesignError as error:
+        given = raw.get("requirements")
+        texts = {key: text for key, text in given.items() if isinstance(text, str)} if isinstance(given, dict) else {}
+        raise DesignError([*error.findings, *_requirement_findings(replace(example(), requirements=texts))]) from None
+
+
 def example() -> Specification:
     """Return the specification of an XY scanner.
 
     >>> example().displacements
     {'x': 5e-05, 'y': 5e-05}
     """
-    return loads_specification(_EXAMPLE)
+    return loads_specification(EXAMPLE)
 
 
 def specification_schema() -> dict[str, Any]:

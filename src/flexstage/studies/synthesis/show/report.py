@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from flexstage.base.version import __version__
 from flexstage.show.figures.export import to_svg
 from flexstage.show.figures.style import FULL, SERIES, Margins, canvas, panels, style_context
-from flexstage.show.page import BlockRow, Head, Headline, Picture, page, section
+from flexstage.show.page import Block, BlockRow, Head, Headline, Picture, page, section
 from flexstage.show.scene.pictures import stage_picture
+from flexstage.show.table import result_table
 from flexstage.show.viewer.data import still_data
 from flexstage.studies.synthesis.answers import Answers, joint_front
 from flexstage.studies.synthesis.search import Answer, FrontPoint
@@ -34,13 +35,13 @@ def answer_report(found: Answers) -> str:
     fronts: list[Any] = []
     if points:
         fronts = [tables[1], Picture(to_svg(front_figure(found, points), "front", "front of both goals"), "Front of both goals.")]
-    stages = [_picture(each, number) for number, each in enumerate(found.answers, 1)]
+    stages = [BlockRow(tuple(_stage_blocks(each, number))) for number, each in enumerate(found.answers, 1)]
     count = len(found.answers)
     said = Headline(f"{count} stage{'' if count == 1 else 's'} meet{'s' if count == 1 else ''} the specification.", count > 0)
     sections = [
         section("Answers", [tables[0], picture]),
         section("Front", fronts),
-        section("Stages", [BlockRow(tuple(stages[place : place + 2])) for place in range(0, count, 2)]),
+        section("Stages", stages),
         section("Excluded pairs", excluded),
     ]
     head = Head(found.specification.name, "Answers to a specification", (("flexstage", __version__),), said)
@@ -78,6 +79,9 @@ def front_figure(found: Answers, points: Sequence[tuple[Answer, FrontPoint]]) ->
     return figure
 
 
-def _picture(answer: Answer, number: int) -> Picture:
-    caption = f"{number}: {answer.architecture} with {answer.actuator}."
-    return Picture(to_svg(stage_picture(still_data(answer.stage), width=4.4), f"answer{number}", caption), caption)
+def _stage_blocks(answer: Answer, number: int) -> Iterator[Block]:
+    """The picture of an answer, and the sensitivities of its binding limits."""
+    name = f"{number}: {answer.architecture} with {answer.actuator}"
+    yield Picture(to_svg(stage_picture(still_data(answer.stage), width=4.4), f"answer{number}", name), f"{name}.")
+    if (table := result_table(answer.binding, title=f"Binding limits of {name}")) is not None:
+        yield table

@@ -50,6 +50,19 @@ def answer_tables(found: Answers) -> Iterator[Table]:
         yield make_table("Impossible", columns, rows, notes=notes)
 
 
+def pair_row(result: Answer | FailedPair) -> dict[str, str]:
+    """Return the names of a pair, its goal or the reason of its failure, and of an answer its file and design, as texts.
+
+    >>> pair_row(FailedPair("guide", "stack", 0.12, {"frequency.1": "at least 1 kHz"}))["reason"]
+    'frequency.1 at least 1 kHz, missed by 12 %'
+    """
+    row = {"architecture": result.architecture, "actuator": result.actuator}
+    if isinstance(result, Answer):
+        return {**row, "goal": format_value(result.goal, result.unit, _DIGITS), "reason": "", "file": result.file, "design": result.design}
+    missed = "" if result.violation is None else f", missed by {_violation(result)} %"
+    return {**row, "goal": "", "reason": f"{_reason(result)}{missed}", "file": "", "design": ""}
+
+
 def _answer_table(found: Answers) -> Table:
     spec = found.specification
     way, key = spec.goal
