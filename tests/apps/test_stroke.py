@@ -60,9 +60,16 @@ def test_what_contradicts_a_path_is_refused(flexstage: Command) -> None:
 
 
 def test_where_a_drive_ends_that_is_not_told(flexstage: Command, two: Path) -> None:
-    """A stack at its full stroke, a coordinate near rest; of a force nothing is near."""
-    for drive, end in (("B", 38e-6), ("platform.x", 1e-4), ("platform.rz", 1e-3)):
-        flexstage("stroke", "stage.toml", "--drive", drive, "--steps", "2", "--json", "found.json")
+    """A stack at its full stroke, a coordinate at its required one or near rest; of a force nothing is near."""
+    (two / "bare.toml").write_text((two / "stage.toml").read_text().partition("[paths")[0])
+    for words, end in (
+        (["stage.toml", "--drive", "B"], 38e-6),
+        (["stage.toml", "--drive", "platform.x"], 18e-6),
+        (["stage.toml", "--drive", "platform.y"], 1e-4),
+        (["stage.toml", "--drive", "platform.rz"], 1e-3),
+        (["bare.toml"], 18e-6),
+    ):
+        flexstage("stroke", *words, "--steps", "2", "--json", "found.json")
         found = json.loads((two / "found.json").read_text())["along"]
         assert [row[0] for row in found["values"]] == pytest.approx([0.0, end])
     ended = flexstage("stroke", "stage.toml", "--drive", "platform.fx")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated
@@ -10,6 +10,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from flexstage.analysis.assessment.judge import bench_of
 from flexstage.analysis.assessment.requirements import asked_factor
 from flexstage.analysis.loaded.course import DrivePath, course, drive_quantity
 from flexstage.analysis.loaded.load_cases import REST, CaseFactor, CaseFactors, LoadCase, buckling_factors, load_cases
@@ -23,7 +24,7 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 from flexstage.base.labelled import Matrix
 from flexstage.base.units.quantity import ANGLE, LENGTH, RATIO, Quantity
 from flexstage.base.units.unit import parse
-from flexstage.mechanism.mechanism import Mechanism
+from flexstage.mechanism.mechanism import PLATFORM, Mechanism
 from flexstage.models.ideal import ideal
 from flexstage.models.nonlinear.paths.load_path import beyond as follow
 from flexstage.models.nonlinear.stage import Nonlinear, nonlinear
@@ -54,10 +55,10 @@ def stroke(
     *,
     named: Annotated[str, text_option("--path", "NAME", "Path of the design, [paths.NAME]. Default: the first.")] = "",
     drive: Annotated[
-        str, text_option("--drive", "NAME", "Driven coordinate, stroke (B1) or force. Default: platform.x, without paths.")
+        str, text_option("--drive", "NAME", "Driven coordinate, stroke (B1) or force. Default: the first required stroke, or platform.x.")
     ] = "",
     start: Annotated[str, text_option("--from", "VALUE", "First value of the drive. Default: at rest.")] = "",
-    end: Annotated[str, text_option("--to", "VALUE", 'Last value of the drive, e.g. "5 mm". Default: the stroke, 0.1 mm or 1 mrad.')] = "",
+    end: Annotated[str, text_option("--to", "VALUE", 'Last value of the drive, e.g. "5 mm". Default: its stroke, 0.1 mm or 1 mrad.')] = "",
     steps: Annotated[int | None, STEPS] = None,
     load: Load = None,
 ) -> CommandResult:
@@ -70,11 +71,12 @@ def stroke(
     elsewhere, loads = bool(drive or start or end), loads_of(model, load or ())
     if named and elsewhere:
         raise refuse(f"--path {named}", "a path states its drive and its ends, and so do --drive, --from or --to", "Leave one of them out")
+    required = {f"{PLATFORM}.{axis}": value for axis, value in bench_of(mechanism).command.items()}
     stated = named or ("" if elsewhere else _first_path(mechanism))
     asked = (
         _stated(mechanism, stated, steps, loads)
         if stated
-        else _asked(model, drive or "platform.x", start=start, end=end, steps=steps or 11, loads=loads)
+        else _asked(model, drive or next(iter(required), "platform.x"), required, (start, end), steps=steps or 11, loads=loads)
     )
     rest = asked.rest(model)
     along = asked.path(model, rest)
@@ -100,17 +102,20 @@ def _stated(mechanism: Mechanism, name: str, steps: int | None, loads: dict[str,
     return replace(found, values=values, loads=found.loads | loads)
 
 
-def _asked(model: Nonlinear, drive: str, *, start: str, end: str, steps: int, loads: dict[str, float]) -> DrivePath:
+def _asked(
+    model: Nonlinear, drive: str, required: Mapping[str, float], ends: tuple[str, str], *, steps: int, loads: dict[str, float]
+) -> DrivePath:
     quantity = drive_quantity(model.assembly, drive, "--drive")
+    start, end = ends
     low = parse(start, quantity, where="--from") if start else 0.0
-    high = parse(end, quantity, where="--to") if end else _end(model, drive, quantity)
+    high = parse(end, quantity, where="--to") if end else required.get(drive) or _end(model, drive, quantity)
     if low == high:
         raise refuse("--to", f"{drive} goes from {start or '0'} to {end or start}: a drive that does nothing", "Name two places")
     return DrivePath(drive, np.linspace(low, high, steps), loads, (), 1.0)
 
 
 def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
-    """Default end of a drive: the full stroke of a stack, a small displacement of a coordinate."""
+    """Default end of a drive without a required stroke: the full stroke of a stack, a small displacement of a coordinate."""
     own = model.assembly.actuator(drive) if drive in model.assembly.strokes else None
     if isinstance(own, StrokeActuator):
         return float(np.real(own.stroke))

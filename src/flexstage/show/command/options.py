@@ -73,7 +73,7 @@ _model_option = partial(
     word_option,
     "--model",
     Model,
-    "Model of the stage: rigid bodies (ideal), axial springs (mapped), or 6x6 hinges (lumped).",
+    "Model of the stage, the simplest first.",
     otherwise={"solid": "For solids, use flexstage solid or flexstage verify"},
 )
 ELASTIC_MODEL = _model_option(words=("mapped", "lumped"))
