@@ -158,10 +158,11 @@ def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list
 
 def _no_guide(motions: frozenset[str]) -> tuple[str, str]:
     """Why no parallel guide permits the motions, and what does."""
-    others = reciprocal_space(twists_of(motions))
+    span = pure_force_span(reciprocal_space(twists_of(motions)))
+    free = (axis for axis, row in zip(COMPONENTS, span, strict=True) if axis not in motions and np.linalg.norm(row) < 0.5)
     what = (
-        f"no architecture has exactly the motions {_listed(motions)}, and no parallel guide of wires and leaves permits them: the pure "
-        f"forces that do no work on them span {pure_force_span(others).shape[1]} of {others.shape[1]} constraints"
+        f"no architecture has exactly the motions {_listed(motions)}, and no parallel guide of wires and leaves has: "
+        f"no pure force that does no work on these motions constrains {' or '.join(free)}"
     )
     return what, f"Combine guides in series, e.g. {' on '.join(_listed(each) for each in serial_guides(motions))}"
 
@@ -182,9 +183,9 @@ def _drawn(spec: Specification, name: str, kind: str, actuators: Sequence[Catalo
     if not actuators:
         return None
     motions, first = frozenset(spec.displacements), min(actuators, key=_length)
-    blank = Architecture(name=name, kind=kind, slot=_SLOTS[kind], count=len(motions), serves=(motions,), set=_SET, ranges=_RANGES)
+    blank = Architecture(name=name, kind=kind, slot=_SLOTS[kind], count=len(motions), serves=(motions,), set=_SET)
     for rows, room in (((0,), spec.box.size), ((-1, 0, 1), spec.box.size), ((-1, 0, 1), (np.inf,) * 3)):
-        block = nominal_block(blank, spec, first, rows)
+        block = nominal_block(spec, first, rows)
         guide = find_guide(block, motions, symmetries(spec), rows)
         if guide is None or guide.ratio < _STIFF:
             continue
@@ -200,13 +201,13 @@ def _length(actuator: CatalogueActuator) -> float:
     return float(getattr(actuator.part, "length", None) or 0.0)
 
 
-def nominal_block(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, rows: Sequence[int]) -> Block:
+def nominal_block(spec: Specification, actuator: CatalogueActuator, rows: Sequence[int]) -> Block:
     """Return the block and the dimensions of candidates at the start values of the numbers that are searched."""
-    known = scope(architecture, spec, actuator)
-    known |= {name: evaluate(parse_expression(text), known) for name, text in architecture.set.items()}
+    all_ranges = Architecture(name="", kind=actuator.kind, slot="", count=0, ranges=_RANGES)
+    known = scope(all_ranges, spec, actuator)
     known |= {"stack_length": known["length"], "stack_diameter": known["diameter"]}
-    known |= {each.name: Amount(each.start, known["length"].dimension) for each in variables(architecture, known)}
-    for name, formula in _formulas(architecture.kind, rows).items():
+    known |= {each.name: Amount(each.start, known["length"].dimension) for each in variables(all_ranges, known)}
+    for name, formula in {**_SET, **_formulas(actuator.kind, rows)}.items():
         known[name] = evaluate(parse_expression(formula), known)
     value = {name: float(amount.value) for name, amount in known.items()}
     half, pitch, length = (np.array([value.get(f"{kind}_{axis}", 0.0) for axis in "xyz"]) for kind in ("half", "pitch", "length"))
@@ -228,7 +229,8 @@ def _architecture(blank: Architecture, guide: Guide, rows: Sequence[int]) -> Arc
     used |= ({"gap_z"} if len(rows) > 1 else set[str]()) | ({"neck"} if blank.kind == "piezo" else set[str]())
     ranges = {name: each for name, each in _RANGES.items() if name in used}
     slender = {f"{part}_slenderness_{axis}": f"length_{axis}/{_THIN[part]}" for part, axis in parts}
-    numbers = {**dict.fromkeys((*ranges, *_SET), "10 mm"), **_formulas(blank.kind, rows), **slender}
+    numbers = {**{name: "1 mm" if "thinnest" in _RANGES[name][0] else "10 mm" for name in ranges}, **dict.fromkeys(_SET, "30 mm")}
+    numbers |= {**_formulas(blank.kind, rows), **slender}
     numbers |= {"stack_length": "36 mm", "stack_diameter": "6 mm"} if blank.kind == "piezo" else {}
     numbers |= {"payload_mass": "0.1 kg", "payload_height": "5 mm"}
     text = "\n".join(_lines(blank, guide, numbers, parts))
