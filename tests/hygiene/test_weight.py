@@ -20,10 +20,10 @@ CEILINGS = {
     "solid": 75_700,
     "experiment": 98_800,
     "control": 154_000,
-    "studies": 63_600,
+    "studies": 67_700,
     "apps": 37_900,
     ".": 400,
-    "all": 814_000,
+    "all": 818_100,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

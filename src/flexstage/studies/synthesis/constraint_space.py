@@ -8,7 +8,7 @@ force of a basis is a guide, otherwise every guide also permits another motion.
 
 The pure forces in R are the zeros of the quadratic form f.m on R. The zeros of an indefinite form of rank 3 or more span R, also without
 those of f = 0: no open part of such a cone is in a linear subspace. An indefinite form of rank 2 is the product of two linear forms: its
-zeros are two hyperplanes, of which one without forces is left out. The zeros of a semidefinite form are its kernel.
+zeros are two hyperplanes, and one without forces is left out. The zeros of a semidefinite form are its kernel.
 """
 
 from __future__ import annotations

@@ -151,13 +151,13 @@ def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list
         raise refuse("motion", *_no_guide(motions))
     found = [each for each in served or synthesise(spec) if each.name in (names or (each.name,))]
     if not found:
-        what = f"no architecture has exactly the motions {_listed(motions)}"
-        raise refuse("motion", f"{what} (got {', '.join(names)})", "Leave out --architecture")
+        what = f"no architecture{' of these' if names else ' with these kinds of actuators'} has exactly the motions {_listed(motions)}"
+        raise refuse("motion", what, "Use another --architecture" if names else 'Allow actuators of kind "piezo" or "voice_coil"')
     return found
 
 
 def _no_guide(motions: frozenset[str]) -> tuple[str, str]:
-    """Why no parallel guide permits the motions, and what does."""
+    """The reason without a parallel guide, and guides in series."""
     span = pure_force_span(reciprocal_space(twists_of(motions)))
     free = (axis for axis, row in zip(COMPONENTS, span, strict=True) if axis not in motions and np.linalg.norm(row) < 0.5)
     what = (
@@ -282,12 +282,12 @@ def _point(place: Place, outside: str = "") -> str:
 
 
 def symmetries(spec: Specification) -> tuple[Array, ...]:
-    """Return the symmetries of a specification: both mirrors of its box, and a quarter turn about z if x and y are alike.
+    """Return the symmetries of a specification: both mirrors of its box, and a quarter turn about z if x and y are equal.
 
     >>> from flexstage.studies.synthesis.specification import example
     >>> len(symmetries(example()))
     3
     """
     moved, sizes = spec.displacements, (spec.box.size, spec.payload.size or (0.0, 0.0, 0.0))
-    alike = all(moved.get(one) == moved.get(other) for one, other in (("x", "y"), ("rx", "ry")))
-    return (*MIRRORS, QUARTER_TURN) if alike and all(each[0] == each[1] for each in sizes) else MIRRORS
+    equal = all(moved.get(one) == moved.get(other) for one, other in (("x", "y"), ("rx", "ry")))
+    return (*MIRRORS, QUARTER_TURN) if equal and all(each[0] == each[1] for each in sizes) else MIRRORS
