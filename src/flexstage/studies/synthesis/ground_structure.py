@@ -134,7 +134,7 @@ def orbits(symmetries: Sequence[Array], rows: Sequence[int]) -> list[tuple[Eleme
     """Return the candidates, each a tuple of elements with all their images under the symmetries.
 
     >>> len(orbits(MIRRORS, (0,))), len(orbits((*MIRRORS, QUARTER_TURN), (0,)))
-    (24, 15)
+    (24, 13)
     """
     found = dict[tuple[Element, ...], None]()
     for place, width in product(places(rows), range(-1, 3)):
