@@ -20,10 +20,10 @@ CEILINGS = {
     "solid": 75_700,
     "experiment": 98_800,
     "control": 154_000,
-    "studies": 67_700,
+    "studies": 67_800,
     "apps": 37_900,
     ".": 400,
-    "all": 818_100,
+    "all": 818_200,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

@@ -43,7 +43,7 @@ format = "flexstage specification 1"
 name = "synthesis"
 motion = { MOTION }
 payload = { mass = "50 g", size = ["30 mm", "30 mm", "5 mm"] }
-box = { size = ["260 mm", "260 mm", "200 mm"] }
+box.size = ["260 mm", "260 mm", "200 mm"]
 requirements.frequency = "at least 150 Hz"
 """
 COIL = """
@@ -209,7 +209,8 @@ REFUSED = {
     "series": ("x z", "", (), "no pure force that does no work on these motions constrains ry. Combine guides in series, e.g. x on z."),
     "unknown": ("x rx", "", ("guides",), 'unknown architecture "guides"'),
     "other": ("x rx", "", ("guide",), "no architecture of these has exactly the motions x, rx. Use another --architecture."),
-    "kinds": ("x rx", 'actuators.kinds = ["amplified"]\n', (), 'Allow actuators of kind "piezo" or "voice_coil".'),
+    "opening": ("x rx", 'box.opening = ["9 mm", "9 mm"]\n', (), "box.opening: the guide for the motions x, rx has no opening"),
+    "kinds": ("x rx", 'actuators.kinds = ["amplified"]\n', (), 'Allow actuators of kind "piezo" or "voice_coil", or'),
 }
 
 

@@ -125,7 +125,8 @@ def stiffness_ratio(stiffness: Array, motions: frozenset[str], scale: Array) -> 
 
 def places(rows: Sequence[int]) -> Iterator[Place]:
     """Yield all places, those of side faces in some rows along z only."""
-    for face, grid in product(range(3), product((-1, 0, 1), repeat=3)):
+    steps = (-1, 0, 1)
+    for face, grid in product(range(3), product(steps, steps, steps)):
         if grid[face] and (grid[2] in rows if face < 2 else grid[2] < 0):
             yield Place(face, grid)
 

@@ -71,6 +71,7 @@ _BLOCK_NUMBERS = {
     "half_y": "(payload_width + reach_y + sqrt((payload_width - reach_y)*(payload_width - reach_y)))/4",
 }
 _HEADER = """# {title}: a block on wires and leaves, found by a search on a ground structure.
+# Elements and actuators are in cells of a grid on its faces, with gaps between; leaves are as wide as their seat.
 format = "flexstage 1"
 name = {name}
 damping = {{ law = "modal", ratio = 0.01 }}
@@ -149,10 +150,13 @@ def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list
     served = [each for _, each in sorted(known.items()) if each.is_for(motions)]
     if not served and not has_parallel_guide(twists_of(motions)):
         raise refuse("motion", *_no_guide(motions))
+    if not served and spec.box.opening is not None:
+        raise refuse("box.opening", f"the guide for the motions {_listed(motions)} has no opening", "Leave it out")
     found = [each for each in served or synthesise(spec) if each.name in (names or (each.name,))]
     if not found:
-        what = f"no architecture{' of these' if names else ' with these kinds of actuators'} has exactly the motions {_listed(motions)}"
-        raise refuse("motion", what, "Use another --architecture" if names else 'Allow actuators of kind "piezo" or "voice_coil"')
+        what = f"no architecture{' of these' if names else ' with these actuators'} has exactly the motions {_listed(motions)}"
+        advice = 'Allow actuators of kind "piezo" or "voice_coil", or reduce make.thinnest'
+        raise refuse("motion", what, "Use another --architecture" if names else advice)
     return found
 
 
@@ -187,7 +191,7 @@ def _drawn(spec: Specification, name: str, kind: str, actuators: Sequence[Catalo
     for rows, room in (((0,), spec.box.size), ((-1, 0, 1), spec.box.size), ((-1, 0, 1), (np.inf,) * 3)):
         block = nominal_block(spec, first, rows)
         guide = find_guide(block, motions, symmetries(spec), rows)
-        if guide is None or guide.ratio < _STIFF:
+        if guide is None or (guide.ratio < _STIFF and np.all(np.isfinite(room))):
             continue
         strut = _length(first) + _STRUT_ENDS if kind == "piezo" else 0.0
         fits = 2.0 * block.half + strut <= room
