@@ -22,11 +22,12 @@ from flexstage.base.version import __version__
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.optimisation.result import Binding
 from flexstage.studies.sweeps.execution.run import Run
-from flexstage.studies.synthesis.architecture import catalogue_actuators, draw, find_architectures, specified_goals, study_text
+from flexstage.studies.synthesis.architecture import catalogue_actuators, draw, specified_goals, study_text
 from flexstage.studies.synthesis.corrections import Estimator
 from flexstage.studies.synthesis.pairs import CandidatePair, ImpossiblePair, demand, shortfalls
 from flexstage.studies.synthesis.search import Answer, FailedPair, FrontPoint, Relaxation, manufacturing_yield, relaxations, search
 from flexstage.studies.synthesis.specification import Specification
+from flexstage.studies.synthesis.synthesised import find_architectures
 
 Progress = Callable[[str, float], None]
 """Reports what is computed, and the share that is done."""

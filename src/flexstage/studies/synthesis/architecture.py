@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexstage.base.finding import DesignError, refuse
+from flexstage.base.finding import DesignError
 from flexstage.base.lazy import LazyModule
 from flexstage.base.number import Array
 from flexstage.base.units.dimension import dimension_of
@@ -75,6 +75,8 @@ class Architecture:
     ranges: Mapping[str, tuple[str, str, str]] = field(default_factory=dict)
     limits: Mapping[str, str] = field(default_factory=dict)
     """Least values of measures, as formulas."""
+    drawing: str = ""
+    """Text of its design file, where it is not of the folder."""
 
     def is_for(self, motions: frozenset[str]) -> bool:
         """Whether the architecture has exactly these motions.
@@ -87,7 +89,7 @@ class Architecture:
     @property
     def text(self) -> str:
         """The text of its design file."""
-        return _file(f"{self.name}.toml")
+        return self.drawing or _file(f"{self.name}.toml")
 
 
 def _file(name: str) -> str:
@@ -385,17 +387,3 @@ def tolerance_text(architecture: Architecture, spec: Specification, actuator: Ca
         lines.append(f'hinges = {{ address = "hinges.thickness", {spread}, independent = true }}')
     lengths = [each.name for each in variables(architecture, scope(architecture, spec, actuator)) if each.quantity.si != "rad"]
     return "\n".join([*lines, *(f'{name} = {{ address = "numbers.{name}", {spread} }}' for name in lengths), ""])
-
-
-def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list[Architecture]:
-    """Return the architectures that serve the motions of a specification. Raises `DesignError` if there is none."""
-    known = architectures()
-    if unknown := [name for name in names if name not in known]:
-        raise refuse("--architecture", f'unknown architecture "{unknown[0]}"', f"Use one of {', '.join(known)}")
-    motions = frozenset(spec.displacements)
-    found = [each for name, each in sorted(known.items()) if each.is_for(motions) and name in (names or known)]
-    if not found:
-        sets = {" ".join(sorted(each, key=COMPONENTS.index)) for one in known.values() for each in one.serves} | {"x, y or z"}
-        what = f"no architecture has exactly the motions {', '.join(spec.displacements)}"
-        raise refuse("motion", what, f"Use one of these sets: {'; '.join(sorted(sets))}")
-    return found

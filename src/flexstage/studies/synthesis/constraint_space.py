@@ -1,0 +1,98 @@
+"""Existence of parallel guides: whether wires and leaves between platform and ground can permit exactly the required motions.
+
+Theorem (Hopkins & Culpepper, Precision Engineering 34, 2010, 259-270; Blanding, Exact Constraint, 1999). An ideal wire transmits a pure
+force along its line, and a leaf those in its plane. They permit a motion if their forces do no work on it: these wrenches (f, m) are
+reciprocal to the twist (v, w), f.v + m.w = 0. A parallel guide permits exactly the motions T if its forces span the whole space R of
+wrenches reciprocal to T. Hence one exists if and only if the pure forces in R, f.m = 0 and f != 0, span R: if they do, a wire along each
+force of a basis is a guide, otherwise every guide also permits another motion.
+
+The pure forces in R are the zeros of the quadratic form f.m on R. The zeros of an indefinite form of rank 3 or more span R, also without
+those of f = 0: no open part of such a cone is in a linear subspace. An indefinite form of rank 2 is the product of two linear forms: its
+zeros are two hyperplanes, and one without forces is left out. The zeros of a semidefinite form are its kernel.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+
+from flexstage.base.number import Array
+from flexstage.spatial.frame import COMPONENTS
+
+_SMALL = 1e-9
+"""Relative size of rounding errors of orthonormal bases."""
+
+
+def reciprocal_space(vectors: Array) -> Array:
+    """Return an orthonormal basis (6, 6 - n) of the wrenches that do no work on n independent twists (6, n), or the reverse.
+
+    >>> reciprocal_space(np.eye(6)[:, :2]).shape
+    (6, 4)
+    """
+    return _span(np.eye(6) - (basis := _span(vectors)) @ basis.T)
+
+
+def pure_force_span(wrenches: Array) -> Array:
+    """Return an orthonormal basis (6, k) of the span of all pure forces, f.m = 0 and f != 0, within the span of wrenches (6, n).
+
+    >>> np.abs(pure_force_span(np.eye(6)[:, [0, 3]])).T.tolist()  # a force along x, and a couple about x: only the force
+    [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]]
+    """
+    basis = _span(wrenches)
+    work = basis[:3].T @ basis[3:]
+    values, vectors = np.linalg.eigh(work + work.T)
+    up, down = values > _SMALL, values < -_SMALL
+    if not (up.any() and down.any()):
+        return _with_forces(basis @ vectors[:, ~(up | down)])
+    if np.count_nonzero(up | down) > 2:
+        return basis
+    across, kernel = vectors[:, up | down] / np.sqrt(np.abs(values[up | down])), vectors[:, ~(up | down)]
+    planes = (np.column_stack([kernel, across @ (1.0, sign)]) for sign in (1.0, -1.0))
+    return _span(np.column_stack([_with_forces(basis @ each) for each in planes]))
+
+
+def _span(vectors: Array) -> Array:
+    """An orthonormal basis of the span of columns."""
+    left, sizes, _ = np.linalg.svd(vectors, full_matrices=False)
+    return left[:, sizes > _SMALL]
+
+
+def _with_forces(wrenches: Array) -> Array:
+    """The wrenches, if any of their span has a force: those with a force then span them all. Otherwise none."""
+    return wrenches if np.any(np.abs(wrenches[:3]) > _SMALL) else wrenches[:, :0]
+
+
+def twists_of(motions: frozenset[str]) -> Array:
+    """Return the unit twists (6, n) of motions along and about the axes.
+
+    >>> twists_of(frozenset({"rz", "x"})).T.tolist()
+    [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]]
+    """
+    return np.eye(6)[:, [axis in motions for axis in COMPONENTS]]
+
+
+def has_parallel_guide(twists: Array) -> bool:
+    """Return whether a parallel guide of wires and leaves permits exactly the span of twists (6, n).
+
+    >>> [has_parallel_guide(twists_of(frozenset(each.split()))) for each in ("x y rz", "x rx", "x y")]
+    [True, True, False]
+    """
+    others = reciprocal_space(twists)
+    return pure_force_span(others).shape == others.shape
+
+
+def serial_guides(motions: frozenset[str]) -> tuple[frozenset[str], ...]:
+    """Return the fewest parallel guides that have the motions in series, the one with most motions first.
+
+    >>> [sorted(each) for each in serial_guides(frozenset({"x", "y", "z", "rz"}))]
+    [['rz', 'x', 'y'], ['z']]
+    """
+    if has_parallel_guide(twists_of(motions)):
+        return (motions,)
+    axes = sorted(motions, key=COMPONENTS.index)
+    firsts = (frozenset(each) for count in range(len(axes) - 1, 0, -1) for each in combinations(axes, count))
+    return min(
+        ((first, *serial_guides(motions - first)) for first in firsts if has_parallel_guide(twists_of(first))),
+        key=len,
+    )
