@@ -33,7 +33,7 @@ from flexstage.show.command.output import announce, write
 
 
 def written_files(exports: Sequence[Path], hardware: Path | None) -> Iterator[tuple[str, Path]]:
-    """Each file of `--export` and `--hardware`, with its option: source and header for C."""
+    """List each file of `--export` and `--hardware` with its option; for C, source and header."""
     for target in exports:
         yield from (("--export", each) for each in ((target, target.with_suffix(".h")) if target.suffix == ".c" else (target,)))
     if hardware is not None:

@@ -24,8 +24,8 @@ FIVE_DIGITS = Heading(digits=5)
 class Law(Protocol):
     """Single-loop controller.
 
-    `system(step)` has the inputs `error` (reference less pose), `pose`, and `applied` (applied less commanded input: 0 without saturation,
-    used for anti-windup), and the output `command`. Without a step it is continuous.
+    The inputs of `system(step)` are `error` (reference minus pose), `pose`, and `applied` for anti-windup (applied minus commanded input, 0
+    without saturation). The output is `command`. Without a step the system is continuous.
     """
 
     def system(self, step: float | None = None) -> System:
@@ -34,9 +34,9 @@ class Law(Protocol):
 
 
 def law_system(A: Array, B: Array, C: Array, D: Array, step: float | None, *, kept: Sequence[bool]) -> System:
-    """Matrices A (n, n), B (n, 3), C (1, n), D (1, 3) of a law, only the states in `kept`; continuous, or by Tustin's rule.
+    """Construct a law's system from A (n, n), B (n, 3), C (1, n), D (1, 3), discretised by Tustin's rule if `step` [s] is specified.
 
-    The applied input acts one sample later in a sampled law, because it is known only after the command.
+    Retains only the states in `kept`. In a sampled law the applied input acts one sample later, because it is known only after the command.
 
     >>> one, none = np.eye(1), np.zeros((1, 3))
     >>> found = law_system(0.0 * one, np.array([[2.0, 0.0, 4.0]]), one, none, 0.1, kept=[True])
@@ -75,7 +75,7 @@ def corner_findings(kind: str, noun: str, corner: float, step: float | None, oth
 
 
 def tracking_rate(time: float, step: float | None) -> float:
-    """Rate 1/T_t [1/s] of a tracking time that follows from gains, limited to one sample.
+    """Compute the anti-windup rate 1/T_t [1/s] from a tracking time T_t [s], which is raised to at least one sample.
 
     >>> tracking_rate(0.5, None), tracking_rate(0.01, 0.1)
     (2.0, 10.0)

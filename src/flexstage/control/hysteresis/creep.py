@@ -49,7 +49,7 @@ class LogCreep(CheckedFields):
 class Creep:
     """Creep operator y = g_0 u + sum_i g_i s_i, tau_i ds_i/dt + s_i = u: `instant` g_0 (axes,), `gains` g_i, `times` tau_i [s] (axes, m).
 
-    Between hysteresis and stage (Hammerstein model). With u constant over a sample T the exact state update is s_i <- s_i + (1 -
+    It acts between hysteresis and stage (Hammerstein model). With u constant over a sample T the exact state update is s_i <- s_i + (1 -
     e^{-T/tau_i}) (u - s_i), after y is computed. One axis may have shape (m,). Raises `DesignError` for times that are not positive.
     """
 

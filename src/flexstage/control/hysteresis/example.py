@@ -19,7 +19,7 @@ _RATE = 100.0
 
 
 def sweep_of(turns: tuple[float, ...], samples: int) -> Array:
-    """Piecewise linear voltage (k,) between turning points, `samples` per segment.
+    """Return a piecewise linear voltage (k,) between turning points, with `samples` per segment.
 
     >>> sweep_of((0.0, 2.0, 0.0), 2).tolist()
     [0.0, 1.0, 2.0, 1.0, 0.0]

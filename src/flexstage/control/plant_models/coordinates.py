@@ -26,11 +26,11 @@ _MISSING = 1e-9
 class Coordinates:
     """The f coordinates of a loop: ideal motions xi of a stage (x ... rz, or a subset).
 
-    `pose` (f, g) maps gauge readings to xi, (R_s V)^+: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, least squares for more. It includes
-    sums of gauges: `gauges` are the single ones. `strokes` (n, f) maps xi to strokes, R_a of Eq. 13; `back` (f, n) is its (least-squares)
-    inverse. For force actuators `back` is the static motion per unit of input, and `strokes` its pseudo-inverse, the minimum-norm inputs
-    [A, N]. `units` are m or rad; `length` [m] makes rotations comparable with translations. `gauge_units` and `input_units` are units of
-    readings and inputs (default: m).
+    `pose` (f, g) maps gauge readings to xi, (R_s V)^+: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, least squares for more. `gauges` are
+    the single gauges; sums of gauges are included in `pose`. `strokes` (n, f) maps xi to strokes, R_a of Eq. 13; `back` (f, n) is its
+    (least-squares) inverse. For force actuators `back` is the static motion per unit of input, and `strokes` its pseudo-inverse, the
+    minimum-norm inputs [A, N]. `units` are m or rad; `length` [m] makes rotations comparable with translations. `gauge_units` and
+    `input_units` are units of readings and inputs (default: m).
     """
 
     names: tuple[str, ...]
@@ -82,9 +82,9 @@ class Coordinates:
 def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coordinates:
     """Compute the coordinates of a stage's loop (one design). For force actuators the elastic `model` provides the static motion.
 
-    Their inputs are (V^T W)^+ times the static force of the pose, so that each loop's plant has a static gain of 1, as with strokes. Raises
-    `DesignError` if the gauges cannot observe the pose or the actuators cannot produce it, with the missing directions, and for strokes and
-    forces together.
+    The inputs of force actuators are (V^T W)^+ times the static force of the pose. Each loop's plant then has a static gain of 1, as with
+    strokes. Raises `DesignError` if the gauges cannot observe the pose or the actuators cannot produce it, with the missing directions, and
+    for strokes and forces together.
 
     >>> from flexstage.cases.double_triangle import SM_REF_A, double_triangle
     >>> from flexstage.models.ideal import ideal

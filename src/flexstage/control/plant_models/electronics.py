@@ -39,10 +39,10 @@ class ChargeHold(CheckedFields):
 class AmplifierSettings(amplifier.Amplifier):
     """Amplifier data in addition to the design file; absent values impose no limit.
 
-    In addition to the common values: `slew` [V/s], maximum voltage rate; `noise_density` [V/Hz^(1/2)], one-sided and white before its lag;
-    `bits` of the converter before it. For voice coils it controls the current: `bandwidth`, `current` and `bits` apply, and its noise is
-    `current_noise` [A/Hz^(1/2)]. With `charge` it controls the charge of its stack; commands, range, slew, noise and steps are then in the
-    voltage that gives the same charge to an unloaded stack.
+    In addition to the common values: `slew` [V/s], maximum voltage rate; `noise_density` [V/Hz^(1/2)], one-sided and white before the
+    amplifier's lag; `bits` of the converter before the amplifier. An amplifier of voice coils controls the current: `bandwidth`, `current`
+    and `bits` apply, and its noise is `current_noise` [A/Hz^(1/2)]. An amplifier with `charge` controls the charge of its stack. Commands,
+    range, slew, noise and steps are then in the voltage that gives the same charge to an unloaded stack.
     """
 
     slew: float | None = None

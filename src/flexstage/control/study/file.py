@@ -76,7 +76,7 @@ def _apply(table: Any, keys: list[str], value: Any) -> None:
 
 
 def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
-    r"""rParse a set-up text; `where` names it in findings.
+    r"""Parse a set-up text; `where` names it in findings.
 
     >>> loads_setup('format = "flexstage loop 1"\nrate = "5 kHz"').rate
     5000.0

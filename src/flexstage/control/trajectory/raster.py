@@ -60,7 +60,7 @@ class Raster(CheckedFields):
 
     @property
     def period(self) -> float:
-        """Period [s], except for moves of the slow coordinate: one line forth and one back."""
+        """Period [s] of the fast coordinate: one line forward and one line back."""
         return 2.0 * (self.length / self.speed + self._turn_time)
 
     @property

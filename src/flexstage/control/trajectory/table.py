@@ -67,7 +67,7 @@ def _findings(table: Table) -> list[Finding]:
 
 
 def from_file(path: str | os.PathLike[str]) -> Table:
-    r"""rRead a CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; uneven times are allowed.
+    r"""Read a CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; uneven times are allowed.
 
     Raises `DesignError` for an unreadable file, and for missing times or coordinates.
 

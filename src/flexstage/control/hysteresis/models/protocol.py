@@ -58,7 +58,7 @@ class Hysteresis(Protocol):
 
 
 def freeze_by_axis(model: Any) -> None:
-    """Convert all numbers of a dataclass to (axes,), read-only.
+    """Convert all numbers of a dataclass to read-only arrays (axes,).
 
     >>> from flexstage.control.hysteresis.models.bouc_wen import BoucWen
     >>> BoucWen(np.array([1e-7, 2e-7]), 4e-8, 4e-3, 2e-3).lag.tolist()

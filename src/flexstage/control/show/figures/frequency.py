@@ -48,7 +48,7 @@ def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) ->
 
 
 def nyquist_figure(found: Curves, highest: float, points: Array) -> Any:
-    """Nyquist plot of the open loops near -1: unit circle, circle where abs(S) is the `highest` Ms allowed, `points` (m,) at the margins.
+    """Plot the open loops near -1 (Nyquist): unit circle, circle where abs(S) is the `highest` Ms allowed, `points` (m,) at the margins.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.systems.closed import LoopBreak
@@ -94,7 +94,7 @@ def sensitivity_figure(found: Curves, highest: float) -> Any:
 
 
 def measured_figure(found: ReadLines, names: tuple[str, ...]) -> Any:
-    """Plot |S| of every loop by measured responses, shaded 95 % interval, over fit and model; one panel per loop."""
+    """Plot |S| of every loop from measured responses with its 95 % interval, and |S| of fit and model; one panel per loop."""
     columns = min(3, len(names))
     rows = -(-len(names) // columns)
     with style_context():
@@ -173,7 +173,7 @@ def _phase(values: Array) -> Array:
 
 
 def look(index: int) -> dict[str, Any]:
-    """Return the line style of a series: its colour; every second one is dashed."""
+    """Return the line style of series number `index`: its colour, and dashes for every second series."""
     return {"color": SERIES[index % (len(SERIES) - 1)], "linestyle": (0, (4.0, 2.0)) if index % 2 else "-"}
 
 

@@ -37,7 +37,7 @@ class AmplifierForm(CheckedFields):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Findings for the table on its own, each with its key."""
+        """Check the table independently of the stage; each finding has its key."""
         yield from ()
 
 
@@ -68,7 +68,7 @@ class AmplifierSetup(AmplifierForm):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Findings for both a bandwidth and a resistance, and for invalid bits."""
+        """Check for both a bandwidth and a resistance, and for invalid bits."""
         if self.bandwidth is not None and self.resistance is not None:
             yield Finding("amplifier", "both its bandwidth and its resistance are given", "Specify one of them: the other follows")
 
@@ -97,7 +97,7 @@ class ChargeSetup(AmplifierSetup):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Findings for a missing coupling, a missing or double corner, and the data of voltage amplifiers."""
+        """Check for a missing coupling, a missing or double corner, and data of voltage amplifiers that do not apply."""
         yield from super().faults
         if self.coupling is None:
             advice = "Use e.g. coupling = 0.7: data-sheet strokes and capacitances, d^2 k / C, overestimate it"
