@@ -47,7 +47,7 @@ def loop_tables(found: LoopStudy) -> list[Table | None]:
 def short_tables(found: LoopStudy) -> list[Table | str | None]:
     """Tabulate loop, bandwidth, margins, time responses, positioning noise and hysteresis, without notes.
 
-    For an unstable loop, returns the loop table and the reason of the instability.
+    For an unstable loop, the loop table keeps its note with the reason of the instability.
     """
     margins, noise = margin_tables(replace(found, disk_margin=None)), error_tables(replace(found, static_errors=None))
     parts = [*_charge_tables(found), *_damping_tables(found), *measured_tables(found), *time_tables(found.runs), *noise]

@@ -103,7 +103,7 @@ class Count:
         self.progress, self.about, self.done = progress, about, 0
 
     def __call__(self, more: int) -> None:
-        """Count some more designs."""
+        """Count `more` further designs."""
         self.done += more
         if self.progress is not None:
             self.progress(f"{self.about}: {self.done} designs")
