@@ -28,7 +28,7 @@ class Compensation:
     provenance: str
 
     def strokes(self, poses: Array) -> Array:
-        """Strokes (..., n) [m] for poses (..., f) [m, rad]."""
+        """Compute strokes (..., n) [m] for poses (..., f) [m, rad]."""
         return np.asarray(poses) @ self.gains.values.T + self.offset
 
 

@@ -146,7 +146,7 @@ def study_file(text: str, where: str) -> StudyFile:
 
 
 def study_schema() -> dict[str, Any]:
-    """The JSON Schema of a study's file, for editors.
+    """Return the JSON Schema of a study's file, for editors.
 
     >>> study_schema()["$defs"]["VariedTable"]["required"]
     ['from', 'to']

@@ -37,7 +37,7 @@ class Family:
 
 
 def tracking_gain(place: Place, turning: float, feedback: complex) -> float | None:
-    """Integral gain k [1/s] with |k/s - Q| |g| = 1 for pose feedback Q at s = j `turning`; None without a solution.
+    """Solve |k/s - Q| |g| = 1 for the integral gain k [1/s], with the pose `feedback` Q at s = j `turning`; None without a solution.
 
     >>> round(tracking_gain(Place(1.0, 0.5 + 0.0j, 1.0, None), 2.0, 0.0j), 9)
     4.0
@@ -49,5 +49,5 @@ def tracking_gain(place: Place, turning: float, feedback: complex) -> float | No
 
 
 def warped(frequency: float, step: float | None) -> float:
-    """Prewarped angular frequency [1/s] of a frequency [Hz] sampled by Tustin's rule."""
+    """Compute the prewarped angular frequency [1/s] of a frequency [Hz] sampled by Tustin's rule."""
     return 2.0 * np.pi * frequency if step is None else float(2.0 / step * np.tan(np.pi * frequency * step))

@@ -52,7 +52,7 @@ def law_system(A: Array, B: Array, C: Array, D: Array, step: float | None, *, ke
 
 
 def gain_findings(kind: str, gains: Mapping[str, tuple[float, str]]) -> Iterator[Finding]:
-    """Findings for gains, with their units, that are negative or not finite.
+    """Check that gains, each with its unit, are finite and not negative; returns the findings.
 
     >>> [str(each) for each in gain_findings("PI", {"integral": (-2.0, " 1/s")})]
     ['PI: integral is -2 1/s. Use 0 or more: the model includes the signs of gauges and actuators, so that every loop is positive.']
@@ -64,7 +64,7 @@ def gain_findings(kind: str, gains: Mapping[str, tuple[float, str]]) -> Iterator
 
 
 def corner_findings(kind: str, noun: str, corner: float, step: float | None, otherwise: str = "") -> Iterator[Finding]:
-    """Findings for a corner [Hz] of a law above half the sampling rate.
+    """Check that a corner [Hz] of a law is below half the sampling rate; returns the findings.
 
     >>> [each.what for each in corner_findings("PID", "its filter at", 900.0, 1e-3)]
     ['its filter at 900 Hz is not below half the sampling rate, 500 Hz']
@@ -84,7 +84,7 @@ def tracking_rate(time: float, step: float | None) -> float:
 
 
 def slow_tracking_findings(kind: str, time: float | None, step: float | None) -> Iterator[Finding]:
-    """Findings for a tracking time [s] below one sample: the anti-windup would overshoot.
+    """Check that a tracking time [s] is at least one sample: otherwise the anti-windup would overshoot.
 
     >>> [each.what for each in slow_tracking_findings("PI", 1.0 / 3000.0, 1e-3)]
     ['tracking rate 3000 1/s is too high (expected at most 1000 1/s, the sampling rate)']

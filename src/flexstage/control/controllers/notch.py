@@ -78,7 +78,7 @@ def notch_of_mode(frequency: float, ratio: float, damping: float = _WIDTH) -> No
 
 
 def notch_findings(notches: Iterable[Notch], frequencies: Iterable[float]) -> list[Finding]:
-    """Findings for notches more than a tenth away from every mode of `frequencies` [Hz]. Each names the modes on both sides.
+    """Find notches more than 10 % away from every mode of `frequencies` [Hz]. Each finding names the modes on both sides.
 
     >>> [str(each) for each in notch_findings([Notch(135.0)], [106.0, 106.0, 150.0])]
     ['notch at 135 Hz: it is at no mode: between those at 106 Hz and 150 Hz. Move it to the mode that limits the loop, or omit it.']

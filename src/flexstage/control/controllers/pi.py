@@ -52,7 +52,7 @@ class PI(CheckedFields):
 
 
 def tracking_findings(kind: str, tracking: float | None) -> list[Finding]:
-    """Findings for a tracking time that is not positive.
+    """Check that a tracking time [s] is positive; returns the findings.
 
     >>> [each.what for each in tracking_findings("PI", 0.0)]
     ['tracking time must be positive (got 0 s)']

@@ -190,7 +190,7 @@ def _ratios(poles: Array) -> Array:
 
 
 def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tuple[Leg, ...], pairs: Pairs) -> ActiveDamping:
-    """Summarise the effect of the inner loops on modes and platform stiffness; `pairs` are all modes of the model."""
+    """Summarise the effect of the inner loops on modes and platform stiffness; `pairs` are the model's modes with and without stacks."""
     gains = law.gain * np.geomspace(1e-2, 1.0, 40)
     poles = follow_poles(given, law, legs, gains)[-1]
     modes = []

@@ -44,7 +44,7 @@ WHOLE = ".loop.fmu"
 
 
 def export_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
-    """Findings for the name of an export: an unknown ending, or a reserved function name.
+    """Check the name of an export for an unknown ending or a reserved function name; returns the findings.
 
     >>> print(*export_findings("math.c"))
     math.c: its header math.h would replace a system header, or "math" is a reserved function name. Call it stage_math.c.
@@ -60,7 +60,7 @@ def export_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
 
 
 def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
-    """Findings for the name of a controller for hardware.
+    """Check the name of a controller for hardware; returns the findings.
 
     >>> print(*hardware_findings("plant.mat"))
     plant.mat: its name does not end in .c. Call it plant.c.

@@ -55,7 +55,7 @@ class Coordinates:
         return any(unit != "m" for unit in self.input_units)
 
     def motions(self, prefix: str = "") -> tuple[Channel, ...]:
-        """Channels of the coordinates, with a name prefix.
+        """Return one channel per coordinate, with a name prefix.
 
         >>> from flexstage.cases.parallelogram import parallelogram
         >>> from flexstage.models.ideal import ideal
@@ -65,17 +65,17 @@ class Coordinates:
         return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.names, self.units, strict=True))
 
     def readings(self, prefix: str = "") -> tuple[Channel, ...]:
-        """One channel per gauge, with a name prefix, in its unit."""
+        """Return one channel per gauge, with a name prefix, in its unit."""
         units = self.gauge_units or ("m",) * len(self.gauges)
         return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.gauges, units, strict=True))
 
     def commands(self, prefix: str = "") -> tuple[Channel, ...]:
-        """One channel per actuator, with a name prefix, in the unit of its input."""
+        """Return one channel per actuator, with a name prefix, in the unit of its input."""
         units = self.input_units or ("m",) * len(self.actuators)
         return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.actuators, units, strict=True))
 
     def controller_inputs(self) -> tuple[Channel, ...]:
-        """`error.<c>`, `pose.<c>` and `applied.<actuator>`."""
+        """Return the channels `error.<c>`, `pose.<c>` and `applied.<actuator>`."""
         return (*self.motions("error."), *self.motions("pose."), *self.commands("applied."))
 
 

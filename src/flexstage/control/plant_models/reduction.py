@@ -14,7 +14,7 @@ _REPEATED = 1e-3
 
 
 def reduce_modes(given: Plant, wanted: Array) -> Plant:
-    """Residualise a plant to the modes `wanted` (k,), and at least as many of the strongest as its loop has coordinates.
+    """Residualise a plant to the modes of the mask `wanted` (k,), and at least as many strongest modes as its loop has coordinates.
 
     Repeated modes are retained together. Omitted states follow statically, x = -A^-1 B u, so that every static gain is preserved
     (residualisation: Green and Limebeer, Linear Robust Control, 1995, section 9.2).

@@ -72,7 +72,7 @@ class Margins(InNotebook):
         return {each.channel: each for each in self.channels}
 
     def of(self, channel: str) -> ChannelMargins:
-        """Margins of the channel of that name."""
+        """Return the margins of the channel of this name."""
         return self.loops[channel]
 
 

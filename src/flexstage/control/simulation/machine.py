@@ -110,12 +110,12 @@ class Machine:
         return tuple(f"gap.{name}" for name in self.gauges)
 
     def read(self, prefix: str = "") -> tuple[Channel, ...]:
-        """One channel per gauge, with a name prefix, in the unit of its reading."""
+        """Return one channel per gauge, with a name prefix, in the unit of its reading."""
         units = {channel.name: channel.unit for channel in self.plant.outputs}
         return tuple(Channel(f"{prefix}{name}", units[f"gap.{name}"]) for name in self.gauges)
 
     def strokes(self, prefix: str = "") -> tuple[Channel, ...]:
-        """One channel per actuator, with a name prefix, in the unit of its input."""
+        """Return one channel per actuator, with a name prefix, in the unit of its input."""
         units = {channel.name: channel.unit for channel in self.plant.inputs}
         return tuple(Channel(f"{prefix}{name}", units[name]) for name in self.actuators)
 

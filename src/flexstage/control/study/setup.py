@@ -372,7 +372,7 @@ class LoopSetup(CheckedFields):
     follow: FollowSetup | None = None
 
     def to_json(self) -> dict[str, Any]:
-        """Keys of its file with plain values, SI."""
+        """Return the keys of the set-up file with plain values in SI."""
         kind, word = self.trajectory.TOLD_BY
         chosen = {"amplifier": {"kind": self.amplifier.kind, **asdict(self.amplifier)}}  # type: ignore[call-overload]
         return asdict(self) | chosen | {"trajectory": {kind: word, **asdict(self.trajectory)}}

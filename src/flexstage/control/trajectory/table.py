@@ -48,7 +48,7 @@ class Table:
         return float(self.times[-1])
 
     def at(self, times: Array) -> Array:
-        """Poses (n, c) at `times` (n,) [s]."""
+        """Compute poses (n, c) [m, rad] at `times` (n,) [s]."""
         return np.stack([np.interp(times, self.times, column) for column in self.values.T], axis=-1)
 
 

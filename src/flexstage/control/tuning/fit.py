@@ -121,7 +121,7 @@ class OneLoop:
         yield from self._settling(bounds, *slow)
 
     def excess(self, bounds: Bounds) -> float:
-        """Largest relative violation of a bound, except peaks of S."""
+        """Compute the largest relative violation of a bound, except peaks of S."""
         sizes, steps = np.abs(self.sensitivity[: bounds.plants]), _steps(self.following)
         below, late = self._rejected(bounds), self._late(bounds, steps.shape[1])
         return float(

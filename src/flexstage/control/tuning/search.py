@@ -142,7 +142,7 @@ class Work:
         return min(tries, int(max(self.allowed - self.spent, 0.0) / size))
 
     def count(self, size: int) -> None:
-        """Count evaluated responses."""
+        """Add `size` evaluated responses."""
         self.spent += size
 
     def report(self) -> None:

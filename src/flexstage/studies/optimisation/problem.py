@@ -44,7 +44,7 @@ class OptimisationProblem:
 
 
 def limits(study: Study, definition: OptimisationProblem) -> tuple[Requirement, ...]:
-    """All limits: the study's, then the design's requirements on measures without a limit of the study on that side.
+    """List all limits: the study's, then the design's requirements on measures that the study does not limit on that side.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> [each.key for each in limits(*leaf_study())]

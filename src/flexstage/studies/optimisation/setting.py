@@ -56,7 +56,7 @@ class Setting:
         return Side(index, limit.sense, limit.limit + (spare if limit.sense is Sense.AT_LEAST else -spare), scale)
 
     def starts(self) -> Array:
-        """Shares (starts, n): the nominal design, then a scrambled Sobol sequence."""
+        """Return shares (starts, n) of the initial designs: the nominal design, then a scrambled Sobol sequence."""
         count, size = self.definition.starts - 1, len(self.study.variables)
         generator = scipy.stats.qmc.Sobol(size, scramble=True, rng=np.random.default_rng(self.definition.seed))
         drawn = generator.random(1 << max(count - 1, 0).bit_length())[:count]

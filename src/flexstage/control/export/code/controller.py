@@ -130,7 +130,7 @@ def controller_states(given: Machine, core: Core) -> tuple[State, ...]:
 
 
 def limit_settings(given: Machine) -> tuple[ProgramSetting, ...]:
-    """Limits of strokes, and of their change per sample."""
+    """Return the settings for limits of strokes, and of their change per sample."""
     powers = given.amplifiers
     return (
         ProgramSetting("low", powers.low, "limits of the strokes (or inputs)"),

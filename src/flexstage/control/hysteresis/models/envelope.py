@@ -50,7 +50,7 @@ class Envelope:
         return np.diff(self.values) / np.diff(self.knots)
 
     def at(self, arguments: Array) -> Array:
-        """Values (..., axes) at arguments (..., axes)."""
+        """Compute values (..., axes) at arguments (..., axes)."""
         if self is IDENTITY:
             return np.asarray(arguments, dtype=float)
         beyond = np.asarray(arguments, dtype=float)[..., None] - self.knots[:, :-1]
@@ -100,7 +100,7 @@ def invert(envelope: Envelope) -> Envelope:
 
 
 def descent_findings(envelope: Envelope, where: str) -> list[Finding]:
-    """Findings for each piece of an envelope that does not ascend: the inverse is not unique there.
+    """Find the pieces of an envelope that do not ascend: the inverse is not unique there.
 
     >>> descent_findings(Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 1.0]), "envelope")[0].what
     'from 1 to 2 on axis 0 it goes from 2 to 1 (expected ascending values)'

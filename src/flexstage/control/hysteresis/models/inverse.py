@@ -50,7 +50,7 @@ def inverse_state(model: PrandtlIshlinskii, state: Array) -> Array:
 
 
 def inverse_findings(model: PrandtlIshlinskii) -> list[Finding]:
-    """Findings for a model without inverse: thresholds beyond which it does not rise, and pieces of envelopes that do not ascend.
+    """Find the reasons why a model has no inverse: thresholds beyond which it does not rise, and envelope pieces that do not ascend.
 
     >>> inverse_findings(PrandtlIshlinskii([0.0, 50.0, 100.0], [1e-7, 5e-8, -2e-7]))[0].what
     'the weights up to 2 (threshold 100) sum to -5e-08: beyond it the output does not rise with the input, and no inverse exists'

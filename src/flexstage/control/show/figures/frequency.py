@@ -158,7 +158,7 @@ def _damping_panel(axes: Any, poles: Array, step: float, alone: Array | None) ->
 
 
 def thin_out(x: Array, y: Array) -> tuple[Array, Array]:
-    """Reduce the points of a curve: the minimum and maximum of each of many intervals."""
+    """Reduce the points (n,) of a curve to the minimum and maximum of each of many intervals."""
     if len(x) <= 2 * _POINTS:
         return x, y
     stretches = np.array_split(np.arange(len(x)), _POINTS)

@@ -110,7 +110,7 @@ class Count:
 
 
 def best_of(problem: Problem, traces: list[Trace]) -> Point | None:
-    """The best feasible design of all searches.
+    """Select the best feasible design of all searches.
 
     >>> best_of(Problem((), ()), []) is None
     True
