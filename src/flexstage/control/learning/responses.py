@@ -73,9 +73,9 @@ def frequencies_of(path: Array, step: float) -> Array:
 def through(responses: Array, path: Array) -> Array:
     """Filter a path (n, k) by responses (n/2+1, k, k) at the frequencies of its transform. The path starts at zero and ends at rest.
 
-    The transform is of the path's differences, which end at zero. For an inverse with poles outside the unit circle, the response on the
-    circle is the stable part forward and the antistable part backward in time (Devasia, Chen & Paden, IEEE Trans. Autom. Control 41 (1996)
-    930): the result starts before the path.
+    The transform is of the path's differences, which end at zero. An inverse may have poles outside the unit circle. Its response on the
+    circle is then the sum of the stable part forward in time and the antistable part backward in time (Devasia, Chen & Paden, IEEE Trans.
+    Autom. Control 41 (1996) 930): the result starts before the path.
     """
     spectrum = np.fft.rfft(np.diff(path, axis=0, prepend=0.0), axis=0)
     return np.cumsum(np.fft.irfft(np.einsum("fij,fj->fi", responses, spectrum), n=len(path), axis=0), axis=0)

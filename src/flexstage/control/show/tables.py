@@ -157,7 +157,7 @@ def margin_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def measured_tables(found: LoopStudy) -> list[Table]:
-    """Tabulate margins on a test's responses, with those of fit and model at the same lines; none without a test."""
+    """Tabulate margins on a test's responses, and margins of fit and model at the same lines; none without a test."""
     seen = found.measured
     if seen is None:
         return []
@@ -255,7 +255,7 @@ def _noise_notes(found: LoopStudy) -> tuple[str, ...]:
 
 
 def comparison_tables(found: Comparison) -> list[Table | None]:
-    """Tabulate compared controllers, and each by coordinate."""
+    """Tabulate the compared controllers, then the values of each controller by coordinate."""
     named = {kind_name(name): each for name, each in found.controllers.items()}
     best = "; ".join(f"{aim}: {kind_name(name)}" for aim, name in found.wins.items())
     slow = [name for name, each in named.items() if each.slowly_rounding]

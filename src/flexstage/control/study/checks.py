@@ -1,4 +1,4 @@
-"""Checks of a set-up on its own, independent of a stage."""
+"""Checks of a set-up that do not require a stage."""
 
 from __future__ import annotations
 

@@ -94,8 +94,8 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None
 
     With a `solid` the model is the nominal finite-element stage; the kinematics is still the ideal stage's.
 
-    Raises `DesignError` with all findings: of the set-up, gauges that cannot observe the pose, actuators that cannot produce it, missing
-    stack data for amplifiers, a sampling rate too low for the platform's modes, a model without stiffness.
+    Raises `DesignError` with all findings: errors of the set-up, gauges that cannot observe the pose, actuators that cannot produce it.
+    Also for missing stack data of amplifiers, a sampling rate too low for the platform's modes, and a model without stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = resolve(double_triangle(), LoopSetup())

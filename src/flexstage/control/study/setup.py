@@ -55,7 +55,7 @@ _CREEP = Bound(low=-0.2, high=0.2)
 
 @dataclass(frozen=True)
 class KindNode(ChoiceNode):
-    """Kinds of controllers: those listed here, and those of `CONTROLLERS`, which other packages extend."""
+    """Kinds of controllers: the members of `ControllerKind`, and the entries of `CONTROLLERS`, which other packages extend."""
 
     @property
     def words(self) -> dict[str, Any]:

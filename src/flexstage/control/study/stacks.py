@@ -43,8 +43,8 @@ _TURNS = (1.0, -1.0, 0.7, -0.7, 0.4, -0.4, 0.0)
 class Stacks:
     """Stacks of the actuators: `plant` is their behaviour, `model` the known and inverted model, both from volts to strokes [m].
 
-    `electric` is their voltage. `width` (n,) is the plant's loop width relative to the stroke. `creep` follows the hysteresis (`None`: no
-    creep).
+    `electric` converts strokes to voltages. `width` (n,) is the plant's loop width relative to the stroke. `creep` follows the hysteresis
+    (`None`: no creep).
     """
 
     electric: Drive

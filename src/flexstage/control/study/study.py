@@ -70,9 +70,9 @@ class LoopStudy(InNotebook):
 
     `closed` is the loop with the modes retained in its plant, see `retention`. `growth_all_modes` [1/s] is the spectral abscissa with all
     modes of the model. `margins`, `peaks`, `disk_margin` (of all loops at once), `bandwidths`, `curves` are at the pose; absent in open
-    loop, see `reasons`. `static_errors` belong to the stage without its loop. `noise` is the budget in regulation, `still` (with any
-    noise) a simulation of it. `resting` summarises several simulations if rounding is not white, so that the budget does not apply.
-    `stacks` are those with hysteresis, if specified, `hysteresis` their open-loop sweep. `runs` are the simulations. `warnings` list
+    loop, see `reasons`. `static_errors` belong to the stage without its loop. `noise` is the budget in regulation. `still` is a simulation
+    in regulation, if there is noise. `resting` summarises several simulations if rounding is not white, so that the budget does not apply.
+    `stacks` are the hysteretic stacks, if specified; `hysteresis` is their open-loop sweep. `runs` are the simulations. `warnings` list
     assumptions and limits.
     """
 

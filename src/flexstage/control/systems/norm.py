@@ -32,8 +32,8 @@ def peak(system: System) -> Peak:
     """Compute sup over omega of the largest singular value of H, for a stable system its H-infinity norm, to 1e-9 relative.
 
     The accuracy is 1e-6 if the value at half the sampling rate, or the direct gain of a continuous system, is within 1e-6 of the largest.
-    Bruinsma and Steinbuch (Systems & Control Letters 14, 1990): gamma is a singular value of H if and only if the Hamiltonian matrix of
-    gamma has an eigenvalue on the imaginary axis, so that no peak between frequencies is missed. Sampled systems are mapped by z = (1 +
+    Gamma is a singular value of H if and only if the Hamiltonian matrix of gamma has an eigenvalue on the imaginary axis (Bruinsma and
+    Steinbuch, Systems & Control Letters 14, 1990). No peak between frequencies is therefore missed. Sampled systems are mapped by z = (1 +
     s)/(1 - s), which preserves the norm. Raises `DesignError` for an unstable system, which has no steady response.
 
     >>> from flexstage.models.linear.model import Channel

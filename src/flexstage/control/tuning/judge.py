@@ -105,8 +105,8 @@ def closed_growth(plant: System, control: System) -> float:
 def highest_gain(matrices: Array) -> tuple[float, int]:
     """Find the largest singular value of all matrices (f, k, k), and its index.
 
-    Two bounds of the largest singular value exclude most matrices without eigenvalues: the square root of the largest row sum of |M^H M|,
-    and the norm of the longest column.
+    Bounds exclude most matrices without eigenvalues. The upper bound is the square root of the largest row sum of |M^H M|, the lower bound
+    the norm of the longest column.
 
     >>> highest_gain(np.array([[[1.0, 0.0], [0.0, 1.0]], [[0.0, 3.0], [0.0, 4.0]]]))
     (5.0, 1)

@@ -354,7 +354,7 @@ class SearchResult:
 
     @property
     def notches(self) -> tuple[tuple[Notch, ...], ...]:
-        """Notches by loop, without those of depth 1, which have no effect."""
+        """Notches by loop. Notches of depth 1 are omitted, because they have no effect."""
         every = (shape.notches(point) for shape, point in zip(self.shapes, self.points, strict=True))
         return tuple(tuple(each for each in notches if each.depth < 1.0) for notches in every)
 

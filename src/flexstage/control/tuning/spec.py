@@ -90,8 +90,8 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
 class Judgement:
     """Evaluation of a loop: `bandwidths` [Hz] by loop, `peak` of S and its `frequency` [Hz], spectral abscissa `growth` [1/s].
 
-    All are the worst over the mode spread, except the model's bandwidths. `offset` is the mode shift of the peak or, in an unstable loop,
-    of the growth.
+    The bandwidths belong to the nominal plant. All other values are the worst over the mode spread. `offset` is the mode shift with the
+    highest peak or, in an unstable loop, with the largest growth.
     """
 
     bandwidths: tuple[float, ...]

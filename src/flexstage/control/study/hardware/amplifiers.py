@@ -45,10 +45,10 @@ class AmplifierForm(CheckedFields):
 class AmplifierSetup(AmplifierForm):
     """Amplifiers and their converter: first-order lag with the stack's capacitance; ideal by default.
 
-    `bandwidth` as specified, or by the output `resistance`, 1/(2 pi R C). `current` is the maximum output current and `slew` the maximum
-    voltage rate; both limit the stroke rate. `noise` is white at the output, `bits` are the converter's over the full voltage range. Each
-    stack's range converts voltage to free stroke. Voice coil amplifiers control the current: `bandwidth`, `current`, `current_noise` and
-    `bits` apply.
+    `bandwidth` is specified, or follows from the output `resistance`, 1/(2 pi R C). `current` is the maximum output current and `slew` the
+    maximum voltage rate; both limit the stroke rate. `noise` is white at the output. `bits` is the resolution of the converter over the
+    full voltage range. Each stack's range converts voltage to free stroke. Voice coil amplifiers control the current: `bandwidth`,
+    `current`, `current_noise` and `bits` apply.
     """
 
     kind: ClassVar[str] = "voltage"
