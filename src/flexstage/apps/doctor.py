@@ -1,4 +1,4 @@
-"""The doctor: check of the installation, with remedies. Returns rows, prints nothing, runs when any package is missing."""
+"""The doctor: check of the installation, with remedies. Returns rows, prints nothing, and runs even if packages are missing."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _THREADS = "import json, numpy.linalg, scipy.linalg, threadpoolctl as t; print(j
 
 
 class Verdict(Enum):
-    """Verdict on a row. Flexstage also works with a note."""
+    """Verdict on a row: good, bad, or a note, with which flexstage works too."""
 
     GOOD = "good"
     NOTE = "note"
@@ -36,7 +36,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Row:
-    """One checked item: `what`, the `found` and the `wanted` state, the `verdict` and the `remedy` as text."""
+    """One checked item `what`: its state `found`, the required state `wanted`, the `verdict` and the `remedy`, as text."""
 
     what: str
     found: str
@@ -137,7 +137,7 @@ def _threads() -> Row:
 
 
 def examine_folder(what: str, folder: Path) -> Row:
-    """Check by a trial whether a file can be written in a folder, without relying on its mode.
+    """Check whether a file can be written in a folder: writes a trial file instead of reading the permissions.
 
     >>> examine_folder("folder", Path("no such folder")).verdict
     <Verdict.BAD: 'bad'>
@@ -160,7 +160,7 @@ def _figure_cache() -> Row:
 
 
 def native_code() -> Iterator[Row]:
-    """Whether the kernels load. Only a note: numpy replaces missing ones.
+    """Check whether the compiled kernels can be loaded. Missing kernels are only a note, because numpy replaces them.
 
     >>> [row.verdict is Verdict.BAD for row in native_code()]
     [False]

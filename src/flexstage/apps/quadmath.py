@@ -1,8 +1,7 @@
-"""The library missing in NGSolve's wheels: their OpenBLAS needs `libquadmath.so.0`, which a bare machine does not have.
+"""The library missing in NGSolve's wheels: their OpenBLAS needs `libquadmath.so.0`, which a minimal system does not have.
 
-numpy's wheels contain it under another name. The loader prefers a copy next to the library that needs it, on any
-machine. `python -m flexstage.apps.quadmath` copies it.
-Standard library only: `tools/setup.py` calls it too.
+numpy's wheels contain it under another name. The loader prefers a copy next to the library that needs it, on any machine. `python -m
+flexstage.apps.quadmath` copies it. Uses the standard library only: `tools/setup.py` calls it too.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ _CARRIERS = ("numpy.libs", "scipy.libs")
 
 
 def missing_place(folders: Iterable[Path | str]) -> Path | None:
-    """Folder for the library within these `site-packages` folders; None if no library needs it or it exists.
+    """Find the folder for the library within these `site-packages` folders; None if no library needs it or it exists.
 
     >>> missing_place([]) is None
     True
@@ -30,7 +29,7 @@ def missing_place(folders: Iterable[Path | str]) -> Path | None:
 
 
 def provide(folders: Iterable[Path | str]) -> str:
-    """Copy the library into its folder; returns the reason of a failure, else nothing. A second call has no effect.
+    """Copy the library into its folder; returns the reason of a failure, else an empty text. A second call has no effect.
 
     >>> provide([])
     ''

@@ -28,7 +28,7 @@ class Compensation:
     provenance: str
 
     def strokes(self, poses: Array) -> Array:
-        """Strokes (..., n) [m] for poses (..., f) [m, rad]."""
+        """Compute strokes (..., n) [m] for poses (..., f) [m, rad]."""
         return np.asarray(poses) @ self.gains.values.T + self.offset
 
 
@@ -73,10 +73,11 @@ def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflectio
 
 @dataclass(frozen=True, eq=False)
 class StaticError(InNotebook):
-    """Static error in open loop: `error` (f, f) commanded less reached, by coordinate reached (row) and commanded (column).
+    """Static error in open loop: `error` (f, f) is the commanded minus the reached pose, per unit of commanded pose.
 
-    The diagonal is each axis' own error, the rest crosstalk. `parasitic` (6, f) is the motion outside the ideal motions. `offset` (6,) is
-    the twist caused by loads at zero command. `largest` is the largest error per unit of command, rotations as lengths.
+    Rows of `error` are the reached coordinates, columns the commanded ones. The diagonal is the error of each axis, the other elements are
+    crosstalk. `parasitic` (6, f) is the motion outside the ideal motions. `offset` (6,) is the twist caused by loads at zero command.
+    `largest` is the largest error per unit of command, with rotations converted to lengths.
     """
 
     error: Matrix
@@ -86,16 +87,16 @@ class StaticError(InNotebook):
     provenance: str
 
     def of(self, command: Array) -> Array:
-        """Error (..., f) [m, rad] of commanded poses (..., f), without loads."""
+        """Compute the error (..., f) [m, rad] of commanded poses (..., f), without loads."""
         return np.asarray(command) @ self.error.values.T
 
 
 def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, deflection: Array | None = None) -> StaticError:
     """Compute the static error of a compensation on a plant of any model.
 
-    E = I - V^+ T G for the plant's `plant` = T (6, n), the platform's twist per stroke (`lost_motion(...).gain`, or `static_gain` of any
+    E = I - V^+ T G. The parameter `plant` is T (6, n), the platform's twist per stroke (`lost_motion(...).gain`, or `static_gain` of any
     model). With G = R_a this is R_a^+ Lambda R_a, the result of the lost-motion analysis. `deflection` (6,) is the plant's deflection under
-    the loads, strokes fixed. Raises `DesignError` for a plant of other actuators.
+    the loads, strokes fixed. Raises `DesignError` if the plant has other actuators than the compensation.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle

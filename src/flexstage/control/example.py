@@ -15,7 +15,7 @@ from flexstage.models.lumped import lumped
 
 
 def integral(given: Plant, gain: float) -> System:
-    """Integral controller for each coordinate, u' = `gain` [1/s] R_a e; sampled by the backward rectangle rule.
+    """Construct an integral controller for each coordinate, u' = `gain` [1/s] R_a e; sampled by the backward rectangle rule.
 
     >>> found = integral(integral_loop().plant, 100.0)
     >>> found.input_names, found.D.tolist()  # 100/s for 0.1 ms
@@ -31,7 +31,7 @@ def integral(given: Plant, gain: float) -> System:
 
 
 def integral_loop(gain: float = 100.0, given: Hardware | None = None) -> Loop:
-    """Shipped parallelogram, lumped model with three modes, at 10 kHz and half a sample of delay, under integral control.
+    """Close an integral loop on the shipped parallelogram: lumped model, three modes, 10 kHz, half a sample of delay.
 
     >>> integral_loop().system.growth < 0.0
     True

@@ -33,7 +33,7 @@ from flexstage.show.command.output import announce, write
 
 
 def written_files(exports: Sequence[Path], hardware: Path | None) -> Iterator[tuple[str, Path]]:
-    """Each file of `--export` and `--hardware`, with its option: source and header for C."""
+    """List each file of `--export` and `--hardware` with its option; for C, source and header."""
     for target in exports:
         yield from (("--export", each) for each in ((target, target.with_suffix(".h")) if target.suffix == ".c" else (target,)))
     if hardware is not None:
@@ -42,7 +42,7 @@ def written_files(exports: Sequence[Path], hardware: Path | None) -> Iterator[tu
 
 
 def require_names(exports: Sequence[Path], hardware: Path | None) -> None:
-    """Refuse invalid file names before any computation."""
+    """Raise `DesignError` for invalid file names, before any computation."""
     found = [("--export", each) for target in exports for each in export_findings(target)]
     if hardware is not None:
         found += [("--hardware", each) for each in hardware_findings(hardware)]
@@ -59,7 +59,7 @@ def write_export(found: LoopStudy, target: Path) -> None:
 
 
 def file_findings(asked: forms.LoopSetup, exports: Sequence[Path], hardware: Path | None) -> Iterator[Finding]:
-    """Findings for controllers without embedded form, and paths that are not commanded as specified."""
+    """Check exports for controllers without a form for embedded processors, and for paths that are not commanded as specified."""
     if hardware is not None and Compensation.HYSTERESIS in asked.compensate:
         yield Finding("--hardware", *NO_INVERSE)
     for target in (each for each in exports if each.suffix == ".csv"):

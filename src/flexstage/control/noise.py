@@ -55,8 +55,8 @@ class NoiseBudget(InNotebook):
     def slowly_rounding(self) -> tuple[str, ...]:
         """Gauges whose rounding is significant and not white: their readings change by less than half a step per sample.
 
-        Errors of successive samples of a Gaussian series with changes of s steps correlate by about exp(-2 pi^2 s^2), 0.7 % at a half
-        (Widrow & Kollar, Quantization Noise, 2008).
+        Rounding errors of successive samples of a Gaussian series with changes of s steps correlate by about exp(-2 pi^2 s^2), 0.7 % for s
+        = 1/2 (Widrow & Kollar, Quantization Noise, 2008).
         """
         counts = np.any(self.squares > 0.0, axis=0)
         felt = {each.channel for each, some in zip(self.sources, counts, strict=True) if some and each.kind is Kind.ROUNDING}
@@ -97,7 +97,7 @@ class NoiseBudget(InNotebook):
 
     @property
     def rounding_is_white(self) -> Annotated[bool, VIEW]:
-        """Whether rounding is white noise, as the budget assumes; otherwise use the simulated rms."""
+        """Whether rounding is white noise, as the budget assumes. Otherwise use the simulated rms."""
         return not self.slowly_rounding
 
 
@@ -183,7 +183,7 @@ def _white_density(white: System, sources: tuple[Source, ...], frequencies: Arra
 
 
 def band_spectra(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str, ...]) -> dict[str, Spectrum]:
-    """Spectra integrated over a band, by plant input: of the floor, and of amplifiers without bandwidth.
+    """Collect the spectra integrated over a band, by plant input: of the floor, and of amplifiers without bandwidth.
 
     >>> from flexstage.control.example import integral_loop
     >>> list(band_spectra(integral_loop(), {"ground.x": Spectrum(1e-18)}, ("relative.x",)))

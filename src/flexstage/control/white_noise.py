@@ -154,7 +154,7 @@ def _with_amplifiers(
 
 
 def bounded_amplifiers(closed: Loop, outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """Find actuators with amplifier noise without direct effect on gauges and outputs: a lag limits it to a finite mean square.
+    """Find actuators whose amplifier noise has no direct effect on gauges and outputs: a lag limits it to a finite mean square.
 
     >>> from flexstage.control.example import integral_loop
     >>> bounded_amplifiers(integral_loop(), ("relative.x",))  # no noise is stated

@@ -1,4 +1,4 @@
-"""The form of a study's file: the fields of each section. They define its reader and its schema."""
+"""The form of a study's file: the fields of each section. The reader and the schema are generated from it."""
 
 from __future__ import annotations
 
@@ -32,10 +32,11 @@ _YIELD = Bound(low=0.5, high=1.0, open_low=True, open_high=True)
 
 @dataclass(frozen=True)
 class VariedTable:
-    """A variable: `address`, one or several that change together (absent: the name), or `parameter`, one of the case or several.
+    """A variable of a study: numbers of the design at one `address` or several, or one `parameter` of the case or several.
 
-    Its range is `from` ... `to`, with units or in percent of the design's value. `logarithmic`: equal steps are equal ratios.
-    `levels`: number of values of a grid. `step`: only its multiples can be made.
+    Several change together. Without both, the variable's name is the address. The range is `from` ... `to`, with units or in percent of the
+    design's value. `logarithmic`: equal steps are equal ratios. `levels`: number of values of a grid. `step`: manufacturing increment,
+    values are its multiples.
     """
 
     low: Amount = field(metadata={KEY: "from"})
@@ -49,7 +50,7 @@ class VariedTable:
 
 @dataclass(frozen=True)
 class SweepTable:
-    """Sampling of designs: `sampling`, number of `designs` (1024; for a grid, from its levels), the `seed` of all random numbers.
+    """Sampling of designs: `sampling`, number of `designs` (default 1024; a grid's number follows from its levels), random `seed`.
 
     `pairs`: Saltelli's plan with indices of second order.
     """
@@ -64,7 +65,7 @@ class SweepTable:
 class OptimiseTable:
     """Objectives: responses to `maximise` or `minimise`; with two of them a Pareto front of `pareto_points` designs is computed.
 
-    The search has this number of `starts`, drawn with `seed`. Without `requirements` the design's own are not limits.
+    `starts` is the number of initial designs, drawn with `seed`. `requirements`: the design's own requirements are limits too.
     """
 
     maximise: Texts | None = None
@@ -77,11 +78,12 @@ class OptimiseTable:
 
 @dataclass(frozen=True)
 class ScatterTable:
-    """Scatter: `address`, one or several of a kind (absent: the name), by a standard deviation `normal` or a half width `uniform`.
+    """Scatter of the numbers at one `address` or several of the same quantity; without it the entry's name is the address.
 
-    Both have a unit or are in percent of the design's value. `within` truncates a normal distribution. `interval` of an asymmetric
-    tolerance, lower and upper: uniform between them, or with `normal` about their middle and truncated there. `independent`: every
-    instance has its own deviation.
+    The distribution is normal with the standard deviation `normal`, or uniform with the half width `uniform`. Both have a unit or are in
+    percent of the design's value. `within` truncates a normal distribution. `interval` is an asymmetric tolerance (lower, upper): uniform
+    between them, or with `normal` a normal distribution about their middle, truncated there. `independent`: every instance has its own
+    deviation.
     """
 
     address: Texts | None = None
@@ -94,10 +96,10 @@ class ScatterTable:
 
 @dataclass(frozen=True)
 class ToleranceTable:
-    """Number of `copies`, their `sampling` and `seed`, and the required `yield` of each requirement.
+    """Number of `copies` (samples), their `sampling` and `seed`, and the required `yield` of each requirement.
 
-    Without `requirements` the design's own are excluded. `crosstalk` of the platform at a `point` (absent: if the stage
-    has any).
+    `requirements`: includes the design's own requirements. `crosstalk`: computes the platform's crosstalk at a `point` (default: if the
+    stage has any).
     """
 
     copies: Annotated[int, _TWO] = 1024
@@ -111,7 +113,7 @@ class ToleranceTable:
 
 @dataclass(frozen=True, kw_only=True)
 class StudyFile:
-    """A study: the `design` file or the shipped `case` it starts from, with its `parameters`; its responses and limits.
+    """A study: its initial design (`design` file, or shipped `case` with `parameters`), its responses and its limits.
 
     `responses` are measures by name, `limits` contain "at least" or "at most" by measure. `variables` and `sweep` belong to a sweep,
     `variables` and `optimise` to an optimisation, `scatter` and `tolerance` to a tolerance analysis.
@@ -131,7 +133,7 @@ class StudyFile:
 
 
 def study_file(text: str, where: str) -> StudyFile:
-    """The contents of a study's file. Raises `DesignError` with all errors in it.
+    """Parse the text of a study's file. Raises `DesignError` with all errors in it.
 
     >>> study_file('format = "flexstage study 1"' + chr(10) + 'case = "parallelogram"', "here").sweep.seed
     0
@@ -144,7 +146,7 @@ def study_file(text: str, where: str) -> StudyFile:
 
 
 def study_schema() -> dict[str, Any]:
-    """The JSON Schema of a study's file, for editors.
+    """Return the JSON Schema of a study's file, for editors.
 
     >>> study_schema()["$defs"]["VariedTable"]["required"]
     ['from', 'to']
@@ -162,7 +164,7 @@ def is_share(raw: str | float) -> bool:
 
 
 def parse_amount(raw: str | float, quantity: Quantity, where: str) -> float:
-    """An amount in SI; raises `DesignError` at `where` for another quantity.
+    """Convert an amount to SI; raises `DesignError` at `where` for another quantity.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> parse_amount("1.5 mm", LENGTH, "variables.neck.from")

@@ -32,7 +32,7 @@ class Command(NamedTuple):
     example: str
 
     def load(self) -> Any:
-        """The function or `Typer`, from its module."""
+        """Import the function or `Typer` from its module."""
         module, _, name = self.home.partition(":")
         return getattr(import_module(module), name)
 
@@ -147,7 +147,7 @@ class LazyCommand(TyperCommand):
         self.command = command
 
     def load(self) -> Any:
-        """The command itself, or a group of commands."""
+        """Import the command, or a group of commands."""
         home = self.command.load()
         if not isinstance(home, typer.Typer):
             function, home = home, typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
@@ -159,11 +159,11 @@ class GroupedCommands(TyperGroup):
     """A group that lists its commands by purpose, and loads the called one."""
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """The command of this name, in British or American spelling."""
+        """Return the command of this name, in British or American spelling."""
         return super().get_command(ctx, _SPELLINGS.get(cmd_name, cmd_name))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Name, command and the remaining arguments."""
+        """Return name, command and the remaining arguments."""
         if not args[0].startswith("-") and self.get_command(ctx, args[0]) is None:
             listed = "Use 'flexstage --help' to list all commands"
             raise refuse(args[0], "unknown command", suggest_nearest(args[0], self.commands, otherwise=listed))
@@ -186,7 +186,7 @@ class GroupedCommands(TyperGroup):
 
 
 def application(commands: tuple[Command, ...] = COMMANDS) -> TyperGroup:
-    """The command line: a group of commands, imported at their first call."""
+    """Build the command line: a group of commands, imported at their first call."""
     app = typer.Typer(
         cls=GroupedCommands,
         help="Design and proof of flexure-based ultra-precision positioning stages.",
@@ -204,7 +204,7 @@ def application(commands: tuple[Command, ...] = COMMANDS) -> TyperGroup:
 
 
 def run_application(arguments: list[str]) -> int:
-    """Run a command line, and return the exit code that it requests; a usage error has the form of all messages."""
+    """Run a command line, and return its exit code. A usage error is printed in the form of all messages."""
     group = application()
     try:
         code = group(arguments or ["--help"], prog_name="flexstage", obj=MODELS, standalone_mode=False)

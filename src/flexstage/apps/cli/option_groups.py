@@ -42,7 +42,7 @@ class GroupedOptionsCommand(TyperCommand):
 
 
 def default_last(text: str) -> str:
-    """The help of an option with its default, and the note that it is required, as sentences.
+    """Format the help of an option: its default, and the note that it is required, become sentences at the end.
 
     >>> default_last("Model.  [default: lumped]"), default_last("Design file (TOML).  [required]")
     ('Model. Default: lumped.', 'Design file (TOML). Required.')

@@ -21,11 +21,11 @@ from flexstage.control.systems.system import System, select
 
 @dataclass(frozen=True, eq=False)
 class Decentralised(CheckedFields):
-    """Decentralised controller: one law with notches per loop; strokes = drive times the loops' commands + `feedforward` reference.
+    """Decentralised controller: one law with notches per loop, and reference feedforward to the strokes.
 
-    `laws` and `notches` have one entry per name of `loops`. `feedforward` (n, f) are feedforward strokes per reference coordinate: R_a, or
-    gains that correct lost motion; default: no feedforward. `prefilters`, one per loop, shape its reference, feedforward included; default:
-    none. Raises `DesignError` for sizes that do not match.
+    The strokes are `drive` of the loops times the loops' commands, plus `feedforward` times the reference. `laws` and `notches` have one
+    entry per name of `loops`. `feedforward` (n, f) is R_a, or gains that correct lost motion; default: no feedforward. `prefilters`, one
+    per loop, shape its reference, feedforward included; default: none. Raises `DesignError` for sizes that do not match.
     """
 
     loops: Loops
@@ -41,9 +41,9 @@ class Decentralised(CheckedFields):
     def system(self, step: float | None = None) -> System:
         """Return the controller as a linear system.
 
-        Inputs `error.<c>`, `pose.<c>` (only if a law uses it), `reference.<c>` (with `feedforward` or `prefilters`) and
-        `applied.<actuator>`, the applied less the commanded input. Outputs `command.<actuator>`. Raises `DesignError` for a law too fast
-        for the sampling rate.
+        Inputs are `error.<c>`, `pose.<c>` (only if a law uses it), `reference.<c>` (with `feedforward` or `prefilters`) and
+        `applied.<actuator>`, the applied minus the commanded input. Outputs are `command.<actuator>`. Raises `DesignError` for a law too
+        fast for the sampling rate.
 
         >>> from flexstage.control.controllers.pi import PI
         >>> from flexstage.control.controllers.loops import platform_loops
@@ -78,7 +78,7 @@ class Decentralised(CheckedFields):
 
 
 def loop_systems(control: Decentralised, step: float | None = None) -> tuple[System, ...]:
-    """Law and notches of each loop in series: inputs `error`, `pose`, `applied`, output `command`, in metres.
+    """Connect law and notches of each loop in series: one system per loop, inputs `error`, `pose`, `applied`, output `command` [m].
 
     >>> from flexstage.control.controllers.pi import PI
     >>> from flexstage.control.controllers.loops import platform_loops
@@ -104,7 +104,7 @@ def _in_series(law: Law, notches: tuple[Notch, ...], step: float | None) -> Syst
 
 
 def filtered(law: System, notch: System) -> System:
-    """Law in series with a notch on its command, with fixed wiring (not by `connect`).
+    """Connect a notch in series with the output of a law. The matrices are composed directly, without `connect`.
 
     >>> from flexstage.control.controllers.pi import PI
     >>> law = PI(integral=200.0).system()
@@ -118,7 +118,7 @@ def filtered(law: System, notch: System) -> System:
 
 
 def with_feedforward(control: System, gains: Array | None, coordinates: Coordinates) -> System:
-    """Controller with `gains` (n, f) times the reference added to its commands; inputs `reference.<c>` precede `applied`.
+    """Add feedforward to a controller: `gains` (n, f) times the reference. Its inputs `reference.<c>` precede `applied`.
 
     >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.control.systems.system import static

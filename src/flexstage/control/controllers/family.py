@@ -12,7 +12,7 @@ from flexstage.control.controllers.law import Law
 
 @dataclass(frozen=True)
 class Place:
-    """Plant at a crossover: complex `gain` at `frequency` [Hz] with notches, `static` gain, first `resonance` [Hz]."""
+    """Plant of one loop at a crossover `frequency` [Hz]: complex `gain` there, notches included; `static` gain; first `resonance` [Hz]."""
 
     frequency: float
     gain: complex
@@ -22,11 +22,11 @@ class Place:
 
 @dataclass(frozen=True)
 class Family:
-    """Controller family with a `name`: its `laws` with |C g| = 1 at a crossover, for a sampling interval [s] (None: continuous).
+    """Controller family with a `name`: `laws` returns the laws with |C g| = 1 at a crossover.
 
-    Tuning selects, per loop, the law with the lowest peak of S. `notched`: notches are added on modes that need them. `others`: kinds to
-    suggest if the specification is not reached. `steps`: ratios of the bandwidths tried in turn, above 0.05 of the first mode, and coarser
-    below.
+    The arguments of `laws` are the crossover and the sampling interval [s] (None: continuous). For each loop, tuning selects the law with
+    the lowest peak of S. `notched`: notches are added on modes that need them. `others`: kinds to suggest if the specification is not
+    reached. `steps`: ratios of successive trial bandwidths, first above 5 % of the first mode's frequency, then below.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Family:
 
 
 def tracking_gain(place: Place, turning: float, feedback: complex) -> float | None:
-    """Integral gain k [1/s] with |k/s - Q| |g| = 1 for pose feedback Q at s = j `turning`; None without a solution.
+    """Solve |k/s - Q| |g| = 1 for the integral gain k [1/s], with the pose `feedback` Q at s = j `turning`; None without a solution.
 
     >>> round(tracking_gain(Place(1.0, 0.5 + 0.0j, 1.0, None), 2.0, 0.0j), 9)
     4.0
@@ -49,5 +49,5 @@ def tracking_gain(place: Place, turning: float, feedback: complex) -> float | No
 
 
 def warped(frequency: float, step: float | None) -> float:
-    """Prewarped angular frequency [1/s] of a frequency [Hz] sampled by Tustin's rule."""
+    """Compute the prewarped angular frequency [1/s] of a frequency [Hz] sampled by Tustin's rule."""
     return 2.0 * np.pi * frequency if step is None else float(2.0 / step * np.tan(np.pi * frequency * step))

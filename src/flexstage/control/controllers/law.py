@@ -24,8 +24,8 @@ FIVE_DIGITS = Heading(digits=5)
 class Law(Protocol):
     """Single-loop controller.
 
-    `system(step)` has the inputs `error` (reference less pose), `pose`, and `applied` (applied less commanded input: 0 without saturation,
-    used for anti-windup), and the output `command`. Without a step it is continuous.
+    The inputs of `system(step)` are `error` (reference minus pose), `pose`, and `applied` for anti-windup (applied minus commanded input, 0
+    without saturation). The output is `command`. Without a step the system is continuous.
     """
 
     def system(self, step: float | None = None) -> System:
@@ -34,9 +34,9 @@ class Law(Protocol):
 
 
 def law_system(A: Array, B: Array, C: Array, D: Array, step: float | None, *, kept: Sequence[bool]) -> System:
-    """Matrices A (n, n), B (n, 3), C (1, n), D (1, 3) of a law, only the states in `kept`; continuous, or by Tustin's rule.
+    """Construct a law's system from A (n, n), B (n, 3), C (1, n), D (1, 3), discretised by Tustin's rule if `step` [s] is specified.
 
-    The applied input acts one sample later in a sampled law, because it is known only after the command.
+    Retains only the states in `kept`. In a sampled law the applied input acts one sample later, because it is known only after the command.
 
     >>> one, none = np.eye(1), np.zeros((1, 3))
     >>> found = law_system(0.0 * one, np.array([[2.0, 0.0, 4.0]]), one, none, 0.1, kept=[True])
@@ -52,7 +52,7 @@ def law_system(A: Array, B: Array, C: Array, D: Array, step: float | None, *, ke
 
 
 def gain_findings(kind: str, gains: Mapping[str, tuple[float, str]]) -> Iterator[Finding]:
-    """Findings for gains, with their units, that are negative or not finite.
+    """Check that gains, each with its unit, are finite and not negative; returns the findings.
 
     >>> [str(each) for each in gain_findings("PI", {"integral": (-2.0, " 1/s")})]
     ['PI: integral is -2 1/s. Use 0 or more: the model includes the signs of gauges and actuators, so that every loop is positive.']
@@ -64,7 +64,7 @@ def gain_findings(kind: str, gains: Mapping[str, tuple[float, str]]) -> Iterator
 
 
 def corner_findings(kind: str, noun: str, corner: float, step: float | None, otherwise: str = "") -> Iterator[Finding]:
-    """Findings for a corner [Hz] of a law above half the sampling rate.
+    """Check that a corner [Hz] of a law is below half the sampling rate; returns the findings.
 
     >>> [each.what for each in corner_findings("PID", "its filter at", 900.0, 1e-3)]
     ['its filter at 900 Hz is not below half the sampling rate, 500 Hz']
@@ -75,7 +75,7 @@ def corner_findings(kind: str, noun: str, corner: float, step: float | None, oth
 
 
 def tracking_rate(time: float, step: float | None) -> float:
-    """Rate 1/T_t [1/s] of a tracking time that follows from gains, limited to one sample.
+    """Compute the anti-windup rate 1/T_t [1/s] from a tracking time T_t [s], which is raised to at least one sample.
 
     >>> tracking_rate(0.5, None), tracking_rate(0.01, 0.1)
     (2.0, 10.0)
@@ -84,7 +84,7 @@ def tracking_rate(time: float, step: float | None) -> float:
 
 
 def slow_tracking_findings(kind: str, time: float | None, step: float | None) -> Iterator[Finding]:
-    """Findings for a tracking time [s] below one sample: the anti-windup would overshoot.
+    """Check that a tracking time [s] is at least one sample: otherwise the anti-windup would overshoot.
 
     >>> [each.what for each in slow_tracking_findings("PI", 1.0 / 3000.0, 1e-3)]
     ['tracking rate 3000 1/s is too high (expected at most 1000 1/s, the sampling rate)']

@@ -68,8 +68,9 @@ def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Lo
 def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
     """Select the modes for modal loops: one per coordinate, the most compliant under static load along the coordinates.
 
-    A mode's part of the platform's compliance is |S phi|^2 / omega^2 (rotations as lengths). Modes are selected from the largest down, each
-    by its component independent of those selected before. Indices ascend. Raises `DesignError` for too few modes.
+    The contribution of a mode to the platform's compliance is |S phi|^2 / omega^2 (rotations as lengths). The mode with the largest
+    contribution is selected first. For each further mode, only the component independent of the selected modes counts. Returns ascending
+    indices. Raises `DesignError` for too few modes.
 
     >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.analysis.dynamics.modes import modes

@@ -33,7 +33,7 @@ class Weights:
 
 @dataclass(frozen=True)
 class Disturbances:
-    """Noise densities assumed by the observer: `strokes` [m/Hz^(1/2)] of every command (white), `gauges` of every reading."""
+    """Noise densities assumed by the observer: white noise of every command, `strokes` [m/Hz^(1/2)], and of each gauge, `gauges`."""
 
     strokes: float
     gauges: Mapping[str, float]
@@ -89,7 +89,7 @@ def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Dis
 
 
 def with_observer(model: System, coordinates: Coordinates, weights: Weights, observer: Array, feedforward: Array | None = None) -> LQG:
-    """The regulator of least cost with an observer's gain that is known.
+    """Design the regulator of least cost for a known observer gain (s, f).
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -120,7 +120,7 @@ def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tup
 
 
 def observer_gain(model: System, coordinates: Coordinates, expected: Disturbances) -> Array:
-    """Gain M (s, f) of the Kalman filter; where D passes the strokes' noise on, noises of state and output are correlated.
+    """Compute the gain M (s, f) of the Kalman filter. If D transmits the strokes' noise, state and output noise are correlated.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -144,7 +144,7 @@ def observer_gain(model: System, coordinates: Coordinates, expected: Disturbance
 
 
 def estimator(model: System, observer: Array) -> System:
-    """Kalman filter: estimated states x^ of a model from readings y and commands u.
+    """Construct the Kalman filter: it estimates the states x^ of a model from readings y and commands u.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -226,7 +226,7 @@ def _sampled_system(control: LQG) -> System:
 
 
 def with_feedforward_states(control: System, given: LQG) -> System:
-    """Controller with reference feedforward: static strokes F r, and K x(F r) for the states they cause.
+    """Add reference feedforward to a controller: the static strokes F r, plus K x for the states x that these strokes cause.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop

@@ -21,10 +21,10 @@ _FAR = 0.1
 
 @dataclass(frozen=True)
 class Notch(CheckedFields):
-    """N(s) = (s^2 + 2 d zeta w s + w^2) / (s^2 + 2 zeta w s + w^2): gain d = `depth` at w = 2 pi `frequency`, 1 far from it.
+    """Notch filter (s^2 + 2 d zeta w s + w^2) / (s^2 + 2 zeta w s + w^2): gain d = `depth` at w = 2 pi `frequency`, 1 far from it.
 
     `damping` zeta belongs to the poles: the gain is below 1/sqrt(2) over a bandwidth of about 2 zeta of the frequency. Depth zeta_m / zeta
-    cancels a mode of ratio zeta_m and replaces its poles by the notch's. Raises `DesignError` for invalid numbers.
+    cancels a mode of damping ratio zeta_m: the notch's poles replace the mode's poles. Raises `DesignError` for invalid numbers.
 
     >>> from flexstage.control.controllers.notch import Notch
     >>> gains = Notch(frequency=110.9, depth=0.02).system().transfer(np.array([0.0, 110.9]))
@@ -78,7 +78,7 @@ def notch_of_mode(frequency: float, ratio: float, damping: float = _WIDTH) -> No
 
 
 def notch_findings(notches: Iterable[Notch], frequencies: Iterable[float]) -> list[Finding]:
-    """Findings for notches more than a tenth away from every mode of `frequencies` [Hz]. Each names the modes on both sides.
+    """Find notches more than 10 % away from every mode of `frequencies` [Hz]. Each finding names the modes on both sides.
 
     >>> [str(each) for each in notch_findings([Notch(135.0)], [106.0, 106.0, 150.0])]
     ['notch at 135 Hz: it is at no mode: between those at 106 Hz and 150 Hz. Move it to the mode that limits the loop, or omit it.']

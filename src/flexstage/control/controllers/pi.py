@@ -16,7 +16,7 @@ from flexstage.control.systems.system import System
 
 @dataclass(frozen=True)
 class PI(CheckedFields):
-    """C(s) = k_p + k_i / s from a loop's error [m] to its command [m]: `proportional` k_p [1], `integral` k_i [1/s].
+    """PI controller k_p + k_i / s from a loop's error [m] to its command [m]: `proportional` k_p [1], `integral` k_i [1/s].
 
     Under saturation the integrator follows the applied input within `tracking` T_t [s], x' = k_i e + (applied - commanded)/T_t
     (back-calculation; Astrom and Haegglund, Advanced PID Control, 2006, section 3.5). Default: (1 + k_p)/k_i, the time constant of the loop
@@ -52,7 +52,7 @@ class PI(CheckedFields):
 
 
 def tracking_findings(kind: str, tracking: float | None) -> list[Finding]:
-    """Findings for a tracking time that is not positive.
+    """Check that a tracking time [s] is positive; returns the findings.
 
     >>> [each.what for each in tracking_findings("PI", 0.0)]
     ['tracking time must be positive (got 0 s)']

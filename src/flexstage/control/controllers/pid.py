@@ -17,10 +17,10 @@ from flexstage.control.systems.system import System
 
 @dataclass(frozen=True)
 class PID(CheckedFields):
-    """C(s) = k_p + k_i / s + k_d s / (1 + s / (2 pi f)): `proportional` [1], `integral` [1/s], `derivative` [s], `filter` f [Hz].
+    """PID controller k_p + k_i/s + k_d s/(1 + s/(2 pi f)): `proportional` [1], `integral` [1/s], `derivative` [s], `filter` f [Hz].
 
-    From a loop's error [m] to its command [m]. The derivative acts on the error; its filter bounds the gain at high frequencies by k_p + 2
-    pi f k_d. `tracking` as for `PI`. Raises `DesignError` for negative gains and a derivative without a filter.
+    Its input is a loop's error [m], its output the loop's command [m]. The filter of the derivative bounds the gain at high frequencies by
+    k_p + 2 pi f k_d. `tracking` as for `PI`. Raises `DesignError` for negative gains and a derivative without a filter.
 
     >>> control = PID(proportional=0.5, integral=100.0, derivative=0.01, filter=1000.0)
     >>> found = control.system().transfer(np.array([10.0]))[0, 0, 0]

@@ -60,7 +60,7 @@ class PositiveFeedback:
         return law_system(A, B, C, np.zeros((1, 3)), step, kept=[True, True, self.tracking != 0.0])
 
     def feedback(self, rate: complex) -> complex:
-        """Positive feedback of the pose at a complex rate s [1/s]."""
+        """Compute the positive feedback of the pose at a complex rate s [1/s]."""
         w = 2.0 * np.pi * self.frequency
         return (self.velocity * rate + self.position * w**2) / (rate**2 + 2.0 * self.damping * w * rate + w**2)
 
@@ -68,7 +68,8 @@ class PositiveFeedback:
 def place_poles(frequency: float, damping: float, static: float = 1.0) -> PositiveFeedback:
     """Place the poles of an undamped mode at (s^2 + 2 sigma s + sigma^2 + w^2)^2, sigma = `damping` w, by velocity and position feedback.
 
-    Mode w^2 g / (s^2 + w^2) and filter keep their frequency and have one decay rate (Bhikkaji et al. 2007: four numbers place four poles).
+    The mode w^2 g / (s^2 + w^2) and the filter keep their frequency. Both get the same decay rate (Bhikkaji et al. 2007: four parameters
+    place four poles).
 
     >>> law = place_poles(100.0, 0.2)
     >>> w = 200.0 * np.pi
@@ -87,7 +88,7 @@ def place_poles(frequency: float, damping: float, static: float = 1.0) -> Positi
 
 
 def position_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
-    """Positive position feedback of the first resonance, for several shares of its static gain, frequencies and damping ratios."""
+    """Design positive position feedback of the first resonance for several shares of its static gain, frequencies and damping ratios."""
     if place.resonance is None or not place.static > 0.0:
         return []
     filters = [
@@ -100,7 +101,7 @@ def position_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
 
 
 def velocity_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
-    """Positive velocity and position feedback of the first resonance, for several damping ratios."""
+    """Design positive velocity and position feedback of the first resonance for several damping ratios."""
     if place.resonance is None or not place.static > 0.0:
         return []
     return list(_tracking([place_poles(place.resonance, damping, place.static) for damping in _PLACED], place, step))

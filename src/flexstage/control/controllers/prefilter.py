@@ -24,9 +24,9 @@ _PORTS = (Channel("reference", "m"),), (Channel("shaped", "m"),)
 class Prefilter(CheckedFields):
     """Reference prefilter F(s) = (1 + s/w_l) / (1 + 2 zeta s/w + s^2/w^2), w = 2 pi `frequency`, zeta = `damping`, w_l = 2 pi `lead`.
 
-    Numerator 1 without a lead. Second degree of freedom of a loop (Astrom and Haegglund, Advanced PID Control, 2006, section 3.4). A law
-    with strong integrators has a zero at k_i/k_p, which causes overshoot. F removes the oscillatory part of the command, and does not
-    change S, margins and noise. Static gain 1. Raises `DesignError` for invalid numbers.
+    Without a `lead` the numerator is 1. The static gain is 1. The prefilter is the second degree of freedom of a loop (Astrom and
+    Haegglund, Advanced PID Control, 2006, section 3.4). A law with strong integrators has a zero at k_i/k_p, which causes overshoot. F
+    removes the oscillatory part of the command, and does not change S, margins and noise. Raises `DesignError` for invalid numbers.
 
     >>> gains = Prefilter(frequency=90.0, damping=1.0).system().transfer(np.array([0.0, 90.0]))
     >>> abs(gains.ravel()).round(12).tolist()  # 1/(2 zeta) there
@@ -58,7 +58,7 @@ class Prefilter(CheckedFields):
 
 
 def with_prefilters(control: System, filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Coordinates) -> System:
-    """Return the controller with one prefilter per loop: e + (S^+ F S - 1) r replaces e, S^+ F S r replaces r, with S = `sense` (k, f).
+    """Add one prefilter per loop to a controller: e + (S^+ F S - 1) r replaces e, S^+ F S r replaces r, with S = `sense` (k, f).
 
     Adds inputs `reference.<c>` if the controller has none.
 

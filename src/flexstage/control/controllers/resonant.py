@@ -59,10 +59,11 @@ class IntegralResonant(CheckedFields):
 
 
 def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
-    """Compute the gains that give an undamped mode at `frequency` [Hz] the damping `ratio`, the maximum for their feed-through.
+    """Compute the gains that give an undamped mode at `frequency` [Hz] the `damping` ratio zeta, the maximum for their feed-through.
 
-    d = g (1 + 2 zeta)^2 / ((1 + 2 zeta)^2 - 1), k d = w_p sqrt(w_p/w_z) (Namavar, Fleming & Aphale 2014); the damped pair is at sqrt(w_p
-    w_z). g = `static` is the plant's static gain, `tracking` [1/s] as for the law. Raises `DesignError` for numbers that are not positive.
+    d = g (1 + 2 zeta)^2 / ((1 + 2 zeta)^2 - 1), k d = w_p (1 + 2 zeta)^(1/2) (Namavar, Fleming & Aphale 2014). w_p is the mode's angular
+    frequency, g = `static` the plant's static gain, `tracking` [1/s] as for the law. Raises `DesignError` for numbers that are not
+    positive.
 
     >>> control = resonant_law(100.0, damping=0.5 * (2.0**0.5 - 1.0))
     >>> round(control.feedthrough, 9), round(control.gain * control.feedthrough / (200.0 * np.pi), 4)  # 2, and 2^(1/4)

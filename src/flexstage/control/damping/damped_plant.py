@@ -27,10 +27,10 @@ _SLOW, _LINES = 1e-3, 200
 
 @dataclass(frozen=True)
 class DampedMode:
-    """Mode of the plant: `frequency` [Hz] and damping `ratio` without the inner loops, and both with them.
+    """Mode of the plant: `frequency` [Hz] and damping `ratio` without the inner loops, and both values with the inner loops.
 
-    `zero` [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping of a single leg, or decoupled legs, (w -
-    z)/(2 z). `alone` is the damping with this gain if the mode were isolated.
+    `zero` [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping of a single leg, or of decoupled legs,
+    (w - z)/(2 z). `alone` is the damping with the present gain if the mode were isolated.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -57,10 +57,10 @@ class DampedMode:
 class ActiveDamping:
     """Integral force feedback in the `legs`: `gain` [1/s], and `corner` [Hz] of its high-pass filter of the given `order`.
 
-    `modes` are the plant's modes. By `coordinates`, `left_at_rest` is the remaining share of the platform's static stiffness, `softest` the
-    lowest share below the first mode, at `softest_at` [Hz]. A leg keeps more than half its axial stiffness below `kept_below` [Hz] (order
-    1: 0). `rate` [Hz] is the sampling rate, absent for analogue feedback. `reached` is the lowest damping ratio of the modes with the
-    largest residues, one per loop coordinate.
+    `modes` are the plant's modes. For each of the `coordinates`, `left_at_rest` is the remaining share of the platform's static stiffness.
+    `softest` is the lowest remaining share below the first mode, at the frequency `softest_at` [Hz]. A leg keeps more than half its axial
+    stiffness below `kept_below` [Hz] (order 1: 0). `rate` [Hz] is the sampling rate, absent for analogue feedback. `reached` is the lowest
+    damping ratio of the modes with the largest residues, one per loop coordinate.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -93,8 +93,8 @@ class ActiveDamping:
 def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Plant:
     """Close the inner loops; `given` has the link forces `<link>.fx`, which the result omits.
 
-    Their strokes are added before the amplifiers, and are outputs `added.<actuator>` [m]. Inputs `sensed.<actuator>` [N] are sensor signals
-    in addition to the tension.
+    The strokes of the inner loops are added before the amplifiers, and are outputs `added.<actuator>` [m]. Inputs `sensed.<actuator>` [N]
+    are sensor signals in addition to the tension.
     """
     inner = [
         law.system(each.stiffness, Channel(f"tension.{each.actuator}", "N"), Channel(f"{ADDED}.{each.actuator}", "m")) for each in legs
@@ -116,7 +116,7 @@ def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Pl
 def around_legs(
     given: Plant, legs: tuple[Leg, ...], inner: Sequence[System], outputs: Iterable[str], heard: tuple[Channel, ...] = ()
 ) -> System:
-    """Plant with an inner system around each leg, from `tension.<actuator>` [N] plus `heard` to an additional stroke."""
+    """Connect an inner system around each leg. Its input is `tension.<actuator>` [N] plus `heard`, its output an additional stroke."""
     entries, links = {each.actuator: f"entry.{each.actuator}" for each in legs}, dict[str, dict[str, float]]()
     for number, (each, sign) in enumerate(zip(legs, tension_signs(given, legs), strict=True)):
         links[entries[each.actuator]] = {each.actuator: 1.0, inner[number].output_names[0]: 1.0}
@@ -125,7 +125,7 @@ def around_legs(
 
 
 def as_felt(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
-    """Legs with their effective axial stiffness: stack and hinges in series, tension per stroke far above the plant's modes."""
+    """Return the legs with effective stiffness, of stack and hinges in series: the tension per stroke far above the plant's modes."""
     forces = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs])
     slow = np.array([not name.startswith("amplifier.") for name in given.states])
     direct = np.diag(residualise(forces, slow).D)
@@ -133,13 +133,13 @@ def as_felt(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
 
 
 def tension_signs(given: Plant, legs: tuple[Leg, ...]) -> list[float]:
-    """Sign of each link force that is tension: a positive stroke reduces it."""
+    """Return the sign (1 or -1) of each link force in tension: a positive stroke reduces the tension."""
     static = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs]).transfer(np.zeros(1))[0].real
     return [-float(np.sign(value)) for value in np.diag(static)]
 
 
 def follow_poles(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], gains: Array) -> Array:
-    """Poles (len(gains), k) [1/s] of the plant's modes over increasing `gains`, each tracked from its mode (root locus)."""
+    """Compute the poles (len(gains), k) [1/s] of the plant's modes for increasing `gains`, each tracked from its mode (root locus)."""
     modes, found = _modal_poles(given), []
     for gain in gains:
         poles = close_damping(given, replace(law, gain=float(gain)), legs).system.poles
@@ -156,9 +156,10 @@ def _modal_poles(given: Plant) -> Array:
 
 
 def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: float) -> float:
-    """Compute the lowest gain [1/s] that gives the modes of largest residue a damping ratio of `wanted`, else the gain of maximum damping.
+    """Compute the lowest gain [1/s] that gives the modes with the largest residues the damping ratio `wanted`.
 
-    There is one such mode per loop coordinate. Raises `DesignError` if the inner loops are unstable at every gain.
+    There is one such mode per loop coordinate. If no gain reaches `wanted`, returns the gain of maximum damping. Raises `DesignError` if
+    the inner loops are unstable at every gain.
     """
     felt = felt_most(given)
     scale = 2.0 * np.pi * float(np.median(given.frequencies[felt]))
@@ -180,7 +181,7 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
 
 
 def felt_most(given: Plant) -> Array:
-    """Indices of the modes with the largest residues in a plant's loop, one per coordinate."""
+    """Find the modes with the largest residues in a plant's loop: their indices, one per coordinate."""
     return np.argsort(-resonances(given))[: len(given.coordinates.names)]
 
 
@@ -189,7 +190,7 @@ def _ratios(poles: Array) -> Array:
 
 
 def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tuple[Leg, ...], pairs: Pairs) -> ActiveDamping:
-    """Summarise the effect of the inner loops on modes and platform stiffness; `pairs` are all modes of the model."""
+    """Summarise the effect of the inner loops on modes and platform stiffness; `pairs` are the model's modes with and without stacks."""
     gains = law.gain * np.geomspace(1e-2, 1.0, 40)
     poles = follow_poles(given, law, legs, gains)[-1]
     modes = []
@@ -235,7 +236,7 @@ def _compliances(given: Plant, lines: Array) -> Array:
 
 
 def with_damped_modes(damped: Plant, found: ActiveDamping) -> Plant:
-    """Plant with the modes' frequencies and damping ratios under the inner loops, ascending."""
+    """Replace the plant's modal frequencies and damping ratios by the values under the inner loops, ascending."""
     frequencies = np.array([each.damped_frequency for each in found.modes])
     ratios = np.clip([each.damped_ratio for each in found.modes], 1e-6, 1.0)
     order = np.argsort(frequencies, kind="stable")

@@ -14,12 +14,13 @@ from flexstage.models.linear.model import Channel
 
 @dataclass(frozen=True)
 class ForceFeedback:
-    """Integral force feedback: stroke = G(s) T / k for tension T [N]; G = g / (s + a), with `order` 2: 2 g s / (s + a)^2.
+    """Integral force feedback: stroke = G(s) T / k for tension T [N]; G = g / (s + a) for `order` 1, g s / (s + a)^2 for `order` 2.
 
     k [N/m] is the axial stiffness, `gain` g [1/s], `corner` a / (2 pi) [Hz] of the high-pass filter (Preumont, Dufour & Malekian, J. Guid.
     Control Dyn. 15 (1992) 390; Preumont, Vibration Control of Active Structures, 2018, ch. 7 and 8). Without the filter the leg would have
-    no static stiffness, and would cancel every command. Order 1 keeps a / (a + g) of the stiffness, order 2 all of it below a^2 / g. `lag`
-    [Hz] is the corner of the sensor's electronics, `delay` [s] a second-order Pade approximation. Raises `DesignError` for invalid numbers.
+    no static stiffness, and would cancel every command. Order 1 keeps a / (a + g) of the static stiffness. Order 2 keeps the whole
+    stiffness below a^2 / g. `lag` [Hz] is the corner of the sensor's electronics, `delay` [s] a second-order Pade approximation. Raises
+    `DesignError` for invalid numbers.
     """
 
     gain: float
@@ -51,11 +52,11 @@ class ForceFeedback:
         return np.polymul(found, [1.0, 6.0 / self.delay, 12.0 / self.delay**2]) if self.delay else found
 
     def at(self, rates: Array) -> Array:
-        """Transfer function G at complex rates s [1/s]."""
+        """Compute G at complex rates s [1/s]."""
         return np.polyval(self.numerator, rates) / np.polyval(self.denominator, rates)
 
     def system(self, stiffness: float, tension: Channel, stroke: Channel) -> System:
-        """Linear system from tension [N] to stroke [m], in controllable form.
+        """Return the linear system from tension [N] to stroke [m], in controllable form.
 
         >>> law = ForceFeedback(gain=600.0, corner=1.0)
         >>> found = law.system(17e6, Channel("T", "N"), Channel("u", "m"))
@@ -91,7 +92,9 @@ def most_damping(frequency: float, zero: float) -> float:
 
 
 def damping_of_pair(law: ForceFeedback, frequency: float, zero: float) -> complex:
-    """Pole [1/s] of an undamped mode with feedback: the root of 1 + G (s^2 + z^2) / (s^2 + w^2) = 0 continued from j w as g grows.
+    """Compute the pole [1/s] of an undamped mode with feedback, tracked from j w while the gain g grows.
+
+    The pole is a root of 1 + G (s^2 + z^2) / (s^2 + w^2) = 0.
 
     >>> pole = damping_of_pair(ForceFeedback(2.4 * np.pi * 1.2**0.5, 1e-6, order=1), 1.2, 1.0)
     >>> round(-pole.real / abs(pole), 5)

@@ -22,9 +22,9 @@ _NEXT_TO_NOTHING = 1e-9
 
 @dataclass(frozen=True)
 class Leg:
-    """Leg of an actuator: the `link` that is its stack of axial `stiffness` [N/m], and the link of the tension sensor (`sensed`).
+    """Leg of an actuator: `link` is its stack, of axial `stiffness` [N/m]; `sensed` is the link whose tension is measured.
 
-    `noise` [N/Hz^(1/2)] and `lag` [Hz] belong to its strain gauge, None for a force sensor.
+    `noise` [N/Hz^(1/2)] and `lag` [Hz] belong to the strain gauge of the leg; both are None for a force sensor.
     """
 
     actuator: str
@@ -71,7 +71,7 @@ def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (),
 
 
 def without_stiffness(model: LinearModel, found: tuple[Leg, ...], left: float = 0.0) -> LinearModel:
-    """Model with a fraction of the stacks' axial stiffness in the legs, at least 1e-9 (free motions then have nearly 0 Hz).
+    """Reduce the stacks' axial stiffness in the legs to the fraction `left`, at least 1e-9 (free motions then have nearly 0 Hz).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -90,7 +90,7 @@ def without_stiffness(model: LinearModel, found: tuple[Leg, ...], left: float = 
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Pairs of modal frequencies [Hz] (k,), of one model and of another (k,)."""
+    """Pairs of modes of two models: `frequencies` (k,) [Hz] of the first model, `others` (k,) [Hz] of the second."""
 
     frequencies: Array
     others: Array

@@ -1,4 +1,4 @@
-"""Export files of a loop: controller in C, functional mock-up unit, plant for MATLAB; a file is complete or absent."""
+"""Export files of a loop: controller in C, functional mock-up unit, plant for MATLAB. No file is left incomplete."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ WHOLE = ".loop.fmu"
 
 
 def export_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
-    """Findings for the name of an export: an unknown ending, or a reserved function name.
+    """Check the name of an export for an unknown ending or a reserved function name; returns the findings.
 
     >>> print(*export_findings("math.c"))
     math.c: its header math.h would replace a system header, or "math" is a reserved function name. Call it stage_math.c.
@@ -60,7 +60,7 @@ def export_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
 
 
 def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
-    """Findings for the name of a controller for hardware.
+    """Check the name of a controller for hardware; returns the findings.
 
     >>> print(*hardware_findings("plant.mat"))
     plant.mat: its name does not end in .c. Call it plant.c.
@@ -72,9 +72,9 @@ def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
 
 
 def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "", legs: SampledLegs | None = None) -> dict[Path, str]:
-    """Generate texts by file of a machine's controller as C99: `controller.c` and its header, with the file's name as prefix.
+    """Generate the controller of a machine as C99: texts of `controller.c` and its header, by file; the file's name is the prefix.
 
-    With `legs` it includes their force feedback. Raises `DesignError` for a name without `.c` or a reserved name.
+    With `legs` the code includes the force feedback of these legs. Raises `DesignError` for a name without `.c` or a reserved name.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -89,7 +89,7 @@ def controller_files(path: str | os.PathLike[str], given: Machine, about: str = 
 
 
 def whole_controller(given: Machine, name: str, about: str = "", legs: SampledLegs | None = None) -> Program:
-    """Controller program of a machine, including sampled force feedback in `legs`."""
+    """Generate the controller program of a machine, including sampled force feedback in `legs`."""
     outer = controller_code(given, name, about)
     return outer if legs is None else with_legs(outer, given, legs)
 
@@ -104,10 +104,10 @@ def hardware_files(
     about: str = "",
     legs: SampledLegs | None = None,
 ) -> dict[Path, str]:
-    """Generate texts by file of a controller for hardware (see `hardware_code`): `controller.c`, its header, and `controller_test.c`.
+    """Generate a controller for hardware (see `hardware_code`): texts of `controller.c`, its header and `controller_test.c`, by file.
 
-    The test is the loop from zero state, without noise, for the first 300 samples of a `reference` (n, f) [m, rad]. Raises `DesignError`
-    for a name without `.c` or a reserved name.
+    The test simulates the loop from zero state, without noise, for the first 300 samples of a `reference` (n, f) [m, rad]. Raises
+    `DesignError` for a name without `.c` or a reserved name.
     """
     source = Path(path)
     require(hardware_findings(path))

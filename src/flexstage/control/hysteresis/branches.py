@@ -74,7 +74,7 @@ def _extremes(volts: Array) -> list[int]:
 
 
 def record_findings(volts: Array, strokes: Array) -> list[Finding]:
-    """Findings for a record (k,) in V and m that is not a stack's hysteresis; the first fundamental one alone.
+    """Check a record (k,) of voltage [V] and stroke [m] for the hysteresis of a stack; returns the findings of the first failed check.
 
     >>> record_findings(np.arange(100.0), 1e-7 * np.arange(100.0))[0].what
     'the voltage runs from 0 V to 99 V without reversal: the record cannot show hysteresis'

@@ -37,7 +37,7 @@ class LogCreep(CheckedFields):
             raise refuse("creep", what, "Use a finite rate and a time above 0")
 
     def at(self, times: Array) -> Array:
-        """Relative stroke w/w_0 at `times` > 0 [s].
+        """Compute the relative stroke w/w_0 at `times` > 0 [s].
 
         >>> LogCreep(0.02, 0.1).at(np.array([0.1, 1.0, 10.0])).round(12).tolist()
         [1.0, 1.02, 1.04]
@@ -49,7 +49,7 @@ class LogCreep(CheckedFields):
 class Creep:
     """Creep operator y = g_0 u + sum_i g_i s_i, tau_i ds_i/dt + s_i = u: `instant` g_0 (axes,), `gains` g_i, `times` tau_i [s] (axes, m).
 
-    Between hysteresis and stage (Hammerstein model). With u constant over a sample T the exact state update is s_i <- s_i + (1 -
+    It acts between hysteresis and stage (Hammerstein model). With u constant over a sample T the exact state update is s_i <- s_i + (1 -
     e^{-T/tau_i}) (u - s_i), after y is computed. One axis may have shape (m,). Raises `DesignError` for times that are not positive.
     """
 
@@ -68,7 +68,7 @@ class Creep:
         return len(self.instant)
 
     def step_response(self, times: Array) -> Array:
-        """Step response y (k, axes) at `times` (k,) >= 0 from zero state.
+        """Compute the step response y (k, axes) at `times` (k,) >= 0 [s] from zero state.
 
         >>> Creep([1.0], [0.1], [2.0]).step_response(np.array([0.0, 2.0])).ravel().round(6).tolist()  # 1, and 1 + 0.1 (1 - 1/e)
         [1.0, 1.063212]

@@ -35,9 +35,9 @@ class IdentifiedCreep:
 def identify_creep(times: Array, volts: Array, strokes: Array, *, reference: float = 0.1) -> IdentifiedCreep:
     """Fit w(t) = w_0 (1 + gamma log10(t/t_0)) to the stroke after a voltage step; t_0 is `reference` [s].
 
-    `times` [s], `volts` [V] and `strokes` [m] are (k,), the stack in equilibrium before. Least squares over means of equal parts of log t
-    give every decade equal weight. Raises `DesignError` if the voltage is not a single step, the record after t_0 is shorter than a decade,
-    or the stroke does not follow the logarithm.
+    `times` [s], `volts` [V] and `strokes` [m] are (k,); the stack is in equilibrium before the step. The fit is by least squares over means
+    of equal parts of log t, so that every decade has equal weight. Raises `DesignError` if the voltage is not a single step, the record
+    after t_0 is shorter than a decade, or the stroke does not follow the logarithm.
 
     >>> times = np.arange(0.0, 100.0, 0.05)
     >>> after = np.maximum(times - 1.0, 0.01)

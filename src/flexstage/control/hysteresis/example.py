@@ -19,7 +19,7 @@ _RATE = 100.0
 
 
 def sweep_of(turns: tuple[float, ...], samples: int) -> Array:
-    """Piecewise linear voltage (k,) between turning points, `samples` per segment.
+    """Return a piecewise linear voltage (k,) between turning points, with `samples` per segment.
 
     >>> sweep_of((0.0, 2.0, 0.0), 2).tolist()
     [0.0, 1.0, 2.0, 1.0, 0.0]
@@ -29,7 +29,7 @@ def sweep_of(turns: tuple[float, ...], samples: int) -> Array:
 
 
 def example_record() -> Record:
-    """Record loops of a stack of 150 um over 1000 V, hysteresis width 15 % of the stroke, 10 nm of gauge noise.
+    """Simulate a record of loops: stack of 150 um over 1000 V, hysteresis width 15 % of the stroke, 10 nm of gauge noise.
 
     >>> example_record().length
     901
@@ -41,7 +41,7 @@ def example_record() -> Record:
 
 
 def example_step() -> Record:
-    """Record a step of 500 V for 100 s, with creep of 2 % per decade.
+    """Simulate a record of a step of 500 V for 100 s, with creep of 2 % per decade.
 
     >>> example_step().duration
     101.0

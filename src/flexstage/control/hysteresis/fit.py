@@ -35,17 +35,17 @@ class Fit:
     offset: float
 
     def effective(self, volts: Array) -> Array:
-        """Play input (k,) [V] at voltage (k,): the envelope, from the lowest knot."""
+        """Compute the play input (k,) [V] for voltages (k,) [V]: the envelope, which equals the voltage at the lowest knot."""
         return self.form.knots[0] + _ramps(volts, self.form.knots) @ self.slopes
 
     def strokes(self, plays: Array) -> Array:
-        """Strokes (k,) [m] for play outputs (k, n)."""
+        """Compute strokes (k,) [m] for play outputs (k, n)."""
         return plays @ self.weights + self.offset
 
     def model(self) -> PrandtlIshlinskii:
         """Return the model with its envelope shifted to pass through 0, the unloaded state.
 
-        Plays commute with a shift of their input: the strokes do not change once the initial state is forgotten.
+        A shift of the input shifts the play outputs equally. The strokes therefore do not change once the initial state has no influence.
         """
         knots = self.form.knots
         values = knots[0] + np.concatenate([[0.0], np.cumsum(self.slopes * np.diff(knots))])
@@ -104,10 +104,11 @@ def known_from(inputs: Array, thresholds: Array) -> int:
 def fit_form(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: int = _ROUNDS) -> Fit:
     """Fit weights and envelope to some rows of a record by least squares; weights are 0 or more, slopes positive.
 
-    Omits rows before the plays are known (`known_from`).
+    Omits rows at which plays still depend on their initial state (`known_from`).
 
-    With a straight envelope this is one linear problem. Otherwise weights for a given envelope and slopes for given weights alternate, both
-    linear, at most `rounds` times. A sticking play keeps the envelope's value at its last motion, which is linear in the slopes.
+    With a straight envelope this is one linear problem. Otherwise the fit alternates between weights (envelope fixed) and slopes (weights
+    fixed), at most `rounds` times. Both problems are linear: a sticking play keeps the envelope's value at its last motion, which is linear
+    in the slopes.
 
     >>> volts = np.concatenate([np.linspace(0, 100, 21), np.linspace(95, 0, 20), np.linspace(5, 100, 20)])
     >>> strokes = PrandtlIshlinskii([0.0, 25.0], [1e-7, 5e-8]).run(volts)
@@ -171,9 +172,9 @@ def _bounded_least_squares(matrix: Array, target: Array, lower: Array) -> Array:
 
 
 def drift_of(plays: Array, strokes: Array) -> float:
-    """Estimate drift [m] over a record: the part of the strokes (k,) linear in time, in addition to plays (k, n) of any weights.
+    """Estimate drift [m] over a record: the part of the strokes (k,) that is linear in time and not explained by plays (k, n).
 
-    Zero if omitting it increases the rms error by less than a fifth: not significant.
+    Returns zero if the drift is not significant: if omitting it increases the rms error by less than a fifth.
 
     >>> plays = np.array([[0.0], [1.0], [0.0], [1.0]])
     >>> round(drift_of(plays, np.array([0.0, 1.01, 0.02, 1.03])), 6)

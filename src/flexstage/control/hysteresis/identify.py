@@ -31,12 +31,12 @@ _COVERED = 0.9
 def identify_hysteresis(volts: Array, strokes: Array, *, limits: Range | None = None) -> IdentifiedHysteresis:
     """Identify the hysteresis of a stack from `volts` (k,) [V] and `strokes` (k,) [m], in recorded order.
 
-    Thresholds are even up to 0.4 or 0.5 of the range; the envelope before the plays has pieces of even width. Weights of 0 or more and
-    slopes above 0 come from least squares (`fit.fitted`), so that an inverse exists. Cross-validation selects the number of plays and
-    pieces, and the largest threshold: the smallest model within 5 % of the best. A large threshold, with long memory, must reduce the error
-    by a fifth. Samples before the plays are known (voltage swing of twice the largest threshold) are used only as history. The model is
-    rate independent: record slowly against the stage's first mode, and fast against creep. `limits` are the actuator's voltages, for the
-    recorded share of the range.
+    Thresholds are evenly spaced up to 0.4 or 0.5 of the range. The envelope before the plays has pieces of equal width. Weights of 0 or
+    more and slopes above 0 come from least squares (`fit_form`), so that an inverse exists. Cross-validation selects the number of plays
+    and pieces: the smallest model within 5 % of the best. The larger threshold range, with long memory, is selected only if it reduces the
+    error by a fifth. Samples at which plays still depend on their initial state are used only as history. The model is rate independent:
+    record slowly compared with the stage's first mode, and fast compared with creep. `limits` are the actuator's voltages, for the recorded
+    share of the range.
 
     Raises `DesignError` for a record without valid hysteresis (see `record_findings`), drift beyond 2 %, and errors beyond 10 %.
 

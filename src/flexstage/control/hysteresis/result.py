@@ -22,7 +22,8 @@ SMALL_ERROR = Graded(0.02)
 class Trial:
     """Model size tried: `plays`, `pieces` of the envelope, `reach` (largest threshold relative to the range), and its error.
 
-    `error` is the cross-validation error: rms on parts of the record excluded from the fit, each once, relative to the stroke.
+    `error` is the cross-validation error relative to the stroke. Each part of the record is excluded from one fit, and the rms error is
+    computed over these parts.
     """
 
     plays: int

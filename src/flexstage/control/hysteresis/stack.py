@@ -37,7 +37,7 @@ _COMMENTS = {
 
 @dataclass(frozen=True)
 class Bend:
-    """Voltage envelope in a file: `effective` volts at some `volts`."""
+    """Envelope before the plays in a file: `effective` [V] values at `volts` [V]."""
 
     volts: _Volts
     effective: _Volts
@@ -45,7 +45,7 @@ class Bend:
 
 @dataclass(frozen=True)
 class OuterBend:
-    """Stroke envelope in a file: `strokes` at the sums of `plays`."""
+    """Envelope after the plays in a file: `strokes` [m] at the weighted sums `plays` of the plays."""
 
     plays: _Strokes
     strokes: _Strokes

@@ -64,7 +64,7 @@ class StackTest(InNotebook):
 
     @property
     def valid_samples(self) -> Array:
-        """Samples (m,) that do not depend on the unknown history: those of the errors."""
+        """Samples (m,) that do not depend on the unknown history; errors are computed from these samples."""
         return np.arange(self.hysteresis.known_from, len(self.inverse_volts))
 
     @property

@@ -31,7 +31,7 @@ BEYOND = Heading("beyond the band", digits=3)
 
 @dataclass(frozen=True, eq=False)
 class RobustBand:
-    """Robust learning band: `band`, and `contraction`, the largest ||Q (I - gain P P^^-1)|| over its frequencies."""
+    """Robust learning band: `band`, and `contraction`, the largest ||Q (I - gain P P^^-1)|| over the band's frequencies."""
 
     band: Band
     contraction: float
@@ -41,10 +41,10 @@ class RobustBand:
 class LearningResult:
     """Result of passes over the same path, by the loop's `coordinates` in their `units`.
 
-    `rms` (passes, f) is the measured error in the band up to `band` [Hz], before the first and after each learned pass. `noise` (f,) is its
-    non-repeating part, from four runs with the learned input, whose rms is the last row. `beyond` (f,) is the rms error outside the band,
-    which is not learned. `contraction` is the largest contraction factor per pass, with all modes up to `spread` off; `gain` is the
-    learning gain.
+    `rms` (passes, f) is the measured error in the band up to `band` [Hz]: first without learning, then after each learned pass. The last
+    row of `rms` is the rms of four runs with the learned input. `noise` (f,) is the non-repeating part of these four runs. `beyond` (f,) is
+    the rms error outside the band, which is not learned. `contraction` is the largest contraction factor per pass for mode shifts up to
+    `spread`; `gain` is the learning gain.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -88,7 +88,7 @@ class LearningResult:
 
 
 def robust_band(closed: Loop, control: System, gain: float, spread: float) -> RobustBand:
-    """Find the band of contraction, ||Q (I - gain P P^^-1)|| < 0.8 in lengths, with all modes up to `spread` off.
+    """Find the band of contraction, ||Q (I - gain P P^^-1)|| < 0.8 in lengths, for relative mode shifts up to `spread`.
 
     P are the loop's responses with shifted modes, P^ the model's responses (Norrloef & Gunnarsson, Int. J. Control 75 (2002) 1114: a norm
     below 1 at all frequencies makes the error decrease from pass to pass). The band also ends where P^^-1 exceeds 100. Raises `DesignError`
@@ -113,7 +113,7 @@ def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Ro
 
 
 def line_grid(closed: Loop, spread: float) -> Array:
-    """Frequencies up to 0.45 of the rate, dense around each mode's frequency range."""
+    """Return frequencies up to 0.45 of the sampling rate, dense around the range of each shifted mode."""
     highest, modes, ratios = 0.45 / (closed.step or 1.0), closed.plant.frequencies, np.minimum(closed.plant.ratios, 0.3)
     around = [
         mode * (1.0 + offset) * (1.0 + ratio * np.tan(np.linspace(-1.3, 1.3, _AROUND)))
@@ -125,7 +125,7 @@ def line_grid(closed: Loop, spread: float) -> Array:
 
 
 def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) -> Array:
-    """Gauge readings (n, k) of a true path (n, k): known lags, up to four times a band's end."""
+    """Compute the gauge readings (n, k) of a true path (n, k) from the model's lags, up to four times the frequency `end` [Hz]."""
     step = closed.step or 1.0
     frequencies = frequencies_of(wanted, step)
     band = Band(min(4.0 * end, 0.45 / step))
@@ -135,7 +135,7 @@ def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) ->
 
 @dataclass(frozen=True, eq=False)
 class LearningSettings:
-    """Learning parameters: `passes`, `gain`, mode `spread`; the error is evaluated within `window` of the samples."""
+    """Learning parameters: `passes`, `gain`, relative mode `spread`; the error is evaluated within the samples of `window`."""
 
     passes: int
     gain: float
@@ -144,7 +144,7 @@ class LearningSettings:
 
 
 def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: LearningSettings) -> LearningResult:
-    """Learn a true path (n, f) pass by pass, at rest at both ends: command = path + d, d <- Q (d + gain P^^-1 e) after each.
+    """Learn the command for a true path (n, f), at rest at both ends: command = path + d, d <- Q (d + gain P^^-1 e) after each pass.
 
     `run` returns the readings (n, f) of a commanded path in a numbered pass. Raises `DesignError` as `robust_band` does.
     """
@@ -179,7 +179,7 @@ def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wan
 
 
 def fade_ends(count: int, window: slice) -> Array:
-    """Window function: 1 within a number of samples, fading to 0 at both ends, because noise that starts abruptly is not a path.
+    """Return a window function: 1 within `window`, fading to 0 at both ends. An abrupt end of the error would act as a step.
 
     >>> fade_ends(5, slice(2, 4)).tolist()
     [0.0, 0.5, 1.0, 1.0, 0.0]
@@ -199,7 +199,7 @@ def _rms(values: Array) -> Array:
 
 
 def inverse_path(closed: Loop, control: System, wanted: Array, spread: float) -> Array:
-    """Compute the command (n, f) for which the model's loop follows a path (n, f), at rest at both ends, in the robust band."""
+    """Compute the command (n, f) by the model's inverse for a path (n, f), at rest at both ends, in the robust band."""
     band = robust_band(closed, control, 1.0, spread).band
     frequencies = frequencies_of(wanted, closed.step or 1.0)
     return through(band.blend(frequencies, lambda lines: np.linalg.inv(motions(closed, lines))), wanted)

@@ -27,12 +27,13 @@ _OFFSETS, _PHASES, _FINEST = 5, 16, 8
 
 @dataclass(frozen=True, eq=False)
 class Repeater:
-    """Repetitive controller d = z^-P (W d + L e) of the error e: `keep` (2m+1,) and `teach` (2m+1, f, f), noncausal by m samples.
+    """Repetitive controller d = z^-P (W d + L e) of the error e: taps `keep` (2m+1,) of W and `teach` (2m+1, f, f) of L.
 
-    `period` P is in samples; the filters contain its fraction. `band` is the band with W = 1. `contraction` is the largest ||W - L P|| of
-    these filters over all frequencies, in lengths, with all modes up to a spread off. Below 1 the loop with them is stable and repeating
-    errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353).
-    `amplifies` is the largest ||(I + W z) (I + (W - L P) z)^-1|| over |z| = 1: amplification between the harmonics.
+    Both filters are noncausal by m samples, and contain the fractional part of the `period` P [samples]. `band` is the band in which W = 1.
+    `contraction` is the largest ||W - G L|| of these filters over all frequencies, in lengths; G are the loop's responses with shifted
+    modes. Below 1 the loop is stable and repeating errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, J.
+    Dyn. Syst. Meas. Control 111 (1989) 353). `amplifies` is the largest ||(I + W z) (I + (W - G L) z)^-1|| over |z| = 1: amplification
+    between the harmonics.
     """
 
     period: float
@@ -48,17 +49,18 @@ class Repeater:
         return len(self.keep) // 2
 
     def at(self, frequencies: Array, step: float) -> tuple[Array, Array]:
-        """Responses of W (n,) and L (n, f, f) with the period's whole samples, without its fraction."""
+        """Compute the responses of W (n,) and L (n, f, f) at frequencies (n,) [Hz], for a period rounded to whole samples."""
         late = np.arange(-self.reach, self.reach + 1) + (np.floor(self.period + 0.5) - self.period)
         turned = np.exp(-2j * np.pi * np.outer(frequencies, late) * step)
         return turned @ self.keep, np.einsum("nk,kij->nij", turned, self.teach)
 
 
 def repeater(closed: Loop, control: System, period: float, gain: float, spread: float) -> Repeater:
-    """Design filters for a `period` [s] and a `gain` of the loop's inverse, modes up to `spread` off, in the widest contracting band.
+    """Design the filters for a `period` [s] in the widest contracting band, for relative mode shifts up to `spread`.
 
-    Finite filters also act beyond their band: it ends lower than the contraction band of iterative learning. Raises `DesignError` as
-    `robust_band` does, and for a period too short for filters whose band contains a harmonic.
+    `gain` is the gain of the loop's inverse. Finite filters also act beyond their band. This band is therefore narrower than the
+    contraction band of iterative learning. Raises `DesignError` as `robust_band` does, and for a period too short for filters whose band
+    contains a harmonic.
     """
     step, end = closed.step or 1.0, robust_band(closed, control, gain, spread).band.end
     lines = np.append(line_grid(closed, spread), 0.5 / step * (1.0 - 1e-9))
@@ -118,8 +120,8 @@ class RepetitiveResult:
     """Result of repetitive control along a path, by the loop's `coordinates` in their `units`.
 
     `rms` (periods, f) is the measured error of each `period` in the band up to `band` [Hz], the first without correction. `beyond` (f,) is
-    the error outside the band over the last period, which remains. `contraction` is the largest contraction factor per period, with all
-    modes up to `spread` off. `amplifies` is the largest amplification of non-repeating errors, between harmonics.
+    the error outside the band over the last period, which remains. `contraction` is the largest contraction factor per period for mode
+    shifts up to `spread`. `amplifies` is the largest amplification of non-repeating errors, between harmonics.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -155,7 +157,7 @@ class RepetitiveResult:
 
     @property
     def halfway(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("middle period", digits=3)]:
-        """Error halfway (f,)."""
+        """Error of the middle period (f,)."""
         return self.rms[len(self.rms) // 2]
 
     @property
@@ -166,7 +168,7 @@ class RepetitiveResult:
 
 @dataclass(frozen=True, eq=False)
 class Repetition:
-    """Repetition of a path: its `period` [s], within a `window` of its samples."""
+    """Repetition of a path: its `period` [s], and the `window` of samples in which the path is periodic."""
 
     period: float
     window: slice
@@ -182,9 +184,10 @@ def repeat(
     gain: float = 0.6,
     spread: float = 0.02,
 ) -> RepetitiveResult:
-    """Run along a true path (n, f) with the correction from previous periods; `advance` runs on with a command and returns the pose.
+    """Run along a true path (n, f) with the correction from previous periods.
 
-    Only errors within the window are used; after it the correction fades out. Raises `DesignError` as `repeater` does.
+    `advance` continues the run with further commanded poses and returns the measured poses. Only errors within the window are used; after
+    the window the correction fades out. Raises `DesignError` as `repeater` does.
     """
     found = repeater(closed, control, asked.period, gain, spread)
     target = wanted_readings(closed, control, wanted, found.band.end)

@@ -38,17 +38,17 @@ def motions(closed: Loop, frequencies: Array) -> Array:
 
 @dataclass(frozen=True)
 class Band:
-    """Zero-phase band-pass up to `end` [Hz]: 1 up to three quarters of it, then a cosine fade-out."""
+    """Zero-phase low-pass filter up to `end` [Hz]: 1 up to three quarters of it, then a cosine fade-out."""
 
     end: float
 
     def gains(self, frequencies: Array) -> Array:
-        """Gains Q (f,), from 1 to 0."""
+        """Compute the gains Q (f,), from 1 to 0."""
         share = np.clip((np.asarray(frequencies) / self.end - _TAPER) / (1.0 - _TAPER), 0.0, 1.0)
         return 0.5 * (1.0 + np.cos(np.pi * share))
 
     def blend(self, frequencies: Array, respond: Callable[[Array], Array], beyond: float = 1.0) -> Array:
-        """Blend Q R + (1 - Q) I `beyond` (f, k, k): responses R within the band; beyond it unchanged (1) or zero (0)."""
+        """Blend responses R with a constant outside the band: Q R + (1 - Q) I `beyond`, (f, k, k); `beyond` is 1 (unchanged) or 0."""
         share = self.gains(frequencies)
         inside = share > 0.0
         responses, share = respond(frequencies[inside]), share[inside, None, None]
@@ -59,23 +59,23 @@ class Band:
 
 
 def scaled_norms(values: Array, scale: Array) -> Array:
-    """Largest singular values (f,) of matrices (f, k, k), coordinates as lengths."""
+    """Compute the largest singular values (f,) of matrices (f, k, k), with coordinates scaled to lengths."""
     return np.linalg.norm(values * scale[:, None] / scale, ord=2, axis=(1, 2))
 
 
 def frequencies_of(path: Array, step: float) -> Array:
-    """Frequencies [Hz] of a path's transform; a tiny value replaces 0, where integrators are singular."""
+    """Return the frequencies [Hz] of a path's transform. A tiny value replaces 0 Hz, at which integrators are singular."""
     found = np.fft.rfftfreq(len(path), step)
     found[0] = _AT_REST * found[1]
     return found
 
 
 def through(responses: Array, path: Array) -> Array:
-    """Filter a path (n, k), from zero to rest, by responses (n/2+1, k, k) at the frequencies of its transform.
+    """Filter a path (n, k) by responses (n/2+1, k, k) at the frequencies of its transform. The path starts at zero and ends at rest.
 
-    The transform is of the path's differences, which end at zero. For an inverse with poles outside the unit circle, the response on the
-    circle is the stable part forward and the antistable part backward in time (Devasia, Chen & Paden, IEEE Trans. Autom. Control 41 (1996)
-    930): the result starts before the path.
+    The transform is of the path's differences, which end at zero. An inverse may have poles outside the unit circle. Its response on the
+    circle is then the sum of the stable part forward in time and the antistable part backward in time (Devasia, Chen & Paden, IEEE Trans.
+    Autom. Control 41 (1996) 930): the result starts before the path.
     """
     spectrum = np.fft.rfft(np.diff(path, axis=0, prepend=0.0), axis=0)
     return np.cumsum(np.fft.irfft(np.einsum("fij,fj->fi", responses, spectrum), n=len(path), axis=0), axis=0)

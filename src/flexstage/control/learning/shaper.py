@@ -35,9 +35,10 @@ class Shaper:
 
 
 def zv(frequency: float, damping: float) -> Shaper:
-    """Zero-vibration (ZV) shaper: 1/(1+K) and K/(1+K) half a damped period apart, K = exp(-zeta pi / (1 - zeta^2)^(1/2)).
+    """Construct a zero-vibration (ZV) shaper for a mode of `frequency` [Hz], undamped, and `damping` ratio zeta.
 
-    Singer & Seering, J. Dyn. Syst. Meas. Control 112 (1990) 76; `frequency` [Hz] undamped. Raises `DesignError` for invalid numbers.
+    Impulses 1/(1+K) and K/(1+K) half a damped period apart, K = exp(-zeta pi / (1 - zeta^2)^(1/2)) (Singer & Seering, J. Dyn. Syst. Meas.
+    Control 112 (1990) 76). Raises `DesignError` for invalid numbers.
 
     >>> zv(50.0, 0.0).times.tolist(), zv(50.0, 0.0).amplitudes.tolist()
     ([0.0, 0.01], [0.5, 0.5])
@@ -47,7 +48,9 @@ def zv(frequency: float, damping: float) -> Shaper:
 
 
 def zvd(frequency: float, damping: float) -> Shaper:
-    """Zero-vibration-derivative (ZVD) shaper: 1, 2K, K^2 over (1+K)^2; residual vibration is quadratic in the frequency error.
+    """Construct a zero-vibration-derivative (ZVD) shaper: impulses 1, 2K, K^2 over (1+K)^2, half a damped period apart.
+
+    The residual vibration is quadratic in the frequency error.
 
     >>> zvd(50.0, 0.0).amplitudes.tolist()
     [0.25, 0.5, 0.25]

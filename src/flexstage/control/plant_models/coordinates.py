@@ -26,11 +26,11 @@ _MISSING = 1e-9
 class Coordinates:
     """The f coordinates of a loop: ideal motions xi of a stage (x ... rz, or a subset).
 
-    `pose` (f, g) maps gauge readings to xi, (R_s V)^+: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, least squares for more. It includes
-    sums of gauges: `gauges` are the single ones. `strokes` (n, f) maps xi to strokes, R_a of Eq. 13; `back` (f, n) is its (least-squares)
-    inverse. For force actuators `back` is the static motion per unit of input, and `strokes` its pseudo-inverse, the minimum-norm inputs
-    [A, N]. `units` are m or rad; `length` [m] makes rotations comparable with translations. `gauge_units` and `input_units` are units of
-    readings and inputs (default: m).
+    `pose` (f, g) maps gauge readings to xi, (R_s V)^+: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, least squares for more. `gauges` are
+    the single gauges; sums of gauges are included in `pose`. `strokes` (n, f) maps xi to strokes, R_a of Eq. 13; `back` (f, n) is its
+    (least-squares) inverse. For force actuators `back` is the static motion per unit of input, and `strokes` its pseudo-inverse, the
+    minimum-norm inputs [A, N]. `units` are m or rad; `length` [m] makes rotations comparable with translations. `gauge_units` and
+    `input_units` are units of readings and inputs (default: m).
     """
 
     names: tuple[str, ...]
@@ -55,7 +55,7 @@ class Coordinates:
         return any(unit != "m" for unit in self.input_units)
 
     def motions(self, prefix: str = "") -> tuple[Channel, ...]:
-        """Channels of the coordinates, with a name prefix.
+        """Return one channel per coordinate, with a name prefix.
 
         >>> from flexstage.cases.parallelogram import parallelogram
         >>> from flexstage.models.ideal import ideal
@@ -65,26 +65,26 @@ class Coordinates:
         return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.names, self.units, strict=True))
 
     def readings(self, prefix: str = "") -> tuple[Channel, ...]:
-        """One channel per gauge, with a name prefix, in its unit."""
+        """Return one channel per gauge, with a name prefix, in its unit."""
         units = self.gauge_units or ("m",) * len(self.gauges)
         return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.gauges, units, strict=True))
 
     def commands(self, prefix: str = "") -> tuple[Channel, ...]:
-        """One channel per actuator, with a name prefix, in the unit of its input."""
+        """Return one channel per actuator, with a name prefix, in the unit of its input."""
         units = self.input_units or ("m",) * len(self.actuators)
         return tuple(Channel(f"{prefix}{name}", unit) for name, unit in zip(self.actuators, units, strict=True))
 
     def controller_inputs(self) -> tuple[Channel, ...]:
-        """`error.<c>`, `pose.<c>` and `applied.<actuator>`."""
+        """Return the channels `error.<c>`, `pose.<c>` and `applied.<actuator>`."""
         return (*self.motions("error."), *self.motions("pose."), *self.commands("applied."))
 
 
 def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coordinates:
     """Compute the coordinates of a stage's loop (one design). For force actuators the elastic `model` provides the static motion.
 
-    Their inputs are (V^T W)^+ times the static force of the pose, so that each loop's plant has a static gain of 1, as with strokes. Raises
-    `DesignError` if the gauges cannot observe the pose or the actuators cannot produce it, with the missing directions, and for strokes and
-    forces together.
+    The inputs of force actuators are (V^T W)^+ times the static force of the pose. Each loop's plant then has a static gain of 1, as with
+    strokes. Raises `DesignError` if the gauges cannot observe the pose or the actuators cannot produce it, with the missing directions, and
+    for strokes and forces together.
 
     >>> from flexstage.cases.double_triangle import SM_REF_A, double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -39,10 +39,10 @@ class ChargeHold(CheckedFields):
 class AmplifierSettings(amplifier.Amplifier):
     """Amplifier data in addition to the design file; absent values impose no limit.
 
-    In addition to the common values: `slew` [V/s], maximum voltage rate; `noise_density` [V/Hz^(1/2)], one-sided and white before its lag;
-    `bits` of the converter before it. For voice coils it controls the current: `bandwidth`, `current` and `bits` apply, and its noise is
-    `current_noise` [A/Hz^(1/2)]. With `charge` it controls the charge of its stack; commands, range, slew, noise and steps are then in the
-    voltage that gives the same charge to an unloaded stack.
+    In addition to the common values: `slew` [V/s], maximum voltage rate; `noise_density` [V/Hz^(1/2)], one-sided and white before the
+    amplifier's lag; `bits` of the converter before the amplifier. An amplifier of voice coils controls the current: `bandwidth`, `current`
+    and `bits` apply, and its noise is `current_noise` [A/Hz^(1/2)]. An amplifier with `charge` controls the charge of its stack. Commands,
+    range, slew, noise and steps are then in the voltage that gives the same charge to an unloaded stack.
     """
 
     slew: float | None = None
@@ -54,10 +54,11 @@ class AmplifierSettings(amplifier.Amplifier):
 
 @dataclass(frozen=True)
 class GaugeSettings(CheckedFields):
-    """Gauge data that replace or extend the design file; absent values keep the gauge's own, or impose no limit.
+    """Gauge data that replace or extend the design file; an absent value keeps the gauge's value in the design, or imposes no limit.
 
-    `bandwidth` [Hz] of its first-order lag; `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)], one-sided and white before that lag; `resolution`
-    [m, rad], its step; `filter_order` and `filter_corner` [Hz] of a Butterworth filter before the sampler (order 0: none).
+    `bandwidth` [Hz] of its first-order lag. `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is one-sided and white before the lag. `resolution`
+    [m, rad] is the step of the reading. `filter_order` and `filter_corner` [Hz] belong to a Butterworth filter before the sampler (order 0:
+    no filter).
     """
 
     bandwidth: Annotated[float, UNLIMITED] | None = None
@@ -110,9 +111,9 @@ class Amplifier:
 class Sensor:
     """One gauge between stage and computer.
 
-    `bandwidth` [Hz] of its lag (infinite: none); `filter_order` and `filter_corner` [Hz] of the Butterworth filter after it;
-    `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)], one-sided and white before both (None: not specified); `resolution` [m, rad] of the reading
-    (0: none); `half_range` [m, rad], half the measuring range.
+    `bandwidth` [Hz] of its lag (infinite: no lag). `filter_order` and `filter_corner` [Hz] of the Butterworth filter after the lag.
+    `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is one-sided and white before lag and filter (None: not specified). `resolution` [m, rad] of
+    the reading (0: no rounding). `half_range` [m, rad] is half the measuring range.
     """
 
     bandwidth: float = np.inf

@@ -42,10 +42,10 @@ class Pairs:
 def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant:
     """Replace the model's response from strokes to gauges by the identified modes, static term and delay.
 
-    From strokes to gauges H = (sum of the modes + D) times the gauges' specified lags, with the `delay`; D is the real residual constant up
-    to the highest mode. The identified response includes amplifiers and filters, and the hardware has none of its own; the delay adds to
-    the loop's. Platform motion in a loop coordinate follows from the gauges. Ground and wrenches act as in the model, whose modes get
-    frequency and damping of the similar identified modes. Modes above the test's band are part of its D.
+    The new response is (sum of the modes + D) times the gauges' specified lags and the `delay`. D is the real residual, constant up to the
+    highest mode. The identified response includes amplifiers and filters, so the hardware gets none of its own; the delay adds to the
+    loop's delay. Platform motion in a loop coordinate follows from the gauges. Ground motion and wrenches act as in the model; its modes
+    get frequency and damping of the paired identified modes. Modes above the test's band are part of D.
 
     Raises `DesignError` if inputs and outputs are not the stage's actuators and gauges, and if the modes do not match such a stage.
     """
@@ -91,9 +91,9 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
 
 
 def pair_modes(given: Plant, model: LinearModel, found: Identified) -> Pairs:
-    """Pair the model's modes with similar identified modes: gauge-based assurance 0.7 or more, within half of the frequency.
+    """Pair the model's modes with identified modes: modal assurance (MAC) at the gauges above 0.7, frequency ratio below e^0.5.
 
-    An identified mode is compared with the span of the model's modes within 5 % of its partner, because close pairs mix.
+    An identified mode is compared with the span of all model modes within 5 % of the candidate's frequency, because close modes mix.
     """
     kept = _kept(given)
     rows = [channel.name for channel in model.outputs]
@@ -158,7 +158,7 @@ def _channel_findings(loop: Coordinates, found: Identified) -> Iterator[Finding]
 
 
 def channel_places(loop: Coordinates, found: Identified) -> tuple[list[int], list[int], Array, Array]:
-    """Find rows and columns of a loop's gauges and actuators in a test, and the size of the units of both."""
+    """Find the channels of a loop in a test: rows of the gauges, columns of the actuators, and unit factors of both."""
     rows = [[channel.name for channel in found.outputs].index(name) for name in loop.gauges]
     columns = [[channel.name for channel in found.inputs].index(name) for name in loop.actuators]
     return rows, columns, _sizes(found.outputs, rows, loop.readings()), _sizes(found.inputs, columns, loop.commands())

@@ -14,7 +14,7 @@ _REPEATED = 1e-3
 
 
 def reduce_modes(given: Plant, wanted: Array) -> Plant:
-    """Residualise a plant to the modes `wanted` (k,), and at least as many of the strongest as its loop has coordinates.
+    """Residualise a plant to the modes of the mask `wanted` (k,), and at least as many strongest modes as its loop has coordinates.
 
     Repeated modes are retained together. Omitted states follow statically, x = -A^-1 B u, so that every static gain is preserved
     (residualisation: Green and Limebeer, Linear Robust Control, 1995, section 9.2).
@@ -43,9 +43,10 @@ def reduce_modes(given: Plant, wanted: Array) -> Plant:
 
 
 def resonances(given: Plant) -> Array:
-    """Compute the resonance (k,) of every mode between strokes and pose, with a static stroke-to-pose gain of 1.
+    """Compute the resonance (k,) of every mode between strokes and pose, relative to a static stroke-to-pose gain of 1.
 
-    With both as platform motions in lengths it is |c| |b| / (2 zeta omega^2), infinite at 0 Hz.
+    With strokes and pose expressed as platform motions in lengths, the resonance is |c| |b| / (2 zeta omega^2): c and b are the modal
+    output and input. It is infinite at 0 Hz.
 
     >>> from flexstage.control.example import integral_loop
     >>> resonances(integral_loop().plant).round(1).tolist()  # one of them is the guide's own, 1/(2 zeta) = 50
@@ -83,7 +84,7 @@ def mode_names(given: Plant) -> list[str]:
 
 
 def residualise(system: System, slow: Array) -> System:
-    """Residualise a system: its other states follow statically."""
+    """Residualise a system: keep the states of the mask `slow` (n,), and let all others follow statically."""
     fast = ~slow
     if not np.any(fast):
         return system

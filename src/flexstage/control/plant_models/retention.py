@@ -60,9 +60,9 @@ def retention(whole: Plant, closed: Loop) -> Retention:
     """Find the significant modes of a `whole` plant in a loop closed around a subset, with its present controller.
 
     An omitted mode is significant by one of three criteria. First, its loop gain at resonance, other loops and axes closed: |a| |b K S| for
-    its pulse transfer function a b psi(z), exact between hold and sampler, also above half the sampling rate. Second, ringing beyond
-    `RINGING` in a step, in the true platform motion along any axis. Third, a margin changed by all omitted modes together: modes of lower
-    loop gain are added until no change exceeds `MARGIN_CHANGE`, once the other criteria are met.
+    its pulse transfer function a b psi(z). This is exact between hold and sampler, also above half the sampling rate. Second, ringing
+    beyond `RINGING` in a step, in the true platform motion along any axis. Third, a margin changed by all omitted modes together: modes of
+    lower loop gain are added until no change exceeds `MARGIN_CHANGE`, once the other criteria are met.
 
     >>> from flexstage.control.systems.closed import loop
     >>> from flexstage.control.example import integral_loop

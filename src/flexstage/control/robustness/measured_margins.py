@@ -94,10 +94,10 @@ class MeasuredMargins(InNotebook):
 def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> MeasuredMargins:
     """Compute margins of a loop on measured responses, with hold and delay: L = P(f) H_0(f) e^{-j w delay} K(e^{j w T}).
 
-    P comes from local polynomials on the records (`local_responses`), or is the analyser's response. Errors are circular normal; for stored
-    responses with the variance |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th ed., 2010, ch. 9). Confidence limits are
-    quantiles of 100 draws, about their median and mirrored at the value, whichever is wider. Stored responses are assumed to be measured
-    with one input driven at a time. H_0 is the hold's response. Aliasing from above half the sampling rate is neglected.
+    P comes from local polynomials on the records (`local_responses`), or is the analyser's response. H_0 is the hold's response. Errors of
+    P are circular normal. For stored responses their variance is |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th ed., 2010, ch.
+    9), on the assumption that one input was driven at a time. Confidence limits are quantiles of 100 draws, about their median or mirrored
+    at the value, whichever is wider. Aliasing from above half the sampling rate is neglected.
 
     Uses only lines within the searched band, below half the sampling rate.
     """
@@ -145,7 +145,7 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
 
 
 def coherence_findings(seen: Identification, margins: MeasuredMargins) -> Iterator[Finding]:
-    """Findings for gauges with low coherence around the crossover, from 2/3 to 3/2 of the crossover frequencies."""
+    """Check the coherence of the gauges from 2/3 to 3/2 of the crossover frequencies; one finding for each gauge with low coherence."""
     if seen.multiple is None or seen.spectra is None:
         return
     ends = [each.rejection.fitted for each in margins.channels if np.isfinite(each.rejection.fitted)]

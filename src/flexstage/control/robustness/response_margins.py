@@ -14,10 +14,10 @@ _NOTHING = 1e-300
 
 @dataclass(frozen=True, eq=False)
 class ResponseMargins:
-    """Loop margins at frequency lines; `sizes` (f, n) are |S_ii|, the other loops closed.
+    """Loop margins at frequency lines; `sizes` (f, n) are |S_ii| of each loop with the other loops closed.
 
-    `peak` is the largest singular value of S, poses as lengths. By loop: the nearest gain factors below and above 1 (`lows`, `gains`),
-    `phases` [rad], `delays` [s], and `rejections` [Hz], the first crossing of |S_ii| = 1 (NaN: none).
+    `peak` is the largest singular value of S, poses as lengths. For each loop: the nearest gain factors below and above 1 (`lows`,
+    `gains`), `phases` [rad], `delays` [s], and `rejections` [Hz], the first crossing of |S_ii| = 1 (NaN: none).
     """
 
     sizes: Array
@@ -39,11 +39,11 @@ class LoopLines:
     control: Array
 
     def sensitivity(self, plant: Array) -> Array:
-        """Sensitivity S (f, c, c) = (I + P K)^-1 of the responses (f, c, n) from commands to pose."""
+        """Compute S (f, c, c) = (I + P K)^-1 from the responses (f, c, n) of commands to pose."""
         return np.linalg.inv(np.eye(plant.shape[1]) + plant @ self.control)
 
     def margins(self, plant: Array) -> ResponseMargins:
-        """Peak and margins of the responses (f, c, n) from commands to pose."""
+        """Compute peak and margins from the responses (f, c, n) of commands to pose."""
         sensitivity = self.sensitivity(plant)
         peaks = np.linalg.norm(sensitivity * self.scale[:, None] / self.scale, 2, axis=(1, 2))
         place = int(np.argmax(peaks))

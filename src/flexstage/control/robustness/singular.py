@@ -32,7 +32,7 @@ def balance(matrices: Array) -> Array:
 
 
 def scaled_size(matrix: Array, logs: Array) -> float:
-    """Largest singular value of e^{d_i} M_ij e^{-d_j}.
+    """Compute the largest singular value of e^{d_i} M_ij e^{-d_j} for the logarithms d.
 
     >>> scaled_size(np.array([[0.0, 4.0], [1.0, 0.0]]), np.array([-0.5, 0.5]) * np.log(2.0))
     2.0

@@ -135,7 +135,9 @@ def _growth(open_loop: System, factor: float) -> float:
 
 
 def require_stable(closed: Loop, what: str) -> None:
-    """Refuse `what` (margins, rms values) for an unstable loop, with the growth rate and source of its least stable pole.
+    """Raise `DesignError` if a loop is unstable, so that `what` (margins, rms values) does not exist.
+
+    The message has the growth rate and source of the least stable pole.
 
     >>> from flexstage.control.example import integral_loop
     >>> require_stable(integral_loop(), "rms values")

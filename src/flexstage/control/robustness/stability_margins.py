@@ -72,7 +72,7 @@ class Margins(InNotebook):
         return {each.channel: each for each in self.channels}
 
     def of(self, channel: str) -> ChannelMargins:
-        """Margins of the channel of that name."""
+        """Return the margins of the channel of this name."""
         return self.loops[channel]
 
 
@@ -155,7 +155,7 @@ def peaks(closed: Loop, cut: LoopBreak) -> Peaks:
 
 @dataclass(frozen=True)
 class ShiftedPeak:
-    """Peak sensitivity Ms with all modes of the plant off by a relative `shift`, the worse of both ways; infinite: unstable."""
+    """Peak sensitivity Ms with all plant modes shifted by a relative `shift`, the larger of both signs; infinite if unstable."""
 
     TABLE: ClassVar[Layout] = Layout("Peak sensitivity Ms, all modes shifted either way", "peak", head="shift")
 
@@ -164,7 +164,9 @@ class ShiftedPeak:
 
 
 def shifted_peaks(closed: Loop, shifts: Iterable[float] = (0.0, 0.02, 0.05, 0.1)) -> tuple[ShiftedPeak, ...]:
-    """Peak sensitivity of a sampled loop at the pose with all modes shifted: time of the plant runs faster, of the controller it does not.
+    """Compute the peak sensitivity of a sampled loop at the pose for relative `shifts` of all modes, both signs.
+
+    The time scale of the plant is changed, the time scale of the controller is not.
 
     >>> from flexstage.control.example import integral_loop
     >>> [round(each.peak, 2) for each in shifted_peaks(integral_loop(), (0.0, 0.1))]

@@ -104,7 +104,7 @@ class StageController:
     # --- commands ---
 
     def hold(self, axis: int, *, on: bool) -> None:
-        """Switch an axis' servo on at its present position, or off."""
+        """Switch the servo of an axis on at its present position, or off."""
         if on and not self.held[axis]:
             self.target[axis] = self._wanted[axis] = self.position[axis]
         if not on:
@@ -112,7 +112,7 @@ class StageController:
         self.held[axis] = on
 
     def move(self, targets: dict[int, float]) -> None:
-        """Move to these targets [um, urad], all or none."""
+        """Move axes to `targets` [um, urad]. If one target is refused, no axis moves."""
         if any(self.generators[axis].at is not None for axis in targets):
             raise CommandError(Code.WAVE_GENERATOR_ACTIVE)
         if not all(self.held[axis] for axis in targets):
@@ -124,7 +124,7 @@ class StageController:
         self.target = wanted
 
     def jump(self, axis: int, way: float) -> None:
-        """Step by these amounts at once, at any velocity setting, and record."""
+        """Step one axis by `way` [um, urad] at once, regardless of its velocity setting, and start the recorder."""
         self.move({axis: self.target[axis] + way})
         self._wanted[axis] = self.target[axis]
         self.recorder.start()
@@ -136,7 +136,7 @@ class StageController:
         self.target = self._wanted.copy()
 
     def generate(self, axis: int) -> None:
-        """Start an axis' wave generator."""
+        """Start the wave generator of an axis."""
         one = self.generators[axis]
         if one.table not in self.tables:
             raise CommandError(Code.NO_WAVE_SELECTED)
@@ -161,7 +161,7 @@ class StageController:
     # --- time ---
 
     def advance(self, count: int) -> None:
-        """Simulate a number of samples. Diverging numbers reset the loop, with its servos off."""
+        """Simulate `count` samples. If the simulation diverges, the loop is reset and all servos are switched off."""
         if count < 1:
             return
         wanted = np.stack([self._course(axis, count) for axis in range(len(self.axes))], axis=-1)

@@ -37,14 +37,14 @@ _TRIGGERS = {0: "default setting", 1: "any command changing target position", 4:
 
 @dataclass(frozen=True)
 class Command:
-    """Answer function of a command, with a short description."""
+    """Command: the function that answers it, and a short description."""
 
     answer: Callable[[Session, Sequence[str]], Iterable[str] | None]
     meaning: str
 
 
 class Session:
-    """Session of one client: its own error code, the stage shared with all others."""
+    """Session of one client. Each client has its own error code; all clients share the stage."""
 
     def __init__(self, stage: StageController) -> None:
         self.stage = stage
@@ -77,29 +77,29 @@ class Session:
     # --- arguments ---
 
     def axis(self, word: str) -> int:
-        """Index of an axis."""
+        """Return the index of an axis."""
         if word not in self.stage.axes:
             raise CommandError(Code.INVALID_AXIS)
         return self.stage.axes.index(word)
 
     def axes(self, words: Sequence[str]) -> list[int]:
-        """Indices of the named axes, default all."""
+        """Return the indices of the named axes; without names, of all axes."""
         return [self.axis(word) for word in words] if words else list(range(len(self.stage.axes)))
 
     def pairs(self, words: Sequence[str]) -> dict[int, float]:
-        """Numbers by axis: each axis once, with a number."""
+        """Read pairs of axis and number; each axis occurs once."""
         found = {self.axis(name): _number(value) for name, value in _groups(words, 2)}
         if 2 * len(found) != len(words):
             raise CommandError(Code.DOUBLE_AXIS)
         return found
 
     def places(self, words: Sequence[str], count: int) -> list[int]:
-        """Zero-based indices of numbers counted from 1; default all."""
+        """Convert numbers from 1 to `count` to zero-based indices; without numbers, all indices."""
         return [_place(word, count) for word in words] if words else list(range(count))
 
 
 def spelled(name: str) -> str:
-    """Command as printed in manuals: single characters by their number."""
+    """Return a command name as printed in manuals: a single character as `#` and its code."""
     return f"#{ord(name)}" if len(name) == 1 else name
 
 
@@ -530,4 +530,4 @@ COMMANDS: dict[str, Command] = {
         "get wave generator table rate",
     ),
 }
-"""All commands by mnemonic; single characters by their number."""
+"""All commands by mnemonic; single-character commands by their character."""

@@ -17,7 +17,7 @@ NOTHING, TARGET, POSITION, ERROR, VOLTAGE = 0, 1, 2, 3, 16
 
 @dataclass
 class Recorder:
-    """Tables of points, each with a source (index) and an option; `rate` is the number of samples per point."""
+    """Tables of recorded points: each table has a source (axis or actuator index) and an option. `rate`: samples per point."""
 
     sources: list[int]
     options: list[int]
@@ -36,7 +36,7 @@ class Recorder:
         self.points[table] = np.empty(0)
 
     def take(self, found: Series, scale: Array, volts: Array) -> None:
-        """Record points of the samples run; `scale` (f,) converts SI units."""
+        """Record points from the simulated samples `found`; `scale` (f,) converts SI units."""
         if not self._left:
             return
         rows = slice(self._skip, self._skip + self._left * self.rate, self.rate)

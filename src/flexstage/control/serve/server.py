@@ -40,7 +40,7 @@ class Pace:
     lost: float = 0.0
 
     def behind(self, clock: float, seconds: float) -> float:
-        """Return the lag [s] behind the clock; beyond a second it counts as lost, and the simulation continues from its present state.
+        """Return the lag [s] behind the clock. Lag beyond a second counts as lost, and the simulation continues from its present state.
 
         >>> pace = Pace(offset=100.0)
         >>> round(pace.behind(100.25, 0.125), 3), round(pace.behind(102.125, 0.125), 3), round(pace.behind(102.25, 0.125), 3)
@@ -179,7 +179,7 @@ class _Lines:
 
 
 async def run(stage: StageController, port: int, started: Callable[[int], None], *, paced: bool) -> Pace | None:
-    """Serve a stage until interrupted; passes the port to `started`. Returns the lag, if synchronised with the clock."""
+    """Serve a stage until interrupted; passes the port to `started`. Returns the pace, or None if not `paced` by the clock."""
     served = ServedStage(stage, port, paced=paced)
     await served.start()
     try:

@@ -35,14 +35,14 @@ _NOISELESS = 1e-16
 
 
 def loop_section(found: LoopStudy) -> Section | None:
-    """Overview section: facts, block diagram, components."""
+    """Build the overview section: facts, block diagram, components."""
     drawn = to_svg(loop_diagram(diagram_of(found)), "loop-diagram", "Block diagram of the loop")
     caption = "Block diagram of the loop. Shaded: computed by the computer, sample by sample."
     return section("The loop", [Facts(tuple(_facts(found))), Picture(drawn, caption), *loop_tables(found)])
 
 
 def headline(found: LoopStudy) -> Headline:
-    """Headline: stability, and the lowest phase margin."""
+    """Return the headline: stability, and the lowest phase margin."""
     if found.margins is None:
         return Headline("Open loop.")
     stable = found.stability.stable
@@ -77,7 +77,7 @@ def _error_fact(test: Run) -> Fact:
 
 
 def diagram_of(found: LoopStudy) -> Diagram:
-    """Block diagram of the loop, with the names of its set-up."""
+    """Return the content of the loop's block diagram, with the names of the set-up."""
     setup, plant = found.setup, found.plant
     rate = f"{number(1e-3 * found.settled.rate, 4)} kHz"
     stage = Box("stage", f"{found.model_name.partition(',')[0]}\n{count_modes(len(plant.frequencies))}")
@@ -149,7 +149,7 @@ def _stacks(found: LoopStudy) -> str:
 
 
 def frequency_section(found: LoopStudy) -> Section | None:
-    """Frequency section: open loops, sensitivities, margins, poles, crosstalk; `None` in open loop."""
+    """Build the frequency section: open loops, sensitivities, margins, poles, crosstalk; `None` in open loop."""
     if found.curves is None:
         return None
     seen, plant = found.curves, found.plant
@@ -190,7 +190,7 @@ def frequency_section(found: LoopStudy) -> Section | None:
 
 
 def measured_section(found: LoopStudy) -> Section | None:
-    """Loop on measured responses, compared with fit and model; `None` without a test."""
+    """Build the section of the loop on measured responses, compared with fit and model; `None` without a test."""
     if found.measured is None:
         return None
     seen = found.measured.sensitivities
@@ -202,7 +202,7 @@ def measured_section(found: LoopStudy) -> Section | None:
 
 
 def margin_spots(found: LoopStudy) -> Iterator[Spot]:
-    """Positions of the single loops' margins in the open-loop figure."""
+    """Return the positions of the single loops' margins in the open-loop figure."""
     for each in () if found.margins is None else found.margins.channels:
         for edge in (each.gain_low, each.gain_high):
             if 0.0 < edge.value < np.inf and edge.frequency > 0.0:  # zero frequency is not drawn
@@ -217,7 +217,7 @@ def margin_spots(found: LoopStudy) -> Iterator[Spot]:
 
 
 def margin_points(found: LoopStudy) -> Array:
-    """Open loops (m,) at the frequencies of their gain, phase and delay margins."""
+    """Evaluate the open loops (m,) at the frequencies of their gain, phase and delay margins."""
     if found.margins is None or found.curves is None:
         return np.zeros(0, complex)
     edges = [
@@ -231,7 +231,7 @@ def margin_points(found: LoopStudy) -> Array:
 
 
 def time_section(found: LoopStudy) -> Section | None:
-    """Time section: steps and trajectories."""
+    """Build the time section: steps and trajectories."""
     stepped = [(test.course.name, test.simulated) for test in found.runs if test.figures is not None]
     pictures = []
     if stepped:
@@ -264,7 +264,7 @@ def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
 
 
 def error_section(found: LoopStudy) -> Section | None:
-    """Error section: static errors without the loop, noise with it, hysteresis of the stacks."""
+    """Build the error section: static errors without the loop, noise with it, hysteresis of the stacks."""
     blocks: list[Block | None] = [*error_tables(found), *_noise_pictures(found)]
     if (swept := found.hysteresis) is not None:
         worst = int(np.argmax(swept.rms_error))

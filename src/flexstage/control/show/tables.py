@@ -40,12 +40,15 @@ _BY_COORDINATE = ("rejection", "noise", "settling", "overshoot")
 
 
 def loop_tables(found: LoopStudy) -> list[Table | None]:
-    """Tables of the loop and its parts: charge drive, force feedback, controller."""
+    """Tabulate the loop and its parts: charge drive, force feedback, controller."""
     return [loop_table(found), *_charge_tables(found), *_damping_tables(found), *_controller_tables(found)]
 
 
 def short_tables(found: LoopStudy) -> list[Table | str | None]:
-    """Loop, bandwidth, margins, time responses, positioning noise and hysteresis, without notes; of an unstable loop with the reason."""
+    """Tabulate loop, bandwidth, margins, time responses, positioning noise and hysteresis, without notes.
+
+    For an unstable loop, the loop table keeps its note with the reason of the instability.
+    """
     margins, noise = margin_tables(replace(found, disk_margin=None)), error_tables(replace(found, static_errors=None))
     parts = [*_charge_tables(found), *_damping_tables(found), *measured_tables(found), *time_tables(found.runs), *noise]
     shown = [replace(each, notes=()) for each in (loop_table(found), *margins, *parts) if each is not None]
@@ -55,9 +58,9 @@ def short_tables(found: LoopStudy) -> list[Table | str | None]:
 
 
 def loop_table(found: LoopStudy) -> Table:
-    """Table of the loop and its stability.
+    """Tabulate the loop and its stability.
 
-    Not generated from fields: each row combines several results.
+    The rows are written individually, because each combines several results.
     """
     plant, hardware = found.plant, found.plant.hardware
     delay = f"{number(1e6 * hardware.delay, 4)} us"
@@ -154,7 +157,7 @@ def margin_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def measured_tables(found: LoopStudy) -> list[Table]:
-    """Tabulate margins on a test's responses, with those of fit and model at the same lines; none without a test."""
+    """Tabulate margins on a test's responses, and margins of fit and model at the same lines; none without a test."""
     seen = found.measured
     if seen is None:
         return []
@@ -252,7 +255,7 @@ def _noise_notes(found: LoopStudy) -> tuple[str, ...]:
 
 
 def comparison_tables(found: Comparison) -> list[Table | None]:
-    """Tabulate compared controllers, and each by coordinate."""
+    """Tabulate the compared controllers, then the values of each controller by coordinate."""
     named = {kind_name(name): each for name, each in found.controllers.items()}
     best = "; ".join(f"{aim}: {kind_name(name)}" for aim, name in found.wins.items())
     slow = [name for name, each in named.items() if each.slowly_rounding]
@@ -279,7 +282,7 @@ def _mark_best(table: Table, found: Comparison) -> Table:
 
 
 def kind_name(name: str) -> str:
-    """Printed name of a controller kind.
+    """Return the printed name of a controller kind.
 
     >>> kind_name("pi, damped"), kind_name("resonant")
     ('PI, damped', 'resonant')

@@ -24,7 +24,7 @@ def rounder(steps: Array) -> Callable[[Array], Array]:
 
 
 class Actuation:
-    """Running actuators of a machine: the last applied strokes, hysteresis and inverse model, initially at the bias.
+    """Running actuators of a machine: last applied strokes, states of hysteresis and inverse model. They start at the bias.
 
     >>> from dataclasses import replace
     >>> from flexstage.control.example import integral_loop
@@ -49,9 +49,10 @@ class Actuation:
             self._rest = stacks.step(self._stacks, bias)[1]
 
     def __call__(self, command: Array) -> tuple[Array, Array, Array]:
-        """Return the amplifiers' requested and applied strokes, and the free stroke (m,) [m], for the command of the next sample.
+        """Compute requested, applied and free strokes (m,) [m] from the command (m,) of the next sample.
 
-        All are equal without inverse, converter, limits and hysteresis.
+        The requested stroke is the amplifier input, the applied stroke the amplifier output. All are equal without inverse, converter,
+        limits and hysteresis.
         """
         powers, model = self._machine.amplifiers, self._machine.compensation
         if model is not None:

@@ -22,10 +22,10 @@ from flexstage.models.linear.model import Channel
 
 @dataclass(frozen=True, eq=False)
 class Amplifiers:
-    """Amplifier model, one number per actuator (m,), free strokes from the bias.
+    """Amplifier model with one number per actuator (m,); strokes are free strokes relative to the bias.
 
-    The command is rounded to the converter's `step` [m] (0: no rounding), limited to `low` to `high` [m], and to a change of `slew` [m/s].
-    The voltage is `bias` + stroke / `gain` ([V], [m/V]; NaN for a stack without data).
+    The command is rounded to the converter's `step` [m] (0: no rounding). It is then limited to the range from `low` to `high` [m] and to
+    the rate `slew` [m/s]. The voltage is `bias` + stroke / `gain` ([V], [m/V]; NaN for a stack without data).
     """
 
     low: Array
@@ -38,9 +38,10 @@ class Amplifiers:
 
 @dataclass(frozen=True, eq=False)
 class Relief:
-    """Charge-drive reduction of hysteresis less its mean slope (m,): a remaining share, and the whole slow part.
+    """Charge-drive reduction of the hysteretic stroke, which is the stroke minus the linear stroke of the same voltage.
 
-    `leak` (m,) is the recovered share per sample, 1 - exp(-2 pi f T) for the drives' corners f.
+    `residual_hysteresis` (m,) is the share that remains. `leak` (m,) is the share of the removed part that returns per sample by charge
+    leakage, 1 - exp(-2 pi f T) for the drives' corners f.
     """
 
     residual_hysteresis: Array
@@ -54,11 +55,11 @@ class Machine:
     Order within sample k. Readings y = C x + D w + noise of the `plant` (outputs `gap.<gauge>`), rounded to `resolution` (g,) [m] (0: no
     rounding). A reading that is not finite or beyond `half_range` (g,) [m] (default: unlimited) is replaced by its gauge's last valid one.
     Then pose = `pose` (f, g) y, error = reference - pose, and the `controller` (inputs any of `error.<c>`, `reference.<c>`, `pose.<c>`,
-    `applied.<actuator>`; outputs `command.<actuator>`). Voltage follows by the inverse of `compensation`, or proportional, then
-    `amplifiers`. Free stroke follows by `hysteresis` of the voltage (reduced by `relief`), or proportional. Last come the states of both
-    for k + 1. `applied` is the amplifiers' output minus the request: zero except at a limit.
+    `applied.<actuator>`; outputs `command.<actuator>`). The voltage is computed by the inverse of `compensation`, or is proportional, and
+    is limited by `amplifiers`. The free stroke is computed by `hysteresis` from the voltage (reduced by `relief`), or is proportional. Last
+    come the states of plant and controller for k + 1. `applied` is the amplifiers' output minus the request: zero except at a limit.
 
-    `plant` is sampled. Its inputs named in `actuators` are strokes, all others disturbances; strokes reach no gauge in the same sample.
+    `plant` is sampled. Its inputs named in `actuators` are strokes, all others disturbances; strokes affect no gauge in the same sample.
     """
 
     plant: System
@@ -109,12 +110,12 @@ class Machine:
         return tuple(f"gap.{name}" for name in self.gauges)
 
     def read(self, prefix: str = "") -> tuple[Channel, ...]:
-        """One channel per gauge, with a name prefix, in the unit of its reading."""
+        """Return one channel per gauge, with a name prefix, in the unit of its reading."""
         units = {channel.name: channel.unit for channel in self.plant.outputs}
         return tuple(Channel(f"{prefix}{name}", units[f"gap.{name}"]) for name in self.gauges)
 
     def strokes(self, prefix: str = "") -> tuple[Channel, ...]:
-        """One channel per actuator, with a name prefix, in the unit of its input."""
+        """Return one channel per actuator, with a name prefix, in the unit of its input."""
         units = {channel.name: channel.unit for channel in self.plant.inputs}
         return tuple(Channel(f"{prefix}{name}", units[name]) for name in self.actuators)
 

@@ -22,11 +22,12 @@ from flexstage.spatial.frame import COMPONENTS
 class Simulated(InNotebook):
     """Simulated loop over time: every series has a row per sample, `times` (n,) [s].
 
-    `reference`, `pose` (estimated) and `error` (n, f) [m, rad] by `coordinates`. `motions` (n, p) are true motions by `channels`. By
-    `actuators`, as strokes [m] from the bias: the controller's `command`, `asked` (amplifier input, after inverse and converter), `given`
-    (amplifier output, after limits), and `stroke` (n, m) at the stage. `volts` are NaN for a stack without data. `readings` (n, g) [m] are
-    in `gauges` order, in their units. `saturated` and `slewing` (m,) are the shares of samples at a range limit, or at a speed limit only.
-    `out_of_range` (g,) are the shares with a gauge beyond its range or lost, when its last valid reading was used.
+    `reference`, `pose` (estimated) and `error` (n, f) [m, rad] are by `coordinates`. `motions` (n, p) are true motions by `channels`. The
+    following are by `actuators`, as strokes (n, m) [m] from the bias: the controller's `command`, `asked` (amplifier input, after inverse
+    and converter), `given` (amplifier output, after limits), and `stroke` at the stage. `volts` are NaN for a stack without data.
+    `readings` (n, g) [m] are in `gauges` order, in their units. `saturated` and `slewing` (m,) are the shares of samples at a range limit,
+    or at a speed limit only. `out_of_range` (g,) are the shares of samples with a reading out of range or lost; the last valid reading is
+    then used.
     """
 
     TABLE: ClassVar[Layout] = Layout("Limits of the actuators", "saturated slewing", head="trajectory, actuator")
@@ -51,7 +52,7 @@ class Simulated(InNotebook):
     out_of_range: Annotated[Array, Along("gauges"), Heading("time out of range", digits=3, unit="%")]
 
     def motion(self, name: str) -> Array:
-        """True motion (n,) of that channel (`platform.x`) [m, rad]; raises `DesignError` if it was not recorded."""
+        """Return the true motion (n,) of the channel `name` (`platform.x`) [m, rad]; raises `DesignError` if it was not recorded."""
         known = [channel.name for channel in self.channels]
         if name not in known:
             raise refuse(name, "not recorded in the simulation", f"{suggest_nearest(name, known)}; add it to the motions")

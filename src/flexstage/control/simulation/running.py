@@ -18,7 +18,7 @@ from flexstage.control.simulation.result import Series
 class RunningLoop:
     """Machine simulated by `advance`, initially at rest.
 
-    `disturbances` are series (`count`,) by name as for `simulate`, by default as long as the longest. At the end they are replayed
+    `disturbances` are series (`count`,) by name as for `simulate`; the default `count` is the longest length. At the end they are replayed
     backwards, which preserves noise spectra. An axis that is not `held` uses its reading as reference: zero error, no restoring action.
     """
 
@@ -35,7 +35,7 @@ class RunningLoop:
         self.reset()
 
     def reset(self) -> None:
-        """Reset to rest."""
+        """Reset the loop to its state at rest."""
         self._row = np.zeros(self._ends[-1])
         self._actuate, self._taken = Actuation(self.machine), np.zeros(len(self.machine.gauges))
         self.count = 0

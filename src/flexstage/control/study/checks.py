@@ -1,4 +1,4 @@
-"""Checks of a set-up on its own, independent of a stage."""
+"""Checks of a set-up that do not require a stage."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _TUNED = ("bandwidth", "sensitivity", "goal")
 
 
 def setup_findings(setup: LoopSetup) -> Iterator[Finding]:
-    """Findings for numbers out of bounds and contradicting numbers, each with its key.
+    """Check the numbers of a set-up for bounds and contradictions; each finding has its key.
 
     >>> from flexstage.control.study.setup import GaugeSetup
     >>> [str(each) for each in setup_findings(LoopSetup(gauges=GaugeSetup(filter_order=4)))]

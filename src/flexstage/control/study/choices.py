@@ -21,19 +21,19 @@ class ControllerKind(Enum):
 
 
 SEARCHED_BY_DEFAULT = (ControllerKind.PI, ControllerKind.PID)
-"""Kinds that are optimised without a specified goal: LQG takes minutes."""
+"""Kinds that are optimised without a specified goal. LQG is not one of them, because its optimisation takes minutes."""
 SEARCHED = (*SEARCHED_BY_DEFAULT, ControllerKind.LQG)
 """Kinds with optimisation-based tuning; the others are tuned to the highest bandwidth."""
 
 
 class OfferedKind(str):
-    """Kind of controller listed in `CONTROLLERS` but not above, by its name there."""
+    """Kind of controller from `CONTROLLERS` that is not in `ControllerKind`, by its name in `CONTROLLERS`."""
 
     __slots__ = ()
 
     @property
     def value(self) -> str:
-        """Its name."""
+        """Name of the kind."""
         return str(self)
 
 
@@ -52,9 +52,9 @@ class Notching(Enum):
     """Automatic placement of notch filters."""
 
     AUTOMATIC = "automatic"
-    """On the modes that require them."""
+    """Notch filters on the modes that require them."""
     NONE = "none"
-    """None except those specified."""
+    """Only the specified notch filters."""
 
 
 class Compensation(Enum):

@@ -49,11 +49,11 @@ OVERSHOOT = Heading("overshoot", digits=3, unit="%")
 
 @dataclass(frozen=True, eq=False)
 class DetunedController:
-    """Detuned controller: the tuned one with its output times `gains` (g,), those that are stable.
+    """Controller with its output multiplied by `gains` (g,); gains of unstable loops are omitted.
 
-    By gain the worst of all loops, without limits and with rounding as white noise. `rejection` is the crossover, `settling` the settling
-    time (NaN: longer than the step), and `delay_margin`. `noise` is the rms in regulation, poses as lengths, geometric mean of the loops
-    (empty: no disturbance).
+    All values (g,) are the worst of all loops, without limits and with rounding as white noise. `rejection` is the sensitivity crossover,
+    `settling` the settling time (NaN: longer than the step). `noise` is the rms in regulation, with poses as lengths: the geometric mean of
+    the loops (empty: no disturbance).
     """
 
     gains: Annotated[Array, RATIO]
@@ -68,10 +68,10 @@ class ComparedController:
     """Result of one controller, by the loop's `coordinates`; `units` are the units of noise.
 
     `peak` is the coupled peak of S, `rejection` the first crossing of |S| = 1, `noise` the rms in regulation. `settling` is the 2 %
-    settling time (infinite: not settled), `overshoot` relative to the step, `delay_margin` the least of the loops. `gauge_share` is the
-    largest share of gauge noise and quantisation in a mean square (absent: no disturbance). `tuned` is the tuning, `detuned` the same
-    controller with less gain. `slowly_rounding` are gauges whose rounding is not white, as assumed in `noise`; `warnings` belong to the
-    loop.
+    settling time (infinite: not settled), `overshoot` relative to the step, `delay_margin` the lowest of the loops. `gauge_share` is the
+    largest share of gauge noise and quantisation in a mean square (absent: no disturbance). `tuned` describes the tuning, `detuned` is the
+    same controller with reduced gain. `slowly_rounding` are gauges whose rounding is not white, although `noise` assumes it. `warnings`
+    belong to the loop.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -121,7 +121,7 @@ class ComparedController:
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """Criteria, all smaller-is-better: the worst of all coordinates; noise as the mean of logarithms, absent without noise."""
+        """Criteria by name, smaller is better: the worst of all coordinates. Noise is the mean of logarithms, absent without noise."""
         return {
             "rejection": -self.crossover,
             **({"noise": float(np.mean(np.log(self.noise)))} if np.all(self.noise > 0.0) else {}),
@@ -134,7 +134,7 @@ class ComparedController:
 
 @dataclass(frozen=True, eq=False)
 class Comparison(InNotebook):
-    """Controllers by name, with equal stage, sampling, floor and gauges; failed designs have their `reasons`."""
+    """Controllers by name, with equal stage, sampling, floor and gauges. `reasons` are the reasons of failed designs."""
 
     controllers: Mapping[str, ComparedController]
     reasons: Mapping[str, str]
@@ -253,7 +253,7 @@ def _of_kind(asked: LoopSetup, kind: ControllerKind | OfferedKind) -> Controller
 
 
 def rival(study: LoopStudy) -> ComparedController:
-    """Summarise a closed loop, simulated in steps of all its motions."""
+    """Summarise a closed loop as a compared controller; steps of all its motions are simulated."""
     names = study.plant.coordinates.names
     steps = {run.course.moved[0]: run.step for run in study.runs if run.step is not None}
     if study.peaks is None or study.bandwidths is None or study.margins is None:

@@ -59,7 +59,7 @@ class SingleLoop:
 
 @dataclass(frozen=True, eq=False)
 class Control:
-    """Controller as a system, with its components and its tuning (`None`: specified).
+    """Controller as a system, with its components and its tuning (`None` for specified gains).
 
     `gains` (n, f) map poses to strokes: R_a, or gains that correct lost motion.
     """

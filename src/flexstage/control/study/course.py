@@ -38,7 +38,7 @@ _MOST_SAMPLES = 5_000_000
 class NamedTrajectory:
     """Named trajectory; `plane` are two coordinates for a plan view.
 
-    It is periodic with `period` [s] within the times `repeats` [s] (default: not periodic), and truncated at its `end` [s].
+    It is periodic with `period` [s] between the two times `repeats` [s] (default: not periodic), and truncated at its `end` [s].
     """
 
     name: str
@@ -67,7 +67,7 @@ class NamedTrajectory:
 def courses(commanded: TrajectorySetup, coordinates: Coordinates) -> tuple[NamedTrajectory, ...]:
     """Construct the trajectories of a set-up for a loop of these coordinates: for a step, one per motion.
 
-    Raises `DesignError` for unknown motions, and for numbers that make no trajectory.
+    Raises `DesignError` for unknown motions and invalid numbers.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -122,7 +122,7 @@ def _plane(names: tuple[str, ...]) -> tuple[str, str] | None:
 
 
 def stated_motions(by: AxisAmplitudes) -> dict[str, float]:
-    """Amplitudes [m, rad] by the specified motions.
+    """Return the specified amplitudes [m, rad] by motion.
 
     >>> stated_motions(AxisAmplitudes(x=1e-6))
     {'x': 1e-06}
@@ -162,7 +162,7 @@ def sampled_course(course: NamedTrajectory, coordinates: Coordinates, step: floa
 
 
 def course_findings(course: NamedTrajectory, poses: Array, times: Array, gains: Matrix, limits: StrokeLimits) -> list[Finding]:
-    """Findings for a trajectory beyond the strokes; `gains` (strokes by coordinate) map the commanded poses.
+    """Check a trajectory against the stroke limits; `gains` (strokes by coordinate) map the commanded poses.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -182,7 +182,7 @@ def course_findings(course: NamedTrajectory, poses: Array, times: Array, gains: 
 def course_warnings(
     course: NamedTrajectory, poses: Array, times: Array, gains: Matrix, slew: Array, *, units: tuple[str, ...] = ()
 ) -> list[Finding]:
-    """Warnings for a trajectory, not a step, that exceeds the amplifiers' speed: they saturate."""
+    """Warn of a trajectory, except a step, that exceeds the amplifiers' rate limit `slew` (m,): the amplifiers saturate."""
     if course.is_step or not np.any(np.isfinite(slew)):
         return []
     found = speed_findings(poses, times, gains, slew, units=units)

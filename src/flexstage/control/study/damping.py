@@ -32,8 +32,8 @@ _WHOLE = 1e-9
 def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], asked: DampingSetup) -> tuple[Plant, Plant, ActiveDamping]:
     """Close the inner loops of a set-up around both plants, which have link force outputs; return both with their description.
 
-    Raises `DesignError` if they are unstable, with all modes or with the retained ones, and for a rate that is not a multiple of the
-    loop's.
+    Raises `DesignError` if the inner loops are unstable, with all modes or with the retained ones, and for a rate that is not a multiple of
+    the loop's.
     """
     require(_rate_findings(asked.rate, plant.hardware.rate))
     pairs = pair_zeros(model, legs)

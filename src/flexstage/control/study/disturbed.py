@@ -52,7 +52,7 @@ class DisturbedLoop:
     rest: float
 
     def simulate(self, poses: Array, number: int = 0, held: Array | float = 0.0) -> Simulated:
-        """Simulate commanded poses (n, f), starting at rest in the pose `held`; `number` seeds the random numbers."""
+        """Simulate commanded poses (n, f), starting at rest in the pose `held` (f,); `number` seeds the random numbers."""
         lead, series = self._noise(len(poses), number)
         if not series and not np.any(held):
             return simulate(self.machine, poses)
@@ -60,7 +60,7 @@ class DisturbedLoop:
         return part_of(simulate(self.machine, np.concatenate([before, poses]), series), slice(lead, None))
 
     def begin(self, count: int) -> Callable[[Array], Array]:
-        """Start a loop of so many samples, with noise number 0; it runs by commanded poses and returns the pose."""
+        """Start a loop of `count` samples with noise number 0. The returned function simulates commanded poses and returns the poses."""
         lead, series = self._noise(count, 0)
         running = RunningLoop(self.machine, series)
         running.advance(np.zeros((lead, len(self.machine.names))))
@@ -76,7 +76,7 @@ class DisturbedLoop:
 
 
 def part_of(found: Simulated, part: slice) -> Simulated:
-    """Slice of a simulation, with time from its start; limit shares belong to the whole."""
+    """Return the samples `part` of a simulation, with time from their start. Shares of samples at limits belong to the whole simulation."""
     names = [field.name for field in fields(Simulated) if np.shape(getattr(found, field.name))[:1] == found.times.shape]
     kept = {name: getattr(found, name)[part] for name in names}
     return replace(found, **(kept | {"times": found.times[part] - found.times[part.start]}))

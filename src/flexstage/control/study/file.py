@@ -37,7 +37,7 @@ def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
 
 @dataclass(frozen=True)
 class SetupChange:
-    """Override of a set-up: a raw value that replaces the file's, or a function of the file's value; `option` names it in findings."""
+    """Override of a set-up: a new raw value, or a function of the value in the file; `option` names it in findings."""
 
     option: str
     value: Any
@@ -76,7 +76,7 @@ def _apply(table: Any, keys: list[str], value: Any) -> None:
 
 
 def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
-    r"""rParse a set-up text; `where` names it in findings.
+    r"""Parse a set-up text; `where` names it in findings.
 
     >>> loads_setup('format = "flexstage loop 1"\nrate = "5 kHz"').rate
     5000.0

@@ -49,11 +49,12 @@ _RESONANCE = 0.01
 class ResolvedSetup:
     """Set-up resolved for a stage: its kinematics, linear model, plant, and the floor's spectra by input.
 
-    `plant` has the modes retained for the loop, or as many as specified; `whole` has all modes of the model, `stage` too, without inner
-    loops. `highest` [Hz] is the highest of the platform modes, as many as loop coordinates. `displaced`: the model is linearised at an
-    operating point, deflection included. `loaded` is the effect of permanent load on the nominal stage, and defines the model if
-    significant. With a measured plant, `predicted` is the model's. `damping` describes the inner loops, `charge` the charge amplifiers; the
-    plants include both, while `model` is at constant voltage, valid for statics. `solid` is the finite-element stage, if it is the model.
+    `plant` has the modes retained for the loop, or as many as specified. `whole` has all modes of the model; `stage` has all modes too,
+    without inner loops. `highest` [Hz] is the highest of the platform modes, as many as loop coordinates. `displaced`: the model is
+    linearised at an operating point, deflection included. `loaded` is the effect of permanent load on the nominal stage, and defines the
+    model if significant. With a measured plant, `predicted` is the model's plant. `damping` describes the inner loops, `charge` the charge
+    amplifiers. The plants include both; `model` is at constant voltage, which is correct for statics. `solid` is the finite-element stage,
+    if it is the model.
     """
 
     mechanism: Mechanism
@@ -91,10 +92,10 @@ class ResolvedSetup:
 def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None = None, solid: FeaModes | None = None) -> ResolvedSetup:
     """Resolve a set-up for a stage: nominal, at an operating point, or under permanent load if that is significant.
 
-    With a `solid` the model is the nominal finite-element stage; the kinematics remains that of the ideal stage.
+    With a `solid` the model is the nominal finite-element stage; the kinematics is still the ideal stage's.
 
-    Raises `DesignError` with all findings: of the set-up, gauges that cannot observe the pose, actuators that cannot produce it, missing
-    stack data for amplifiers, a sampling rate too low for the platform's modes, a model without stiffness.
+    Raises `DesignError` with all findings: errors of the set-up, gauges that cannot observe the pose, actuators that cannot produce it.
+    Also for missing stack data of amplifiers, a sampling rate too low for the platform's modes, and a model without stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = resolve(double_triangle(), LoopSetup())

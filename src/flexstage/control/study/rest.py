@@ -27,8 +27,8 @@ class RestErrors(InNotebook):
     """Static errors of the stage by its model: commanded by R_a (`ideal_map`), and by the gains of the same model (`lost_motion_gains`).
 
     `other_gains` is the error with gains of the `other_model` (`None` if that model does not apply). `load` (6,) [m, rad] is the platform's
-    deflection under all its loads, strokes fixed. `load_left` (6,) is its part outside the strokes' motions, `load_strokes` (n,) [m] the
-    strokes that cancel the other part.
+    deflection under all its loads, strokes fixed. `load_left` (6,) is the part of the deflection that strokes cannot cancel. `load_strokes`
+    (n,) [m] are the strokes that cancel the remaining part.
     """
 
     ideal_map: StaticError

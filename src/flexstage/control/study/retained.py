@@ -56,7 +56,7 @@ def control_and_modes(given: ResolvedSetup, gains: Array) -> tuple[ResolvedSetup
 
 
 def stated_modes_warnings(given: ResolvedSetup, control: Control, closed: Loop, found: Retention) -> list[Finding]:
-    """Warnings for too few specified modes: margins that change with all significant modes."""
+    """Warn if too few modes are specified: margins would change with all significant modes."""
     if given.setup.modes is None or found.complete:
         return []
     more = loop(retain_modes(given, found.wanted).plant, control.system)

@@ -49,8 +49,8 @@ def _settled(time: float) -> Mark:
 class StepAnswer:
     """Response to a step of `size` [`unit`] in its own coordinate: `settling` time [s], infinite without settling.
 
-    `overshoot` is relative to the step, `residual` [`unit`] the true error at the end. `others` are the motions of all other platform axes.
-    `largest` (f,) [m, rad] are the largest true errors of the coordinates.
+    `overshoot` is relative to the step. `residual` [`unit`] is the true error at the end. `others` are the largest motions of all other
+    platform axes. `largest` (f,) [m, rad] are the largest true errors of the coordinates.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -85,7 +85,7 @@ class StepAnswer:
 
 @dataclass(frozen=True)
 class CoilHeat:
-    """Thermal load of a force actuator in a repeated trajectory: `rms` of its input [`unit`], and its continuous limit `held`.
+    """Thermal load of a force actuator in a repeated trajectory: `rms` of its input and the continuous limit `held` [`unit`].
 
     `power` [W] is the dissipated power, and `warming` [K] the steady temperature rise; absent without data.
     """
@@ -146,8 +146,8 @@ class Run:
     """Simulated trajectory: `figures` of a step, `tracking` errors (rms and peak, measured by the gauges and true).
 
     `learned` and `repeated` are results of iterative and repetitive learning, if requested. `heat` is the load of force actuators by name,
-    `legs` the amplifier load of inner loops. `commanded` (n, f) is the command if different from the trajectory, including some rest before
-    it.
+    `legs` the amplifier load of inner loops. `commanded` (n, f) is the command if it differs from the trajectory; some samples of rest
+    precede it.
     """
 
     course: NamedTrajectory
@@ -197,8 +197,7 @@ def runs(
 
     Steps are simulated without noise, all else with it. Gauge resolution and amplifier limits apply. The stacks have the hysteresis of
     `stacks`, inverted if specified. A loop is simulated until settled (see `rest_time`), or for the set-up's duration. `offset` (n,) [m]
-    are strokes already used by loads. Raises `DesignError` with all
-    findings: unknown motions, trajectories beyond the strokes.
+    are strokes already used by loads. Raises `DesignError` with all findings: unknown motions, trajectories beyond the strokes.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.systems.closed import loop
@@ -278,7 +277,7 @@ def _with_legs(run: Run, computed: Machine) -> Run:
 
 
 def command_ends(given: ResolvedSetup) -> StrokeLimits:
-    """Limits of strokes around the bias, or of the inputs of force actuators."""
+    """Return the limits of strokes relative to the bias, or of the inputs of force actuators."""
     if not given.kinematics.thrusts:
         return stroke_limits(given.mechanism)
     powers = [given.plant.hardware.amplifiers[name] for name in given.plant.actuators]
@@ -287,7 +286,7 @@ def command_ends(given: ResolvedSetup) -> StrokeLimits:
 
 
 def driven_machine(given: ResolvedSetup, control: Control, stacks: Stacks | None = None) -> Machine:
-    """Loop for simulation: hardware with limits and quantisation, and hysteretic `stacks` with optional creep."""
+    """Build the machine of a loop for simulation: hardware with limits and quantisation, and hysteretic `stacks` with optional creep."""
     if stacks is None:
         return machine(given.plant, control.system, _electric(given))
     inverted = stacks.model if Compensation.HYSTERESIS in given.setup.compensate else None
@@ -335,7 +334,8 @@ class RestRms:
 def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
     """Compute the rms in regulation from several simulations with independent random numbers, for noise without a linear budget.
 
-    Each has another position within the gauges' steps: quiet at the middle of a step, wandering near its edge.
+    Each simulation regulates at another pose within the gauges' resolution steps. The motion is small at the middle of a step, and larger
+    near its edge, where the reading changes between two steps.
     """
     (noisy, whole), to_pose, squares = _resting_loop(given, control, closed), given.plant.coordinates.pose, list[Array]()
     count = whole // 3

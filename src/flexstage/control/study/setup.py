@@ -55,7 +55,7 @@ _CREEP = Bound(low=-0.2, high=0.2)
 
 @dataclass(frozen=True)
 class KindNode(ChoiceNode):
-    """Kinds of controllers: those listed here, and those of `CONTROLLERS`, which other packages extend."""
+    """Kinds of controllers: the members of `ControllerKind`, and the entries of `CONTROLLERS`, which other packages extend."""
 
     @property
     def words(self) -> dict[str, Any]:
@@ -157,8 +157,8 @@ class GoalSetup(CheckedFields):
     """Specification of optimisation-based tuning: its `objective`, and limits for every loop.
 
     `rejection` is the lowest sensitivity crossover, `settling` the longest 2 % settling time, `overshoot` the maximum, `delay_margin` the
-    minimum; default: no limit. The peak of S must hold with all modes up to `spread` and all gains up to `gain` off. `prefilter` also
-    optimises a reference prefilter.
+    minimum; default: no limit. The limit of the peak of S must hold for relative mode shifts up to `spread` and relative gain errors up to
+    `gain`. `prefilter` also optimises a reference prefilter.
     """
 
     objective: TuningObjective = TuningObjective.BALANCE
@@ -220,10 +220,11 @@ class DampingSetup(CheckedFields):
     """Integral force feedback in the legs, inside the pose loop: each stack extends at a rate proportional to its leg's tension.
 
     `ratio` is the required damping of the modes with the largest residues; alternatively `gain`. `corner` belongs to the high-pass filter
-    (default: a tenth of the lowest of these modes without the stacks' stiffness). Its `order` 2 preserves the static stiffness, 1 keeps a /
-    (a + gain) of it. The tension comes from a force sensor in each leg, with white `noise`, or from strain `gauges` on links of the legs,
-    with their own noise and bandwidth. `lag` and `delay` belong to analogue electronics. Alternatively a computer runs the law at a `rate`,
-    an integer multiple of the loop's, with strokes after `delay` (default: one sample of that rate).
+    (default: a tenth of the lowest of these modes without the stacks' stiffness). The filter's `order` 2 preserves the static stiffness;
+    order 1 keeps a / (a + gain) of it, with a = 2 pi `corner`. The tension comes from a force sensor in each leg, with white `noise`, or
+    from strain `gauges` on links of the legs, with their own noise and bandwidth. `lag` and `delay` belong to analogue electronics.
+    Alternatively a computer runs the law at a `rate`, an integer multiple of the loop's, with strokes after `delay` (default: one sample of
+    that rate).
     """
 
     ratio: Annotated[float, RATIO, _DAMPED] | None = None
@@ -241,9 +242,9 @@ class DampingSetup(CheckedFields):
 class FollowSetup(CheckedFields):
     """Tracking method for a trajectory known in advance; the error is relative to the trajectory.
 
-    `method`: the inverse of the model's loop, iterative learning (`passes`, `gain`), or repetitive control with that gain (for a periodic
-    path: a raster, a sine), all in the band that is robust to modes up to `spread` off. Or an input shaper for a mode at `frequency` of a
-    `damping` ratio.
+    `method` is the inverse of the model's loop, iterative learning (`passes`, `gain`), or repetitive control with that gain for a periodic
+    path (a raster, a sine). All three act in the band that is robust to relative mode shifts up to `spread`. Alternatively `method` is an
+    input shaper for a mode at `frequency` of a `damping` ratio.
     """
 
     method: Following
@@ -371,7 +372,7 @@ class LoopSetup(CheckedFields):
     follow: FollowSetup | None = None
 
     def to_json(self) -> dict[str, Any]:
-        """Keys of its file with plain values, SI."""
+        """Return the keys of the set-up file with plain values in SI."""
         kind, word = self.trajectory.TOLD_BY
         chosen = {"amplifier": {"kind": self.amplifier.kind, **asdict(self.amplifier)}}  # type: ignore[call-overload]
         return asdict(self) | chosen | {"trajectory": {kind: word, **asdict(self.trajectory)}}

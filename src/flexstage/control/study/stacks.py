@@ -43,8 +43,8 @@ _TURNS = (1.0, -1.0, 0.7, -0.7, 0.4, -0.4, 0.0)
 class Stacks:
     """Stacks of the actuators: `plant` is their behaviour, `model` the known and inverted model, both from volts to strokes [m].
 
-    `electric` is their voltage. `width` (n,) is the plant's loop width relative to the stroke. `creep` follows the hysteresis (`None`: no
-    creep).
+    `electric` converts strokes to voltages. `width` (n,) is the plant's loop width relative to the stroke. `creep` follows the hysteresis
+    (`None`: no creep).
     """
 
     electric: Drive
@@ -56,7 +56,7 @@ class Stacks:
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """Open-loop sweep: strokes (k, n) [m] for the requested ones, `wanted`, with decreasing amplitude: `bare` and with the `inverse`.
+    """Open-loop sweep with decreasing amplitude: requested strokes `wanted` (k, n) [m], strokes `bare` and with the `inverse`.
 
     `width` (n,) is each stack's loop width relative to its stroke.
     """
@@ -156,7 +156,7 @@ def _bouc_wen(strokes: Array, ranges: Sequence[Range], width: Array | float) -> 
 
 
 def loop_widths(model: Hysteresis, ranges: Sequence[Range]) -> Array:
-    """Widths (n,) of each stack's settled loop over its own voltage range.
+    """Compute the widths (n,) of each stack's settled loop over its own voltage range, relative to its stroke.
 
     >>> from flexstage.control.hysteresis.models.bouc_wen import bouc_wen
     >>> loop_widths(bouc_wen(150e-6, (0.0, 1000.0), 0.1), [(0.0, 1000.0)]).round(3).tolist()

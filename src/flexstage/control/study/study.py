@@ -70,9 +70,9 @@ class LoopStudy(InNotebook):
 
     `closed` is the loop with the modes retained in its plant, see `retention`. `growth_all_modes` [1/s] is the spectral abscissa with all
     modes of the model. `margins`, `peaks`, `disk_margin` (of all loops at once), `bandwidths`, `curves` are at the pose; absent in open
-    loop, see `reasons`. `static_errors` belong to the stage without its loop. `noise` is the budget in regulation, `still` (with any
-    noise) a simulation of it. `resting` summarises several simulations if rounding is not white, so that the budget does not apply.
-    `stacks` are those with hysteresis, if specified, `hysteresis` their open-loop sweep. `runs` are the simulations. `warnings` list
+    loop, see `reasons`. `static_errors` belong to the stage without its loop. `noise` is the budget in regulation. `still` is a simulation
+    in regulation, if there is noise. `resting` summarises several simulations if rounding is not white, so that the budget does not apply.
+    `stacks` are the hysteretic stacks, if specified; `hysteresis` is their open-loop sweep. `runs` are the simulations. `warnings` list
     assumptions and limits.
     """
 
@@ -147,7 +147,7 @@ class LoopStudy(InNotebook):
 
     @property
     def highest_platform_mode(self) -> Annotated[float, FREQUENCY]:
-        """Highest platform mode, counting as many as loop coordinates."""
+        """Highest frequency [Hz] among the lowest platform modes, as many as loop coordinates."""
         return self.settled.highest
 
     @property
@@ -159,7 +159,7 @@ class LoopStudy(InNotebook):
 
     @property
     def simulated_interval(self) -> Annotated[tuple[Array, Array] | None, VIEW]:
-        """95 % confidence limits (low, high) (f,) of it, if rounding is not white."""
+        """95 % confidence limits (low, high) (f,) of the simulated rms, if rounding is not white; null otherwise."""
         return None if self.resting is None else (self.resting.low, self.resting.high)
 
 
@@ -264,7 +264,7 @@ def _reasons(*, is_closed: bool, forced: bool, tested: bool) -> dict[str, str]:
 
 
 def pose_gains(given: ResolvedSetup, lost: LostMotion | None) -> Array:
-    """Strokes (n, f) per commanded pose; for force actuators the inputs by the elastic model, without lost motion."""
+    """Compute the strokes (n, f) per commanded pose, or the inputs of force actuators by the elastic model, without lost motion."""
     if lost is not None and Compensation.LOST_MOTION in given.setup.compensate:
         return np.real(first_design(np.asarray(lost.correction.values), 2))
     return given.plant.coordinates.strokes

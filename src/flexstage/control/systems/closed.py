@@ -18,13 +18,13 @@ from flexstage.models.linear.model import Channel
 
 
 class LoopBreak(Enum):
-    """Loop-breaking point: the loop is opened at the pose (the plant's output, in the error) or at the commands (the plant's input)."""
+    """Loop-breaking point: the loop is opened at the pose (output of the plant) or at the commands (input of the plant)."""
 
     POSE = "pose"
     COMMAND = "command"
 
     def channels(self, given: Plant) -> tuple[Channel, ...]:
-        """Signals of a plant's loop at the break."""
+        """Return the signals of a plant's loop at the break."""
         return given.coordinates.motions("pose.") if self is LoopBreak.POSE else given.coordinates.commands("command.")
 
 
@@ -32,8 +32,8 @@ class LoopBreak(Enum):
 class Loop:
     """Interconnected plant and controller: the basis of margins, stability, budgets and simulations.
 
-    `plant` is the continuous plant, `held` the same between hold and sampler, `controller` the given one without unused inputs
-    (`applied.<actuator>`). `states` names the states of `system`.
+    `plant` is the continuous plant, `held` the same plant between hold and sampler. `controller` is the specified controller without unused
+    inputs (`applied.<actuator>`). `states` names the states of `system`.
 
     `system` is the closed loop. Inputs: `reference.<c>` [m, rad]; `noise.<gauge>` [m] added to a reading, `noise.<actuator>` [m] added to a
     command; `ground.<c>`, `platform.fx` ... (constant over a sample). Outputs: `platform.<c>`, `<point>.<c>`, `relative.<c>` ...; `S1` ...
@@ -87,9 +87,9 @@ def loop(given: Plant, controller: System) -> Loop:
 
 
 def pose_controller(controller: System, coordinates: Coordinates, sense: Array | None = None) -> System:
-    """Return the controller from feedback errors (pose and error inputs together), then from references, to its outputs.
+    """Return the controller with two groups of inputs: first the feedback errors (pose and error together), then the references.
 
-    With the map `sense` (k, c) of loops both are in loop coordinates.
+    With the map `sense` (k, c) of loops, both groups are in loop coordinates.
     """
     names, known = coordinates.names, controller.input_names
     entry = np.zeros((2, len(known), len(names)))

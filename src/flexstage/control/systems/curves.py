@@ -38,7 +38,7 @@ class Curves:
         return np.where(own == 0.0, np.inf, 1.0 / np.where(own == 0.0, 1.0, own) - 1.0)
 
     def crossings(self, of: Callable[[Array], Array], channel: int) -> tuple[Array, Array]:
-        """Find frequencies [Hz] of sign changes of a real function `of` the channel's S_ii, to rounding, and S_ii there."""
+        """Find the frequencies [Hz] at which a real function `of` S_ii of a channel changes sign, to rounding; also returns S_ii there."""
         values = of(self.sensitivity[:, channel, channel])
         places = sign_changes(values)
         low, high = self.frequencies[places], self.frequencies[places + 1]
@@ -63,7 +63,7 @@ def sensitivity(open_loop: System) -> System:
 def curves(closed: Loop, cut: LoopBreak) -> Curves:
     """Compute S on frequencies dense around every pole of the closed loop and of each single open loop, refined until every L_i is smooth.
 
-    Up to half the sampling rate; for a continuous loop up to 100 times its fastest pole.
+    The frequencies end at half the sampling rate; for a continuous loop at 100 times its fastest pole.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = curves(integral_loop(), LoopBreak.POSE)
@@ -95,7 +95,7 @@ def rates_of(poles: Array, step: float | None, least: float = 1e-6) -> Array:
 
 
 def points_around(rates: Array) -> Array:
-    """Frequencies [Hz] at multiples of each resonance's half width; for damping above 0.5 only its own frequency.
+    """Return frequencies [Hz] around each resonance, at multiples of its half width; for damping above 0.5 only its own frequency.
 
     >>> points_around(np.array([-1.0 + 100.0j])).round(3)[4:7].tolist()  # 100/(2 pi), and 1/(2 pi) either side
     [15.756, 15.915, 16.075]
@@ -107,7 +107,7 @@ def points_around(rates: Array) -> Array:
 
 
 def dense_frequencies(poles: Array, step: float | None) -> Array:
-    """Frequencies [Hz] that resolve a system of these poles: some per decade, and around each resonance.
+    """Return frequencies [Hz] that resolve a system of these poles: some per decade, and more around each resonance.
 
     >>> found = dense_frequencies(np.array([-1.0 + 100.0j, -1.0 - 100.0j]), None)
     >>> round(float(found[0]), 4), round(float(found[-1])), len(found)
@@ -126,7 +126,7 @@ def dense_frequencies(poles: Array, step: float | None) -> Array:
 
 
 def refine(found: Curves) -> Array:
-    """Midpoints of steps with too large a change of a loop's phase or magnitude."""
+    """Return the midpoints of frequency steps over which the phase or magnitude of a loop changes too much."""
     loops = found.loops
     finite = np.where(np.isfinite(loops) & (loops != 0.0), loops, 1e-300)
     change = np.log(finite[1:] / finite[:-1])
@@ -137,7 +137,7 @@ def refine(found: Curves) -> Array:
 
 
 def sign_changes(values: Array) -> Array:
-    """Indices (k,) before a change of sign; a value of 0 counts as positive.
+    """Find the indices (k,) before each change of sign; a value of 0 counts as positive.
 
     >>> sign_changes(np.array([-1.0, 0.0, 2.0, -3.0])).tolist()
     [0, 2]

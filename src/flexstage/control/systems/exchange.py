@@ -17,8 +17,8 @@ from flexstage.models.linear.model import Channel
 def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
     """Convert a system to `control.StateSpace`, with the names of inputs and outputs, dots replaced by underscores (`error_x`).
 
-    `states` name its states (those of a `Loop`, for instance). A continuous system has dt = 0. Raises `DesignError` without python-control,
-    and for names that coincide.
+    `states` are names for the system's states, for instance `Loop.states`. A continuous system has dt = 0. Raises `DesignError` without
+    python-control, and for names that coincide.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = to_control(integral_loop().controller)

@@ -22,7 +22,7 @@ _APART = 1e-6
 
 @dataclass(frozen=True)
 class Peak:
-    """Largest value of a response (of its largest singular value) and its frequency [Hz]."""
+    """Largest value of a response (largest singular value of a matrix) and its frequency [Hz]."""
 
     value: float
     frequency: Annotated[float, FREQUENCY]
@@ -31,10 +31,10 @@ class Peak:
 def peak(system: System) -> Peak:
     """Compute sup over omega of the largest singular value of H, for a stable system its H-infinity norm, to 1e-9 relative.
 
-    To 1e-6 if the value at half the sampling rate, or the direct gain of a continuous system, is within 1e-6 of the largest. Bruinsma and
-    Steinbuch (Systems & Control Letters 14, 1990): gamma is a singular value of H if and only if the Hamiltonian matrix of gamma has an
-    eigenvalue on the imaginary axis, so that no peak between frequencies is missed. Sampled systems are mapped by z = (1 + s)/(1 - s),
-    which preserves the norm. Raises `DesignError` for an unstable system, which has no steady response.
+    The accuracy is 1e-6 if the value at half the sampling rate, or the direct gain of a continuous system, is within 1e-6 of the largest.
+    Gamma is a singular value of H if and only if the Hamiltonian matrix of gamma has an eigenvalue on the imaginary axis (Bruinsma and
+    Steinbuch, Systems & Control Letters 14, 1990). No peak between frequencies is therefore missed. Sampled systems are mapped by z = (1 +
+    s)/(1 - s), which preserves the norm. Raises `DesignError` for an unstable system, which has no steady response.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
@@ -67,7 +67,7 @@ class Plane:
     step: float | None
 
     def frequencies(self, numbers: Array) -> Array:
-        """Frequencies [Hz] of nu."""
+        """Convert nu to frequencies [Hz]."""
         if self.step is None:
             return numbers * self.unit / (2.0 * np.pi)
         return np.arctan(numbers) / (np.pi * self.step)
@@ -107,7 +107,7 @@ def _balance(system: System) -> System:
 
 
 def level_crossings(plane: Plane, level: float) -> Array:
-    """Ascending frequencies [Hz] of possible crossings of `level` by a singular value: all true ones, and possibly more.
+    """Find ascending frequencies [Hz] at which a singular value may cross `level`: all true crossings, and possibly further points.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)

@@ -83,8 +83,8 @@ class System(CheckedFields):
     def transfer(self, frequencies: Array) -> Array:
         """Compute the frequency response H = C (lambda - A)^-1 B + D, (f, p, m) at `frequencies` (f,) [Hz].
 
-        lambda = j omega, or e^{j omega T} for a sampled system. Balances the states first: rates of modes exceed their displacements a
-        thousandfold, with an equal loss of digits in a solve.
+        lambda = j omega, or e^{j omega T} for a sampled system. The states are balanced first: modal velocities are about a thousand times
+        larger than modal displacements, and a solution would lose as many digits.
         """
         balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
         entry, points = (self.B / scale[:, None]).astype(complex), self._points(frequencies)
@@ -191,7 +191,7 @@ def rename(system: System, names: Mapping[str, str]) -> System:
 
 
 def select(system: System, inputs: Iterable[str], outputs: Iterable[str]) -> System:
-    """The same states with only these inputs and outputs, in this order. Raises `DesignError` for names that it does not have.
+    """Return the system with only these inputs and outputs, in this order. Raises `DesignError` for names that it does not have.
 
     >>> two = static(np.array([[1.0, 2.0]]), (Channel("a", "m"), Channel("b", "m")), (Channel("y", "m"),))
     >>> select(two, ["b"], ["y"]).D.tolist()
@@ -215,7 +215,7 @@ def _indices(names: Iterable[str], known: tuple[str, ...], kind: str) -> list[in
 
 
 def reachable(system: System) -> System:
-    """The system without the states that no input reaches, by the pattern of its matrices."""
+    """Remove the states that no input reaches, according to the nonzero pattern of the matrices."""
     own, reached = np.any(system.B != 0.0, axis=1), np.zeros(0, bool)
     while not np.array_equal(own, reached):
         reached = own
@@ -224,15 +224,14 @@ def reachable(system: System) -> System:
 
 
 Terms = Mapping[str, float]
-"""A sum of named signals, each with its factor."""
+"""Weighted sum of signals: the factor of each signal by its name."""
 
 
 def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple[Channel, ...], outputs: Iterable[str]) -> System:
-    """Systems wired by name: every input in `links` is the stated sum of outputs and of the new system's `inputs`.
+    """Connect systems by signal names: every input in `links` is the weighted sum of outputs and of the new system's `inputs`.
 
-    An input that is not in `links` is fed by what has its own name: a new input, or an output; one that nothing feeds is refused. With
-    u = F y + G w: u = (I - F D)^-1 (F C x + G w). Raises `DesignError` for unknown names, mixed steps, and an algebraic loop (I - F D
-    singular).
+    An input that is not in `links` is connected to the new input, or the output, of the same name. Any other input is an error. With u = F
+    y + G w: u = (I - F D)^-1 (F C x + G w). Raises `DesignError` for unknown names, mixed steps, and an algebraic loop (I - F D singular).
 
     >>> unit = Channel("r", "m")
     >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), (Channel("e", "m"),), (Channel("y", "m"),))
@@ -259,7 +258,7 @@ def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple
 
 
 def block_matrices(parts: Sequence[System]) -> Iterator[Array]:
-    """A, B, C and D of systems side by side."""
+    """Return the block-diagonal matrices A, B, C and D of independent systems."""
     return (scipy.linalg.block_diag(*(getattr(part, name) for part in parts)) for name in "ABCD")
 
 

@@ -41,10 +41,8 @@ def _show(value: float, coordinate: str) -> str:
 def speed_findings(poses: Array, times: Array, mapping: Matrix, slew: Array, *, units: tuple[str, ...] = ()) -> list[Finding]:
     """Check sampled poses (n, f) against the amplifier speed `slew` (m,): R_a times the poses' differences.
 
-    `units` are the units of the actuators' inputs (default: m).
-
-    These are no errors: the simulation shows the saturation of the amplifier. Columns of `mapping` (R_a) are the coordinates of
-    the poses.
+    The findings are warnings: the simulation includes the saturation of the amplifier. Columns of `mapping` (R_a) are the coordinates of
+    the poses. `units` are the units of the actuators' inputs (default: m).
 
     >>> lever = Matrix(np.array([[2.0]]), ("B1",), ("x",), "1")
     >>> found = speed_findings(np.array([[0.0], [1e-6]]), np.array([0.0, 1e-3]), lever, np.array([1e-3]))

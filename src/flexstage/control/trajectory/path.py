@@ -29,12 +29,12 @@ class Trajectory(Protocol):
         ...
 
     def at(self, times: Array) -> Array:
-        """Poses (n, c) at `times` (n,) [s]."""
+        """Compute poses (n, c) [m, rad] at `times` (n,) [s]."""
         ...
 
 
 def require_positive(where: str, numbers: Mapping[str, float | None]) -> None:
-    """Refuse values that are not positive and finite."""
+    """Raise `DesignError` for values that are not positive and finite; None is accepted."""
     wrong = {name: value for name, value in numbers.items() if value is not None and not 0.0 < value < np.inf}
     require(Finding(f"{where}{name}", f"it is {value:g}", "Use a positive number") for name, value in wrong.items())
 

@@ -27,7 +27,7 @@ class Pieces:
         return float(self.knots[-1])
 
     def at(self, times: Array, order: int = 0) -> Array:
-        """Values (n, c), or their derivative of an `order`."""
+        """Compute values (n, c), or their time derivative of this `order`, at `times` (n,) [s]."""
         whole = scipy.interpolate.PPoly(self.coefficients, self.knots)
         return np.asarray(whole(np.clip(times, self.knots[0], self.knots[-1]), order))
 

@@ -60,7 +60,7 @@ class Raster(CheckedFields):
 
     @property
     def period(self) -> float:
-        """Period [s], except for moves of the slow coordinate: one line forth and one back."""
+        """Period [s] of the fast coordinate: one line forward and one line back."""
         return 2.0 * (self.length / self.speed + self._turn_time)
 
     @property
@@ -70,7 +70,7 @@ class Raster(CheckedFields):
         return float(starts[0]), float(starts[-1]) + self.length / self.speed
 
     def at(self, times: Array) -> Array:
-        """Poses (n, 2) at `times` (n,) [s], fast coordinate first."""
+        """Compute poses (n, 2) [m, rad] at `times` (n,) [s], fast coordinate first."""
         return self._pieces.at(np.asarray(times, dtype=float))
 
     @property

@@ -37,7 +37,7 @@ class Sine(CheckedFields):
         return np.inf
 
     def at(self, times: Array) -> Array:
-        """Poses (n, c) at `times` (n,) [s]."""
+        """Compute poses (n, c) [m, rad] at `times` (n,) [s]."""
         passed = np.asarray(times, dtype=float)[:, None]
         growth = join([(self.fade, smooth(np.zeros(1), np.ones(1), self.fade))]).at(passed[:, 0]) if self.fade else 1.0
         return np.array(list(self.amplitudes.values())) * np.sin(2.0 * np.pi * self.frequency * passed) * growth

@@ -45,7 +45,7 @@ class Spiral(CheckedFields):
         return self._progress.duration
 
     def at(self, times: Array) -> Array:
-        """Poses (n, 2) at `times` (n,) [s]."""
+        """Compute poses (n, 2) [m, rad] at `times` (n,) [s]."""
         angle = _angle(self._progress.at(np.asarray(times, dtype=float))[:, 0] / self._growth)
         return self._growth * angle[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 

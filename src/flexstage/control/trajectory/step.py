@@ -39,7 +39,7 @@ class Step(CheckedFields):
         return self.start + (0.0 if self.limits is None else self._course(self.limits).duration)
 
     def at(self, times: Array) -> Array:
-        """Poses (n, c) at `times` (n,) [s]."""
+        """Compute poses (n, c) [m, rad] at `times` (n,) [s]."""
         passed = np.asarray(times, dtype=float) - self.start
         share = 1.0 * (passed >= 0.0)[:, None] if self.limits is None else self._course(self.limits).at(passed) / self._length
         return share * np.array(list(self.to.values()), dtype=float)

@@ -48,7 +48,7 @@ class Table:
         return float(self.times[-1])
 
     def at(self, times: Array) -> Array:
-        """Poses (n, c) at `times` (n,) [s]."""
+        """Compute poses (n, c) [m, rad] at `times` (n,) [s]."""
         return np.stack([np.interp(times, self.times, column) for column in self.values.T], axis=-1)
 
 
@@ -67,7 +67,7 @@ def _findings(table: Table) -> list[Finding]:
 
 
 def from_file(path: str | os.PathLike[str]) -> Table:
-    r"""rRead a CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; uneven times are allowed.
+    r"""Read a CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; uneven times are allowed.
 
     Raises `DesignError` for an unreadable file, and for missing times or coordinates.
 

@@ -55,7 +55,7 @@ _Options: TypeAlias = tuple[tuple[tuple[Notch, ...], ...], ...]
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """Design attempt: a controller, its notches by loop, and its `gains`; `open_gains` of the plant `seen`."""
+    """Design attempt on the plant `seen`: a controller, its notches by loop, and its open loops `gains` (see `open_gains`)."""
 
     seen: View
     controller: Decentralised | LQG
@@ -64,26 +64,26 @@ class Attempt:
 
     @cached_property
     def system(self) -> System:
-        """Sampled controller."""
+        """Controller as a system, sampled like the plant."""
         return self.controller.system(self.seen.step)
 
     @cached_property
     def judgement(self) -> Judgement:
-        """Evaluation of its loop."""
+        """Evaluation of the closed loop."""
         return judge_loop(self.seen, self.system, self.gains)
 
     def reaches(self, frequency: float, spec: TuningSpec) -> bool:
-        """Whether it is stable, its peaks are within the limit, and every loop's crossover is within 1 % of the frequency."""
+        """Whether the loop is stable with peaks within the limit, and every crossover is within 1 % of `frequency` [Hz]."""
         passed = all(abs(each / frequency - 1.0) < 0.01 for each in own_bandwidths(self.seen, self.gains))
         return passed and keeps_peak(self.seen, lambda: self.system, self.gains, spec.sensitivity)
 
 
 @dataclass(frozen=True, eq=False)
 class BandwidthTrial:
-    """Controllers of a specification with the crossover of all loops at a `frequency` [Hz], on the plant `seen`.
+    """Design of controllers with the crossover of all loops at a `frequency` [Hz], on the plant `seen`.
 
-    First with the specified notches only, then with further ones on modes with a loop gain above 0.3, of the best width. A loop's best law
-    has the lowest peak of S; among peaks up to `calm` the highest static gain.
+    The first attempt has the specified notches only. Further attempts add notches of several widths on modes with a loop gain above 0.3.
+    The best law of a loop has the lowest peak of S. If several laws have peaks up to `calm`, the law with the highest static gain is best.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -102,7 +102,7 @@ class BandwidthTrial:
     frequency: float
 
     def best(self) -> Attempt | None:
-        """First attempt that meets the frequency and the specification, or the nearest; None without a law."""
+        """Return the first attempt that meets frequency and specification, else the attempt with the best score; None without a law."""
         tried: list[Attempt] = []
         for found in self._attempts(0.0):
             if found.reaches(self.frequency, self.spec):
@@ -111,7 +111,7 @@ class BandwidthTrial:
         return min(tried, key=lambda each: each.judgement.score, default=None)
 
     def reach(self, calm: float = 0.0) -> Attempt | None:
-        """First attempt that meets the frequency and the specification; faster than the nearest."""
+        """Return the first attempt that meets frequency and specification, else None; faster than `best`, which ranks the failures."""
         return next((found for found in self._attempts(calm) if found.reaches(self.frequency, self.spec)), None)
 
     def _attempts(self, calm: float) -> Iterator[Attempt]:
@@ -293,7 +293,7 @@ def _attempts_lqg(seen: View, spec: TuningSpec, frequency: float) -> Iterator[At
 
 
 def driven_gains(seen: View, frequency: float) -> Array:
-    """Compute gains (k,) from all strokes together to the loops' poses at a frequency [Hz].
+    """Compute the gain (k,) of each loop's pose at a frequency [Hz], with all strokes acting together.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -54,10 +54,11 @@ def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...]
     """Optimise a controller for the objective of a specification.
 
     Optimises law and notches of every loop, with their width and depth. A crossover beyond a mode is possible if margins hold for all mode
-    shifts. Starts are a grid around the modes, and the controller of highest bandwidth (`tune`): by itself with a crossover beyond the
-    modes, and if better than the grid's result. The result is at least as good for the objective (`merit`). It is evaluated by eigenvalues
-    and by the coupled peak of S of the sampled loop, with all modes off by the spread. `known` tunings of a plant with fewer modes are
-    tried first. Raises `DesignError` for an unstable open loop, for contradictory requirements, and for each unmet requirement.
+    shifts. The search starts from a grid around the modes. It also starts from the controller of highest bandwidth (`tune`) if the grid's
+    result is not better. If that controller has its crossover beyond the modes, the grid is omitted. The result is at least as good for the
+    objective (`merit`) as that controller. It is evaluated by eigenvalues and by the coupled peak of S of the sampled loop, for mode shifts
+    within the spread. `known` tunings of a plant with fewer modes are tried first. Raises `DesignError` for an unstable open loop, for
+    contradictory requirements, and for each unmet requirement.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

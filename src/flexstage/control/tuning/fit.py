@@ -14,10 +14,12 @@ from flexstage.control.tuning.judge import first_rise
 from flexstage.control.tuning.shape import Shape
 
 BAND, _BAND_OFF = 0.0172, 0.0185
-"""Settling band of steps, for the model and for shifted modes: below the reported 2 %, with reserve for gauge rounding."""
+"""Settling band of steps, for the model and for shifted modes. It is below the reported 2 %, as a reserve for gauge rounding."""
 STIFF, _SHARE, _STEPS = 30.0, 0.1, 1.0
-"""Weights: a bound violated by 3 % counts as much as all noise; a step outside its band by a tenth of the band as a bound violated by 1
-%."""
+"""Weights of the residuals: a bound violated by 3 % counts as much as all noise.
+
+A step outside its band by a tenth of the band counts as much as a bound violated by 1 %.
+"""
 _KEPT = 0.01
 """Relative violation that counts as met, the resolution of the frequency grid."""
 _BELOW = 0.985
@@ -39,7 +41,8 @@ _STIFFER, _SOFTER = 4.0, 3.0
 class Bounds:
     """Bounds of a loop: |S| below 1 up to `rejection` [Hz], steps within 2 % after `settling` [s], maximum `overshoot`.
 
-    `noise` is the maximum rms in regulation. For the second of `plants` with rejection, 0.95 of `rejection` is sufficient.
+    `noise` is the maximum rms in regulation. The rejection is required of the first `plants` (1 or 2); for the second plant, 0.95 of
+    `rejection` is sufficient.
     """
 
     rejection: float
@@ -51,10 +54,11 @@ class Bounds:
 
 @dataclass(frozen=True, eq=False)
 class OneLoop:
-    """Loop with the others closed: a `point` of a shape; C times its `plants` (v, f) is the open loop at `frequencies` (v, f) [Hz].
+    """Single loop with the others closed: the `point` of a `shape` defines its controller C.
 
-    `slow` (w, h) are plants at the evenly spaced `lines` (h,) [Hz] of steps, from 0 (excluded) to half the rate. `disturbed` and `heard`
-    (f,) are mean squares of the floor and the gauges, weighted by S and T of the first plant.
+    C times `plants` (v, f) is the open loop at `frequencies` (v, f) [Hz]. `slow` (w, h - 1) are the plants for step responses, at the
+    evenly spaced `lines` (h,) [Hz] from 0 to half the rate except the first. `disturbed` and `heard` (f,) are mean squares of the floor and
+    the gauges, weighted by S and T of the first plant.
     """
 
     shape: Shape
@@ -73,7 +77,7 @@ class OneLoop:
 
     @cached_property
     def following(self) -> Array:
-        """Complementary sensitivity T (w, h), 1 at zero frequency."""
+        """Complementary sensitivity T (w, h) at the lines of steps, 1 at zero frequency."""
         loops = self.slow * self.shape.value(self.point, self.lines[1:])
         return np.concatenate([np.ones((len(loops), 1)), loops / (1.0 + loops)], axis=-1)
 
@@ -105,9 +109,10 @@ class OneLoop:
     def misfits(
         self, bounds: Bounds, quiet: float, near: tuple[Array, Array], slow: tuple[Array, Callable[[], Array]]
     ) -> Iterator[tuple[Array, Array]]:
-        """Residuals of all bounds except peaks of S, with derivatives; `quiet` is the weight of noise.
+        """Compute the residuals of all bounds except peaks of S, with derivatives; `quiet` is the weight of noise.
 
-        For S (n, f) of plants with rejection and T (w, h); dS = -S T slopes, with their slopes (p, n, f), (p, w, h - 1).
+        `near` contains S (n, f) of the plants with rejection, and its slopes (p, n, f). `slow` contains T (w, h) and a function that
+        returns its slopes (p, w, h - 1). Slopes are d ln C by the p parameters: dS = -S T slopes.
         """
         own, slopes = near
         above = self._rejected(bounds) & (np.abs(own) > _BELOW)
@@ -116,7 +121,7 @@ class OneLoop:
         yield from self._settling(bounds, *slow)
 
     def excess(self, bounds: Bounds) -> float:
-        """Largest relative violation of a bound, except peaks of S."""
+        """Compute the largest relative violation of a bound, except peaks of S."""
         sizes, steps = np.abs(self.sensitivity[: bounds.plants]), _steps(self.following)
         below, late = self._rejected(bounds), self._late(bounds, steps.shape[1])
         return float(
@@ -176,9 +181,10 @@ Squares: TypeAlias = tuple[float, Array, Array]
 
 
 def descend(at: Callable[[Array], Squares | None], start: Array, within: tuple[Array, Array], tries: int, enough: float = 0.0) -> Array:
-    """Minimise by the Levenberg-Marquardt method between low and high, or until half the sum is `enough`.
+    """Minimise half a sum of squares by the Levenberg-Marquardt method, with parameters between the limits `within` (low, high).
 
-    Points where `at` returns none (unstable) are rejected. It ends early if the trend of the last steps does not lead to `enough`.
+    Points at which `at` returns None (unstable) are rejected. The search ends when half the sum is at most `enough`, or if the trend of the
+    last steps does not lead to `enough`.
 
     >>> bowl = lambda point: (0.5 * float(point @ point), point, np.eye(1))
     >>> found = descend(bowl, np.array([2.0]), (np.array([-5.0]), np.array([5.0])), 20)
@@ -222,7 +228,7 @@ def _is_promising(costs: list[float], tries: int, enough: float) -> bool:
 
 
 def sum_squares(terms: Iterable[tuple[Array, Array]], size: int) -> Squares:
-    """Sum of squares of residuals (r,) with derivatives (p, r)."""
+    """Return half the sum of squares of residuals (r,) with derivatives (p, r), its gradient and its curvature."""
     cost, gradient, curvature = 0.0, np.zeros(size), np.zeros((size, size))
     for values, changes in terms:
         cost += 0.5 * float(values @ values)
@@ -259,5 +265,5 @@ def _over(own: Array, slopes: Array) -> tuple[Array, Array]:
 
 
 def keeps(passed: float) -> bool:
-    """Whether the bounds are met, within the resolution of the frequency grid."""
+    """Whether the largest relative violation `passed` counts as met, within the resolution of the frequency grid."""
     return passed <= _KEPT

@@ -44,9 +44,9 @@ def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judge
 
 
 def keeps_peak(seen: View, control: Callable[[], System], gains: Array, peak: float) -> bool:
-    """Check that `judge_loop` finds a stable loop with a peak of S below `peak`; the cheapest rejections come first.
+    """Check that `judge_loop` finds a stable loop with a peak of S below `peak`; the fastest checks come first.
 
-    `control` constructs the controller, unnecessary for a loop with too high a peak.
+    `control` constructs the controller. It is not called for a loop with too high a peak.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -64,7 +64,7 @@ def keeps_peak(seen: View, control: Callable[[], System], gains: Array, peak: fl
 
 
 def own_bandwidths(seen: View, gains: Array) -> tuple[float, ...]:
-    """First frequency [Hz] where the gain of each loop of the nominal plant falls through 1."""
+    """Find the first frequency [Hz] at which the gain of each loop of the nominal plant falls through 1."""
     return tuple(crossing_frequency(seen.frequencies, np.abs(gains[0, :, loop, loop])) for loop in range(len(seen.loops.names)))
 
 
@@ -105,8 +105,8 @@ def closed_growth(plant: System, control: System) -> float:
 def highest_gain(matrices: Array) -> tuple[float, int]:
     """Find the largest singular value of all matrices (f, k, k), and its index.
 
-    It is at most the square root of the largest row sum of |M^H M|, and at least the norm of the longest column: most matrices need no
-    eigenvalues.
+    Bounds exclude most matrices without eigenvalues. The upper bound is the square root of the largest row sum of |M^H M|, the lower bound
+    the norm of the longest column.
 
     >>> highest_gain(np.array([[[1.0, 0.0], [0.0, 1.0]], [[0.0, 3.0], [0.0, 4.0]]]))
     (5.0, 1)

@@ -50,7 +50,7 @@ def _pid(place: Place, turning: float, angle: float, corner: float) -> PID:
 
 
 def resonant_laws(place: Place, step: float | None) -> list[IntegralResonant]:
-    """Compute laws of maximum damping, then other feed-throughs and corners; the tracking gain k solves |k/(j w) - Q| = 1/|g|."""
+    """Compute the law of maximum damping, then laws of other feed-throughs and corners; the tracking gain solves |k/(j w) - Q| = 1/|g|."""
     found: list[IntegralResonant] = []
     turning = warped(place.frequency, step)
     if place.resonance is None or not place.static > 0.0:

@@ -18,11 +18,11 @@ _BAND = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Performance of a controller at the variants (v) of a field: `peaks` (v,) of S over all loops, other values by loop (k,).
+    """Performance of a controller: `peaks` (v,) of S over all loops by variant of a field, other values by loop (k,).
 
-    `rejection` [Hz] is the sensitivity crossover, of the model and the worst over the mode spread (2, k). `noise` is the rms in regulation,
-    `floor` the floor's part [m]. `settling` [s] (2 %) and `overshoot` are the worst over the spread; `delay_margin` [s] belongs to each
-    loop.
+    `rejection` (2, k) [Hz] is the sensitivity crossover of the model, and the lowest for mode shifts within the spread. `noise` is the rms
+    in regulation, `floor` the floor's part [m]. `settling` [s] (2 %) and `overshoot` are the worst over the spread; `delay_margin` [s]
+    belongs to each loop.
     """
 
     peaks: Array

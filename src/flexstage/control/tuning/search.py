@@ -42,9 +42,9 @@ Both are finite so that the descent notices a stability limit early: at 8, L is 
 _TURNS = 0.25 * np.pi * np.arange(1, 8)
 """Phase grid of delays: a mode of gain 1.08 encircles -1 over 44 deg, one of less gain comes nearer to it than 1/8."""
 SETTLED = 6.0
-"""Settling time times the sensitivity crossover, of well balanced loops.
+"""Settling time times sensitivity crossover of well balanced loops.
 
-A first-order loop with crossover f settles within 2 % after ln(50)/(2 pi f) = 0.62/f. Notched modes that shift ring ten times as long.
+A first-order loop with crossover f settles within 2 % after ln(50)/(2 pi f) = 0.62/f. Shifted modes with notches ring ten times as long.
 Optimised loops of the shipped stages settle in 3/f to 6/f.
 """
 _NEAR, _MOST_NOTCHES = 4.0, 3
@@ -119,7 +119,7 @@ _CLOSE = np.linspace(-0.06, 0.06, 25)
 
 @dataclass(frozen=True)
 class SearchSettings:
-    """Search parameters: weight of noise `quiet`, maximum steps, and half sum of squares that is `enough`."""
+    """Search parameters: weight `quiet` of noise, maximum number of steps `tries`, and half sum of squares that is `enough`."""
 
     quiet: float
     tries: int
@@ -132,21 +132,21 @@ once."""
 
 
 class Work:
-    """Counts the responses that a search evaluates, of those `allowed`, and reports how far it is."""
+    """Counter of the responses evaluated by a search, of at most `allowed`; reports the progress."""
 
     def __init__(self, allowed: float = _ALLOWED) -> None:
         self.allowed, self.spent, self._begun = allowed, 0.0, time.process_time()
 
     def affordable(self, tries: int, size: int) -> int:
-        """Tries of a descent, each of so many responses, that are left."""
+        """Return how many tries of a descent remain, at most `tries`, if each evaluates `size` responses."""
         return min(tries, int(max(self.allowed - self.spent, 0.0) / size))
 
     def count(self, size: int) -> None:
-        """Count evaluated responses."""
+        """Add `size` evaluated responses."""
         self.spent += size
 
     def report(self) -> None:
-        """Report the share that is done, and how long all of it may take."""
+        """Report the completed share, and the maximum duration of the whole search."""
         share = min(self.spent / self.allowed, 1.0)
         if share:
             report(share, f"optimising the controller, at most {duration((time.process_time() - self._begun) / share)}")
@@ -156,7 +156,8 @@ class Work:
 class Variant:
     """Variant of the plant: modes shifted by `offset`, commands times `gain`, delayed by `later` [s]; and its `limit` of |S|.
 
-    Delays rotate by at most `turn` [rad]: a mode far above the crossover may be unstable at a smaller delay than an admissible one.
+    The delay rotates the phase by at most `turn` [rad]. Variants with smaller turns represent smaller delays, at which a mode far above the
+    crossover may be unstable.
     """
 
     offset: float
@@ -166,7 +167,7 @@ class Variant:
     turn: float = np.inf
 
     def factor(self, frequencies: Array) -> Array:
-        """Factor on the plant's response at frequencies [Hz]."""
+        """Compute the factor on the plant's response at frequencies (f,) [Hz]."""
         return self.gain * np.exp(-1j * np.minimum(2.0 * np.pi * frequencies * self.later, self.turn))
 
 
@@ -191,7 +192,7 @@ def variants(spec: TuningSpec) -> tuple[Variant, ...]:
 
 
 def farthest(spec: TuningSpec) -> float:
-    """Shift of all modes up to which a loop must be stable."""
+    """Return the largest relative shift of all modes for which a loop must be stable."""
     return max(_FAR, _STABLE * spec.spread) if spec.spread else 0.0
 
 
@@ -201,9 +202,9 @@ class Field:
 
     Each plant has its own frequencies, the model's raised by its offset, so that the modes are at the same indices.
 
-    `disturbed` (f, k, d) is the amplitude of each loop's pose by each floor motion, `heard` (f, k) by gauge noise, weighted for sums of
-    squares over frequency. `alike` maps each loop to the first equal one. `allowed` is the rms limit in regulation of each; default: no
-    limit. `fast` [Hz] is the known crossover, for step sampling and filters.
+    `disturbed` (f, k, d) is the amplitude of each loop's pose by each floor motion, `heard` (f, k) by gauge noise. Both are weighted for
+    sums of squares over frequency. `alike` maps each loop to the first equal one. `allowed` is the rms limit in regulation of each loop;
+    default: no limit. `fast` [Hz] is the known crossover, for step sampling and filters.
     """
 
     seen: View
@@ -233,12 +234,12 @@ class Field:
 
     @property
     def size(self) -> int:
-        """Responses of an evaluation, of all loops at all frequencies and lines; `_AS_MANY` more stand for calls."""
+        """Number of responses per evaluation, of all loops at all frequencies and lines, plus `_AS_MANY` for the CPU time of calls."""
         return (self.frequencies.size + len(self.slow) * len(self.lines)) * len(self.alike) + _AS_MANY
 
     @property
     def spread(self) -> list[int]:
-        """Variants with only mode shifts within the spread; the model first."""
+        """Indices of the variants with only mode shifts within the spread; the model first."""
         return _spread(self.spec, self.variants)
 
 
@@ -278,7 +279,7 @@ def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: fl
 
 
 def last_mode(seen: View) -> float:
-    """Find the highest mode [Hz] of the lowest ones, as many as loops.
+    """Return the frequency [Hz] of the n-th mode, with n the number of loops.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -331,7 +332,7 @@ def _heard(seen: View) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class SearchResult:
-    """Search result by loop: shape, point, and the frequency `reached` [Hz] for the objective, 0 without one.
+    """Search result by loop: shape, point, and the frequency `reached` [Hz] for the objective (0 without an objective).
 
     `noises` are the rms in regulation with the loops of other blocks open, if known.
     """
@@ -342,7 +343,7 @@ class SearchResult:
     noises: tuple[float, ...] = ()
 
     def responses(self, frequencies: Array) -> Array:
-        """Responses C (..., k) of the loops at frequencies (...)."""
+        """Compute the responses C (..., k) of the loops at frequencies (...) [Hz]."""
         every = [shape.value(point, frequencies) for shape, point in zip(self.shapes, self.points, strict=True)]
         return np.stack(every, axis=-1)
 
@@ -353,7 +354,7 @@ class SearchResult:
 
     @property
     def notches(self) -> tuple[tuple[Notch, ...], ...]:
-        """Notches by loop, without those of depth 1, which have no effect."""
+        """Notches by loop. Notches of depth 1 are omitted, because they have no effect."""
         every = (shape.notches(point) for shape, point in zip(self.shapes, self.points, strict=True))
         return tuple(tuple(each for each in notches if each.depth < 1.0) for notches in every)
 
@@ -390,13 +391,13 @@ def advance(within: Field, known: Decentralised) -> SearchResult:
 
 
 def resume(within: Field, known: Decentralised) -> SearchResult:
-    """All loops at once from a known controller, which has to reach what it reaches here."""
+    """Optimise all loops at once from a known controller. The result must reach the frequencies that the known controller reaches."""
     begun = known_loops(within, known)
     return tighten(within, replace(begun, reached=tuple(_frequencies_of_aim(within, begun))))
 
 
 def known_loops(within: Field, known: Decentralised) -> SearchResult:
-    """Convert the loops of a controller to points, the first of equal ones."""
+    """Convert the loops of a controller to a search result. Equal loops get the point of the first one."""
     count = len(within.alike)
     notches = known.notches or ((),) * count
     every = [_known_loop(within, cast("PI | PID", known.laws[first]), notches[first]) for first in within.alike]
@@ -463,7 +464,7 @@ def _with_derivative(shape: Shape, plain: Shape, point: Array) -> Array:
 
 
 def beside_one_another(grids: list[list[Array]]) -> list[tuple[Array, ...]]:
-    """Combine starts of loops searched together; a loop without notches has fewer, each combined with several of the others."""
+    """Combine the starts of loops that are searched together. Starts of loops with a smaller grid are used several times."""
     most = max(map(len, grids))
     return list(zip(*([grid[place * len(grid) // most] for place in range(most)] for grid in grids), strict=True))
 
@@ -572,9 +573,9 @@ def _climb(within: Field, starts: list[SearchResult], wanted: list[float]) -> Se
 
 
 def loud_enough(within: Field, starts: list[SearchResult], wanted: list[float]) -> tuple[Field, SearchResult | None]:
-    """First start that meets the frequency targets; if only noise prevents it, with a raised noise limit.
+    """Return the first start that meets the frequency targets, and its field; if only noise prevents it, with a raised noise limit.
 
-    A loop of high rejection with a tiny gain is quiet but never settles: its noise is no reference for a balance.
+    A loop of high rejection with a tiny gain has low noise but never settles: its noise is no reference for a balance.
     """
     best = _first_kept(within, starts, wanted)
     if best is not None or not within.allowed:
@@ -633,7 +634,7 @@ def _fit_together(within: Field, found: SearchResult, bounds: list[Bounds], effo
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """Joint problem of all loops: violated bounds and the coupled peak of S. Equal loops share their parameters."""
+    """Joint optimisation problem of all loops: violated bounds and the coupled peak of S. Equal loops share their parameters."""
 
     within: Field
     found: SearchResult
@@ -642,23 +643,23 @@ class Joint:
 
     @cached_property
     def parts(self) -> Mapping[int, slice]:
-        """Parameter slices of each different loop."""
+        """Parameter slices by loop, of the first of equal loops only."""
         different = [loop for loop, first in enumerate(self.within.alike) if first == loop]
         ends = np.cumsum([0, *(len(self.found.points[loop]) for loop in different)])
         return {loop: slice(int(ends[place]), int(ends[place + 1])) for place, loop in enumerate(different)}
 
     @cached_property
     def loops(self) -> Mapping[int, tuple[OneLoop, float]]:
-        """Different loops with their noise weights, relative to the start."""
+        """Loops, the first of equal ones only, with their noise weights relative to the start."""
         begun = one_loops(self.within, self.found)
         return {loop: (begun[loop], self.quiet / begun[loop].rms) for loop in self.parts}
 
     def moved(self, point: Array) -> SearchResult:
-        """Loops at a point."""
+        """Return the loops at a parameter point."""
         return replace(self.found, points=tuple(point[self.parts[first]] for first in self.within.alike))
 
     def at(self, point: Array) -> Squares | None:
-        """Sum of squares; `None` for an unstable plant."""
+        """Compute half the sum of squares with derivatives at a point; `None` for an unstable plant."""
         within, found = self.within, self.moved(point)
         within.work.count(within.size)
         values, slopes = self._responses(found, within.frequencies)
@@ -682,7 +683,7 @@ class Joint:
         return np.stack([each[first][0] for first in self.within.alike], axis=-1), {loop: slopes for loop, (_, slopes) in each.items()}
 
     def passed(self, found: SearchResult) -> float:
-        """Largest relative violation."""
+        """Compute the largest relative violation of a bound."""
         within = self.within
         whole = coupled_sensitivities(within.plants, found, within.frequencies)
         if not _is_stable(whole):
@@ -826,7 +827,7 @@ def coupled_sensitivities(plants: Array, found: SearchResult, frequencies: Array
 
 
 def closed_by(plants: Array, responses: Array) -> Array:
-    """Compute S (v, f, k, k) of plants closed by the loops' responses (v, f, k); for one or two loops by Cramer's rule, which is faster."""
+    """Compute S (v, f, k, k) of plants with the loops' responses (v, f, k); Cramer's rule for one or two loops, which is faster."""
     returned = np.eye(plants.shape[-1]) + plants * responses[..., None, :]
     if plants.shape[-1] > 2:
         return np.linalg.inv(returned)

@@ -38,24 +38,24 @@ class Shape:
         return 2 if self.corner is None else 3
 
     def law(self, point: Array) -> PI | PID:
-        """Law of a point."""
+        """Return the law of a point."""
         proportional, *ratios = np.exp(point[: self.gains]).tolist()
         gains = [proportional * ratio for ratio in ratios]
         return PI(proportional, gains[0]) if self.corner is None else PID(proportional, gains[0], gains[1], self.corner)
 
     def notches(self, point: Array) -> tuple[Notch, ...]:
-        """Notches of a point."""
+        """Return the notches of a point."""
         return tuple(Notch(*map(float, np.exp(each))) for each in self._notch_points(point))
 
     def point(self, law: PI | PID, notches: tuple[Notch, ...]) -> Array:
-        """Point of a law and its notches."""
+        """Return the point of a law and its notches."""
         others = [law.integral, *([law.derivative] if isinstance(law, PID) else [])]
         gains = [law.proportional, *(each / law.proportional for each in others)]
         numbers = [number for each in notches for number in (each.frequency, each.depth, each.damping)]
         return np.log(np.maximum([*gains, *numbers], 1e-12))
 
     def bounds(self, start: Array) -> tuple[Array, Array]:
-        """Bounds of points around a start: notches stay near their start, and below half the sampling rate."""
+        """Return bounds (low, high) of points around a start: notches stay near their start, and below half the sampling rate."""
         low, high = start - np.log(_GAIN), start + np.log(_GAIN)
         low[1] = np.log(self.slowest)
         for number in range(self.count):
@@ -66,7 +66,7 @@ class Shape:
         return low, high
 
     def response(self, point: Array, frequencies: Array) -> tuple[Array, Array]:
-        """Sampled response C (f,) from error to command, and d ln C (p, f) by the point's parameters; infinite at zero frequency.
+        """Compute the sampled response C (f,) from error to command, and d ln C (p, f) by the parameters; infinite at zero frequency.
 
         >>> shape = Shape(1, 1e-4)
         >>> start = shape.point(PI(0.5, 100.0), (Notch(106.0, 0.1, 0.5),))
@@ -84,7 +84,7 @@ class Shape:
         return value, np.array(slopes)
 
     def value(self, point: Array, frequencies: Array) -> Array:
-        """Response C (f,) without derivatives."""
+        """Compute the response C (f,) without derivatives."""
         turned, rate = self._turned(frequencies)
         value = self._law(point, 1j * rate * turned)[0]
         for frequency, depth, damping in np.exp(self._notch_points(point)):

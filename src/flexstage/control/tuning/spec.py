@@ -28,8 +28,8 @@ class TuningSpec(CheckedFields):
     loop; a `prefilter` shapes references.
 
     `sensitivity` is the maximum peak of S (poses as lengths): 2 = 6 dB implies gain margins of 2 and phase margins of 29 deg (Skogestad &
-    Postlethwaite, Multivariable Feedback Control, 2005, eq. 2.47). `spread` is the relative shift of all modes, both signs, for which
-    stability and peak hold; `gain` the same of all gains, with an objective only.
+    Postlethwaite, Multivariable Feedback Control, 2005, eq. 2.47). Stability and peak must hold for relative shifts of all modes within
+    +-`spread`. With an objective, they must also hold for relative errors of all gains within +-`gain`.
 
     `expected` are the disturbances assumed by an observer, `floor` spectra by input, `feedforward` (n, f) the feedforward strokes of the
     reference.
@@ -90,8 +90,8 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
 class Judgement:
     """Evaluation of a loop: `bandwidths` [Hz] by loop, `peak` of S and its `frequency` [Hz], spectral abscissa `growth` [1/s].
 
-    All are the worst over the mode spread, except the model's bandwidths. `offset` is the mode shift of the peak or, in an unstable loop,
-    of the growth.
+    The bandwidths belong to the nominal plant. All other values are the worst over the mode spread. `offset` is the mode shift with the
+    highest peak or, in an unstable loop, with the largest growth.
     """
 
     bandwidths: tuple[float, ...]

@@ -34,9 +34,9 @@ def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
 
     At the required bandwidth every loop's gain is 1 (default: the highest found, by trial from fast to slow and then by bisection). The
     family's law with the lowest peak of S is selected, first without additional notches, then with them. The whole loop must be stable by
-    its eigenvalues, with a peak of S below `spec`'s, also with all modes off by its spread. PI and PID then get the strongest integrators
-    within the same peak of S (Astrom, Panagopoulos & Hagglund, Automatica 34 (1998) 585). LQG is tuned by its weights, in platform
-    coordinates. Raises `DesignError` for an unreachable bandwidth: with the reason, the highest one, and a remedy.
+    its eigenvalues, with a peak of S below the specified one, also for all mode shifts within the spread. PI and PID then get the strongest
+    integrators within the same peak of S (Astrom, Panagopoulos & Hagglund, Automatica 34 (1998) 585). LQG is tuned by its weights, in
+    platform coordinates. Raises `DesignError` for an unreachable bandwidth: with the reason, the highest one, and a remedy.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -99,7 +99,7 @@ def trial_bandwidths(seen: View, steps: tuple[float, float]) -> list[float]:
 def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | None, Attempt | None]:
     """Find the highest bandwidth with the specified margins, within 0.3 %, and its controller; or None.
 
-    The highest of `trial_bandwidths`, refined by bisection up to the next: other controllers may reach more.
+    The highest of `trial_bandwidths` is refined by bisection up to the next one. Other controllers may reach more.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

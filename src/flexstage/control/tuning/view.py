@@ -36,8 +36,8 @@ _STANDS_OUT = 2.0
 class View:
     """Plants from commands to pose: nominal (first), and with all modes shifted by the `offsets`.
 
-    `responses` (v, f, k, n) from strokes to the loops' poses, sense P, at `frequencies` (f,) [Hz], for the offsets within the spread, which
-    are the first. `modes` [Hz] and `ratios` belong to the plant's modes.
+    `responses` (v, f, k, n) are from strokes to the loops' poses at `frequencies` (f,) [Hz]. They exist only for the first v offsets, which
+    are within the spread. `modes` [Hz] and `ratios` belong to the plant's modes.
     """
 
     plant: Plant
@@ -56,7 +56,7 @@ class View:
 
     @property
     def fastest(self) -> float:
-        """Highest bandwidth [Hz] to try, by hold and delay; for a continuous loop by the plant's last mode."""
+        """Highest bandwidth [Hz] to try, limited by hold and delay; in a continuous loop limited by the plant's last mode."""
         return _fastest(self.plant)
 
     @property
@@ -65,11 +65,11 @@ class View:
         return np.real(self.own[0, 0])
 
     def at(self, frequency: float) -> Array:
-        """Responses (k,) of the loops at one frequency [Hz]."""
+        """Compute the responses (k,) of the loops of the nominal plant at one frequency [Hz]."""
         return np.diag(self.loops.sense @ self.systems[0].transfer(np.array([frequency]))[0] @ self.loops.drive)
 
     def driven_at(self, offset: float, frequencies: Array) -> Array:
-        """Responses (f, k, n) from strokes to the loops' poses at frequencies [Hz], with modes shifted by one of the offsets."""
+        """Compute responses (f, k, n) from strokes to the loops' poses at frequencies (f,) [Hz], with modes shifted by `offset`."""
         return self.loops.sense @ self.systems[self.offsets.index(offset)].sweep(frequencies)
 
     @cached_property
@@ -94,9 +94,10 @@ class View:
 
 
 def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] | None = None) -> View:
-    """Compute the view of a plant by its loops; `offsets` are mode shifts, ascending in size; responses are up to the `spread`.
+    """Compute the view of a plant by its loops; `offsets` are relative mode shifts, in ascending magnitude.
 
-    A relative shift s of all modes is equivalent to a time scale: the plant with samples (1 + s) T apart, labelled T.
+    Frequency responses are computed only for offsets within the `spread`. A relative shift s of all modes is equivalent to a time scale:
+    the plant is sampled every (1 + s) T instead of T.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -115,7 +116,7 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
 
 
 def first_alike(own: Array, loop: int, tolerance: float) -> Iterator[int]:
-    """Find loops (v, f, k) equal to an earlier one, by its index: a symmetric stage has several."""
+    """Find the loops with the same responses as a `loop`: yields the indices of earlier equal loops in `own` (v, f, k), then its own."""
     largest = np.max(np.abs(own[..., loop]))
     yield from (other for other in range(loop) if np.max(np.abs(own[..., other] - own[..., loop])) < tolerance * largest)
     yield loop

@@ -52,11 +52,11 @@ class RegulatorSpace:
 
     @property
     def firsts(self) -> tuple[int, ...]:
-        """Indices of different loops."""
+        """Indices of the different loops, the first of equal ones only."""
         return tuple(sorted(set(self.within.alike)))
 
     def controller(self, point: Array) -> LQG:
-        """Controller of a point."""
+        """Design the controller of a point."""
         count, alike = len(self.firsts), self.within.alike
         places = [self.firsts.index(first) for first in alike]
         numbers = np.exp(point)
@@ -66,7 +66,7 @@ class RegulatorSpace:
         return with_observer(model, coordinates, weights, observer, self.feedforward)
 
     def outcome(self, point: Array) -> Outcome | None:
-        """Outcome of a point; `None` without a design, or if unstable at the largest mode shifts.
+        """Evaluate a point; `None` without a design, or if unstable at the largest mode shifts.
 
         The nominal loop is always stable, because regulator and observer are.
         """
@@ -84,8 +84,9 @@ def weigh(searched: RegulatorSpace, against: Outcome, begun: LQG, bandwidth: flo
     """Optimise the weights relative to a known outcome: maximise the smallest improvement of the objective's quantities.
 
     Downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308; its coefficients by dimension after Gao & Han, Computational
-    Optimization and Applications 51 (2012) 259). It starts from the best of a grid around the controller `begun`, with a crossover at
-    `bandwidth` [Hz], and of a grid around the first mode if that is higher. The search is deterministic.
+    Optimization and Applications 51 (2012) 259). It starts from the best point of a grid. The grid is around the first mode and includes
+    the controller `begun`. If the crossover at `bandwidth` [Hz] of `begun` is above the modes, the grid is around `begun`. The search is
+    deterministic.
     """
 
     def cost(point: Array) -> float:
@@ -154,9 +155,9 @@ def _improvements(spec: TuningSpec, found: Outcome, against: Outcome) -> Iterato
 
 
 def merit(spec: TuningSpec, found: Outcome) -> float:
-    """Compute the mean logarithm by loop of the objective's quantities.
+    """Compute the merit of an outcome: the logarithm of the objective's quantity, averaged over the loops.
 
-    For a balance the quantity is the lower of the rejection frequency and the frequency of settling in six periods.
+    For a balance the quantity is the lower of two frequencies: the rejection crossover, and six divided by the settling time.
     """
     settling = np.maximum(found.settling, 1e-300)
     merits = {
@@ -169,14 +170,14 @@ def merit(spec: TuningSpec, found: Outcome) -> float:
 
 
 def worth(within: Field, found: Outcome) -> float:
-    """Compute the merit less the excess over bounds; peaks count for mode shifts within the spread."""
+    """Compute the merit minus the weighted excess over bounds; peaks count for mode shifts within the spread only."""
     spec = within.spec
     limits = np.array([each.limit if each.limit <= spec.sensitivity else np.inf for each in within.variants])
     return merit(spec, found) - _STEEP * _excess(spec, found, limits)
 
 
 def excess_of(within: Field, found: Outcome) -> float:
-    """Sum the violations of all bounds; for peaks with a reserve between grid frequencies."""
+    """Sum the violations of all bounds; peaks include a reserve for maxima between grid frequencies."""
     return _excess(within.spec, found, _INSIDE * np.array([each.limit for each in within.variants]))
 
 

@@ -17,7 +17,7 @@ optimise = { maximise = "f1", starts = 2 }
 
 
 def leaf_study() -> tuple[Study, OptimisationProblem]:
-    """The parallelogram, with maximum leaf thickness for its stroke.
+    """Return a study of the parallelogram: maximum leaf thickness for its stroke.
 
     >>> leaf_study()[1].objectives[0].name
     'f1'

@@ -32,8 +32,8 @@ class Objective(RequestedMeasure):
 class OptimisationProblem:
     """Optimisation problem, as the `[optimise]` section of a study's file defines it.
 
-    One objective, or two for a front of `points` designs. `starts`: number of initial designs, first the nominal design,
-    then a Sobol sequence of this `seed`. `requirements`: the design's own `[requirements]` lines are limits too.
+    One objective, or two for a front of `points` designs. `starts`: number of initial designs, first the nominal design, then a Sobol
+    sequence with this `seed`. `requirements`: the design's own `[requirements]` are limits too.
     """
 
     objectives: tuple[Objective, ...]
@@ -44,7 +44,7 @@ class OptimisationProblem:
 
 
 def limits(study: Study, definition: OptimisationProblem) -> tuple[Requirement, ...]:
-    """All limits: the study's, then the design's requirements on measures without a limit of the study on that side.
+    """List all limits: the study's, then the design's requirements on measures that the study does not limit on that side.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> [each.key for each in limits(*leaf_study())]

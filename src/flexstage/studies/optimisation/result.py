@@ -64,8 +64,8 @@ class Accepted:
 class Start:
     """One start: its first and last design (shares of the ranges), the final objective [SI], the largest violation, and its history.
 
-    `history` are the objective and the largest violation (k, 2) of each accepted design. `agrees`: the final design is
-    feasible and as good as the best one within a ten-thousandth.
+    `history` (k, 2) are the objective and the largest violation of each accepted design. `agrees`: the final design is feasible, and its
+    objective is within a relative 1e-4 of the best one.
     """
 
     TABLE: ClassVar[Layout] = Layout("Starts", "value violation evaluated end agrees", head="start")
@@ -83,7 +83,7 @@ class Start:
 
     @property
     def end(self) -> str:
-        """Reason of the end."""
+        """Reason why the search ended."""
         return self.reason or ("converged" if self.converged else "no further step found")
 
     @property
@@ -94,9 +94,9 @@ class Start:
 
 @dataclass(frozen=True, eq=False)
 class Rounded:
-    """The best design that can be made: values (d,) on the variables' steps, objective and its `loss` in the objective's unit, >= 0.
+    """The best design that can be made: values (d,) on the variables' steps, and the `loss` in the objective's unit (0 or more).
 
-    `tried`: number of evaluated neighbours. `point` is `None` if none of them is feasible; `reason` then states so.
+    `tried`: number of evaluated neighbours. `point` is `None` if none of them is feasible; `reason` then explains it.
     """
 
     point: Point | None
@@ -137,9 +137,10 @@ class RoundedPoint(DesignPoint):
 
 @dataclass(frozen=True, eq=False)
 class Contradiction:
-    """Limits that contradict each other within the ranges, a minimal set; `violation` is the smallest possible largest one.
+    """Minimal set of limits that contradict each other within the ranges.
 
-    `point` is the design there: relative violations of the named limits are equal or less.
+    `violation` is the minimum, over all designs, of the largest relative violation. `point` is the design at this minimum; relative
+    violations of the named limits are equal or less.
     """
 
     limits: tuple[Requirement, ...]
@@ -151,7 +152,8 @@ class Contradiction:
 class Outcome(InNotebook):
     """Common results of all optimisations: `before` is the nominal design; `contradictions` state why no design is feasible.
 
-    `idle` names variables without effect on any requested measure. `evaluated`: number of designs. `interrupted`: the best so far.
+    `idle` names variables without effect on any requested measure. `evaluated`: number of designs. `interrupted`: the search was
+    interrupted, and the results are the best so far.
     """
 
     study: Annotated[Study, INNER]
@@ -181,7 +183,7 @@ class Outcome(InNotebook):
 
     @property
     def seed(self) -> Annotated[int, VIEW]:
-        """The seed of its starts."""
+        """The seed of the starts."""
         return self.definition.seed
 
     @property
@@ -190,7 +192,7 @@ class Outcome(InNotebook):
         return self.design(self.before)
 
     def design(self, point: Point) -> DesignPoint:
-        """A design with its names, in SI."""
+        """Return a design with the names of its variables and objectives, in SI."""
         first = len(self.definition.objectives)
         return DesignPoint(
             dict(zip((each.name for each in self.study.variables), values_of(self.study, point.shares).tolist(), strict=True)),
@@ -248,7 +250,7 @@ class Optimum(Outcome):
         return sum(start.agrees for start in self.starts)
 
     def value(self, point: Point) -> float:
-        """The objective [SI] at a design."""
+        """Return the objective [SI] of a design."""
         return float(point.values[0])
 
     @property

@@ -20,10 +20,11 @@ _EDGE = 1e-9
 
 
 def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
-    """The best feasible neighbour on the variables' steps; `None` if no variable has a step.
+    """Find the best feasible neighbour on the variables' steps; `None` if no variable has a step.
 
-    All neighbours (of more than 12 variables those nearest), ranked by the linear model of objective and limits, are evaluated in order
-    until one is feasible. Then single steps of every variable are tried while they improve it. Variables without a step are constant.
+    All neighbours are ranked by the linear model of objective and limits, for more than 12 variables only the nearest ones. They are
+    evaluated in order until one is feasible. Then single steps of every variable are tried while they improve the design. Variables without
+    a step are constant.
     """
     stepped = [number for number, each in enumerate(setting.study.variables) if each.step is not None]
     if not stepped:

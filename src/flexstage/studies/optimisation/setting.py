@@ -40,15 +40,15 @@ class Setting:
         return Problem((self.objective(0),), tuple(self.side(number) for number in range(len(self.kept))))
 
     def objective(self, number: int) -> Side:
-        """An objective as a side: c is its value over its scale, negative for a maximisation."""
+        """Return an objective as a side: c is its value over its scale, negative for a maximisation."""
         return Side(number, self.definition.objectives[number].direction.sense, 0.0, self.scale(number))
 
     def scale(self, number: int) -> float:
-        """Scale of an objective: its value in the nominal design."""
+        """Return the scale of an objective: its value in the nominal design."""
         return abs(float(self.before.values[number])) or 1.0
 
     def side(self, number: int) -> Side:
-        """A limit as a side, with a small margin."""
+        """Return a limit as a side, with a small margin."""
         limit = self.kept[number]
         index = len(self.definition.objectives) + number
         scale = abs(limit.limit) or abs(float(self.before.values[index])) or 1.0
@@ -56,7 +56,7 @@ class Setting:
         return Side(index, limit.sense, limit.limit + (spare if limit.sense is Sense.AT_LEAST else -spare), scale)
 
     def starts(self) -> Array:
-        """Shares (starts, n): the nominal design, then a scrambled Sobol sequence."""
+        """Return shares (starts, n) of the initial designs: the nominal design, then a scrambled Sobol sequence."""
         count, size = self.definition.starts - 1, len(self.study.variables)
         generator = scipy.stats.qmc.Sobol(size, scramble=True, rng=np.random.default_rng(self.definition.seed))
         drawn = generator.random(1 << max(count - 1, 0).bit_length())[:count]
@@ -110,7 +110,7 @@ def _stated_values(study: Study, variable: Variable) -> list[float]:
 
 
 def share_of(variable: Variable, value: float) -> float:
-    """The share of a variable's range at a value: the inverse of `Variable.at`.
+    """Return the share of a variable's range at a value: the inverse of `Variable.at`.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> share_of(Variable("t", (), LENGTH, 1.0, 4.0, logarithmic=True), 2.0)

@@ -22,7 +22,7 @@ _SAME = 1e-11
 
 
 def design_path(study: Study, folder: Path) -> Path | None:
-    """The path of a study's design file; `None` for a shipped case.
+    """Return the path of a study's design file; `None` for a shipped case.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> design_path(leaf_study()[0], Path()) is None
@@ -33,7 +33,7 @@ def design_path(study: Study, folder: Path) -> Path | None:
 
 
 def design_text(study: Study, folder: Path) -> str:
-    """The text of a study's design file, or that of its shipped case as a new file.
+    """Return the text of a study's design file, or the text of its shipped case as a new file.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> design_text(leaf_study()[0], Path()).splitlines()[0]
@@ -44,7 +44,7 @@ def design_text(study: Study, folder: Path) -> str:
 
 
 def write_optimum(text: str, study: Study, definition: OptimisationProblem, values: Array | Sequence[float], *, where: str = "text") -> str:
-    """The text of the design file with `values` (d,) of the study's variables, each tagged `derived optimise STUDY, OBJECTIVE`.
+    """Write `values` (d,) of the study's variables into a design file's text, each tagged `derived optimise STUDY, OBJECTIVE`.
 
     Raises `DesignError` if the file's layout does not allow it.
 

@@ -25,7 +25,10 @@ _SPECTRAL = (frequency, platform_frequency)
 
 @dataclass(frozen=True, eq=False)
 class Scalars:
-    """Pieces of a measure at one design: `values` (m,) in SI, `gradient` (m, n) per share of each variable's range."""
+    """Pieces of a measure at one design: `values` (m,) in SI, `gradient` (m, n) per share of each variable's range.
+
+    A minimum or maximum has several pieces.
+    """
 
     values: Array
     gradient: Array
@@ -44,7 +47,7 @@ class Scalars:
 
 @dataclass(frozen=True, eq=False)
 class NumberedFrequency:
-    """The frequency number `count` of a spectrum."""
+    """Frequency with the number `count` in a spectrum."""
 
     spectrum: Spectrum
     count: int
@@ -56,7 +59,7 @@ class NumberedFrequency:
 
     @property
     def slope(self) -> Array:
-        """The gradient (n,); of a repeated mode, that of the mean over its cluster."""
+        """The gradient (n,); for a repeated mode, the gradient of the mean frequency of its cluster."""
         own = self.spectrum.frequencies
         near = np.abs(own - own[self.count - 1]) <= 1e-6 * own[self.count - 1]
         return np.mean(np.diagonal(self.spectrum.slopes, axis1=1, axis2=2)[:, near], axis=1)
@@ -82,11 +85,11 @@ class Point:
 
 @dataclass(frozen=True, eq=False)
 class Values:
-    """Evaluates `measures` of a study's designs.
+    """Evaluator of the `measures` of a study's designs.
 
-    Derivatives are exact (complex step through the models' formulas; eigenvalues analytically), except of map_error and opening. Those
-    are computed from real corners and outlines, with central differences of a thousandth of the range in both directions, where
-    rounding and curvature have equal effects.
+    Derivatives are exact (complex step through the models' formulas; eigenvalues analytically), except those of `map_error` and `opening`.
+    These two are computed from real corners and outlines. Their derivatives are central differences of a thousandth of the range in both
+    directions, where rounding and curvature have equal effects.
     """
 
     study: Study
@@ -113,11 +116,11 @@ class Values:
         return tuple(Modes(count, platform) for platform, count in highest.items())
 
     def __call__(self, shares: Array) -> list[Point | str]:
-        """Points of designs at shares (s, n) of the ranges with derivatives; for a failed one, the reason."""
+        """Compute points of designs at shares (s, n) of the ranges, with derivatives; for a failed design, the reason."""
         return self._evaluate(np.asarray(shares, dtype=float), slopes=True)
 
     def evaluate(self, shares: Array) -> list[Point | str]:
-        """The same without derivatives."""
+        """Compute points of designs at shares (s, n) of the ranges, without derivatives; for a failed design, the reason."""
         return self._evaluate(np.asarray(shares, dtype=float), slopes=False)
 
     def _evaluate(self, shares: Array, *, slopes: bool) -> list[Point | str]:
@@ -174,7 +177,7 @@ class Values:
 
 
 def values_of(study: Study, shares: Array) -> Array:
-    """Values (d,) of the variables at shares; rounded to a step if within a millionth of the range.
+    """Convert shares of the ranges to values (d,) of the variables; rounded to a step if within a millionth of the range.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> values_of(leaf_study()[0], np.array([0.5000000001])).round(12).tolist()

@@ -38,7 +38,7 @@ class RequestedMeasure:
 
     @property
     def point(self) -> Annotated[str, VIEW]:
-        """The point it is taken at."""
+        """The point at which the measure is evaluated."""
         return self.measure.point
 
     @property
@@ -51,7 +51,7 @@ class RequestedMeasure:
 class Study:
     """The contents of a study's file: nominal `design`, `variables`, `responses` by name, `limits` on measures, the sampling `plan`.
 
-    `text` is the file's own, stored with the results.
+    `text` is the text of the file, stored with the results.
     """
 
     name: str
@@ -64,7 +64,7 @@ class Study:
 
     @property
     def names(self) -> tuple[tuple[str, str], ...]:
-        """Location in the file and name of all columns of the results: variables, responses, measures of limits.
+        """Columns of the results (variables, responses, measures of limits): for each its location in the file, and its name.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().names
@@ -84,7 +84,7 @@ class Study:
 
     @property
     def facts(self) -> dict[str, str]:
-        """Items that results depend on, as text: studies with equal facts have equal results.
+        """Inputs on which the results depend, as text: studies with equal facts have equal results.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> list(neck_study().facts)
@@ -99,7 +99,7 @@ class Study:
         }
 
     def sample(self, start: int, stop: int) -> Array:
-        """Values (n, d) of the variables in SI for designs from `start` to before `stop` of the plan.
+        """Compute values (n, d) of the variables in SI for the designs from `start` to before `stop` of the plan.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().sample(1, 3).shape
@@ -109,7 +109,7 @@ class Study:
         return np.stack([variable.at(at[:, number]) for number, variable in enumerate(self.variables)], axis=-1)
 
     def mechanism_for(self, values: Array) -> Mechanism:
-        """The design with `values` (..., d) of the variables.
+        """Build the design with `values` (..., d) of the variables.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().mechanism_for(np.array([0.0015])).parts["neck"].thickness
@@ -118,7 +118,9 @@ class Study:
         return self.mechanism_at(tuple(values[..., number] for number in range(len(self.variables))))
 
     def mechanism_at(self, columns: tuple[Number, ...]) -> Mechanism:
-        """The same for values (...) by variable, real or complex: only numbers that depend on a complex one become complex.
+        """Build the design with values (...) of each variable in `columns`, real or complex.
+
+        Only numbers of the design that depend on a complex value become complex.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().mechanism_at((0.0015,)).parts["neck"].thickness
@@ -128,7 +130,7 @@ class Study:
 
     @property
     def numbers(self) -> Numbers | None:
-        """The numbers of the description by which designs differ, if variables share them and they are faster than the variables.
+        """Numbers by which designs differ, as linear functions of the variables; None if designs are built from the variables directly.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().numbers  # what `drawn_from` makes of the variables will do
@@ -136,7 +138,7 @@ class Study:
         return None
 
     def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
-        """Measures of a design or a batch, column by column (...) or those of `names`; for a missing one, the reason as text.
+        """Compute the measures `names` (default: all columns) of a design or a batch, (...) each; for a missing one, the reason as text.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> round(float(neck_study().evaluate(neck_study().design)[0]))
@@ -146,7 +148,9 @@ class Study:
         return measure_all(mechanism, tuple(columns[name] for name in (columns if names is None else names)))
 
     def feasible(self, responses: Array, limits: Sequence[Requirement] | None = None) -> Array:
-        """Designs (n,) that keep all limits, of the study or `limits`, from all responses (n, r); those without values keep none.
+        """Find the designs (n,) that meet all limits, from all responses (n, r). A design without values meets no limit.
+
+        `limits` replaces the limits of the study.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().feasible(np.array([[100.0], [np.nan]])).tolist()
@@ -167,7 +171,7 @@ def _offer(measure: Measure) -> str:
 
 
 def name_findings(study: Study) -> Iterator[Finding]:
-    """Duplicate names of columns of the results, and invalid names.
+    """Check the column names of the results for duplicate and invalid names.
 
     >>> from dataclasses import replace
     >>> from flexstage.studies.sweeps.example import neck_study

@@ -33,12 +33,12 @@ class Effects(InNotebook):
     """Effects of d variables on r responses over the designs with values.
 
     `used` designs of `computed`; `mean`, `deviation`, `low`, `high` (r,) in SI. `places` (d, b) and `means` (d, b, r): the mean response
-    for a variable in each of b bins of equal counts (for grids, at each level). This main effect excludes the simultaneous effects
-    of the other variables. `first` (d, r): share of the variance explained by a variable alone; `total` (d, r): with all its
-    interactions. `total` is None unless the plan is Saltelli's; `first` is then Sobol's, else the correlation ratio of the bins, corrected
-    for their number. `pairs` (d, d, r): share of two variables together beyond each alone, `strongest` the strongest interactions.
-    `errors` (2, r): the largest standard error of a Sobol index, and of one of second order; NaN for other plans. NaN for a constant
-    response.
+    for a variable in each of b bins of equal counts (for grids, at each level). This main effect excludes the simultaneous effects of the
+    other variables. `first` (d, r): share of the variance explained by a variable alone; `total` (d, r): with all its interactions. `total`
+    is None unless the plan is Saltelli's. `first` is Sobol's index for this plan, else the correlation ratio of the bins, corrected for
+    their number. `pairs` (d, d, r): share of two variables together beyond each alone, `strongest` the strongest interactions. `errors` (2,
+    r): the largest standard error of the first-order and total indices, and of the second-order indices; NaN for other plans. All shares
+    are NaN for a constant response.
     """
 
     variables: tuple[str, ...]

@@ -12,7 +12,7 @@ from flexstage.studies.sweeps.variable import Variable
 
 
 def neck_study(designs: int = 4) -> Study:
-    """The shipped stage with necks from 1.4 to 1.7 mm, and the frequency of its lowest mode.
+    """Return a study of the shipped stage: necks from 1.4 to 1.7 mm, and the frequency of its lowest mode.
 
     >>> neck_study().plan.designs
     4

@@ -71,7 +71,7 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
 class Opening:
     """Common part of all studies' files: the file as written, its design and responses, with the `findings` so far.
 
-    `variant` is the case of the design; `None`: a design file.
+    `variant` is the case of the design; `None` for a design file.
     """
 
     file: StudyFile

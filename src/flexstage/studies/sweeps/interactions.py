@@ -21,8 +21,9 @@ _ROUNDING = 1e-9
 class Interaction:
     """Means of a response over one variable, for low, middle and high values of another.
 
-    `over`, `by` and `response` are their numbers, `share` that of the response's variance explained only by both together. `places` (b,)
-    and `levels` (3,) are mean values of the variables in SI, `means` (3, b) of the response; NaN without a design.
+    `over`, `by` and `response` are the numbers of both variables and the response. `share` is the share of the response's variance that
+    only both variables together explain. `places` (b,) and `levels` (3,) are mean values of the variables in SI. `means` (3, b) are the
+    response's means; NaN without a design.
     """
 
     over: int
@@ -35,12 +36,12 @@ class Interaction:
 
 
 def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
-    """Shares (d, d, r) of the variance of responses (n, r) that two of the variables (n, d) explain beyond each alone; NaN on the diagonal.
+    """Compute shares (d, d, r) of the variance of responses (n, r) that two variables `at` (n, d) explain beyond each alone.
 
-    Analysis of variance: variables are divided into bins (levels of a `grid`). The effects of all single bins are fitted and subtracted;
-    the cells of two variables then explain a part of the residual, less its expectation. SS_ij - (b_i - 1)(b_j - 1) MSE over the
-    total sum of squares. For a complete grid it is exact, else effects within bins are missing: true shares are larger. NaN for
-    too few designs, or a constant response.
+    Analysis of variance: variables are divided into bins (levels of a `grid`). The effects of all single bins are fitted and subtracted.
+    The cells of two variables then explain a part SS_ij of the residual. The share is (SS_ij - (b_i - 1)(b_j - 1) MSE) over the total sum
+    of squares; the subtracted term is the expectation without interaction. For a complete grid the share is exact. Otherwise effects within
+    bins are missing, and true shares are larger. NaN on the diagonal, for too few designs, and for a constant response.
 
     >>> from itertools import product
     >>> at = np.array(list(product([-1.0, 0.0, 1.0], repeat=2)))
@@ -68,7 +69,7 @@ def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
 
 
 def variance(values: Array) -> Array:
-    """Variance (r,) of responses (n, r); NaN for relative variations below a billionth: that is rounding.
+    """Compute the variance (r,) of responses (n, r); NaN for relative variations below 1e-9, which are rounding.
 
     >>> variance(np.array([[1.0, 2.0], [3.0, 2.0]])).tolist()
     [1.0, nan]
@@ -79,7 +80,7 @@ def variance(values: Array) -> Array:
 
 
 def rank_bins(column: Array, count: int) -> Array:
-    """The bin (n,) of each value, of `count` bins with equal counts.
+    """Assign each value (n,) to one of `count` bins with equal counts.
 
     >>> rank_bins(np.array([0.3, 0.1, 0.2, 0.9]), 2).tolist()
     [1, 0, 0, 1]
@@ -89,9 +90,9 @@ def rank_bins(column: Array, count: int) -> Array:
 
 
 def single_effects(bins: Sequence[Array], values: Array) -> list[Array]:
-    """Effects (b, r) of each variable's bins (n,) on responses (n, r), about their mean: common least squares, from sums only.
+    """Fit the effects (b, r) of each variable's bins (n,) on responses (n, r), relative to their mean.
 
-    Effects of variables are thus separated even for few designs. Empty bins have effect 0.
+    One least-squares problem for all variables separates their effects, even for few designs. Empty bins have effect 0.
 
     >>> bins = [np.array([0, 0, 0, 1]), np.array([0, 0, 1, 1])]
     >>> [each[1] - each[0] for each in single_effects(bins, np.array([[1.0], [1.0], [3.0], [3.0]]))][0].round(9).tolist()
@@ -120,10 +121,10 @@ def _explained_sum(first: Array, second: Array, residual: Array) -> Array:
 
 
 def second_order(blocks: Array, dimensions: int) -> tuple[Array, Array]:
-    """Second-order Sobol indices (d, d, r) and their largest standard error (r,) from the blocks (2 d + 2, n, r) of Saltelli's plan.
+    """Compute second-order Sobol indices (d, d, r) and their largest standard error (r,) from blocks (2 d + 2, n, r) of Saltelli's plan.
 
-    S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j. Estimated by products of designs that share x_i and x_j only: A with column j of B,
-    and B with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280); the mean is subtracted first, both orders are
+    S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j. Estimated by products of designs that share x_i and x_j only: A with column j of B, and B
+    with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280). The mean is subtracted first, and both orders are
     averaged. Errors assume independent rows; a Sobol sequence has smaller ones.
 
     >>> second_order(np.zeros((6, 4, 1)), 2)[0][0, 1].tolist()  # constant response
@@ -145,7 +146,7 @@ def second_order(blocks: Array, dimensions: int) -> tuple[Array, Array]:
 
 
 def standard_error(rows: Array) -> Array:
-    """Standard error (..., r) of the mean over independent rows (..., n, r).
+    """Compute the standard error (..., r) of the mean over independent rows (..., n, r).
 
     >>> standard_error(np.array([[1.0], [3.0]])).tolist()
     [1.0]
@@ -155,7 +156,9 @@ def standard_error(rows: Array) -> Array:
 
 
 def strongest(at: Array, values: Array, shares: Array, *, grid: bool) -> tuple[Interaction, ...]:
-    """The strongest interactions, above one hundredth of a response's variance, four at most: means of responses (n, r) over at (n, d).
+    """Select the strongest interactions, above 1 % of a response's variance, four at most.
+
+    `at` (n, d) are the variables, `values` (n, r) the responses, `shares` (d, d, r) the results of `paired_shares`.
 
     >>> from itertools import product
     >>> at = np.array(list(product([-1.0, 0.0, 1.0], repeat=2)))

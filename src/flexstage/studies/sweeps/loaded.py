@@ -33,7 +33,9 @@ def needs_load_check(study: Study) -> bool:
 
 
 def unstable_designs(study: Study, values: Array) -> dict[int, str]:
-    """Reasons why designs with `values` (n, d) of the variables are unstable, by row; without an elastic model another check reports.
+    """Find the designs with `values` (n, d) of the variables that are unstable under permanent load: the reasons by row.
+
+    Designs without an elastic model are omitted.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> unstable_designs(neck_study(), np.array([[0.00154]]))
@@ -47,7 +49,7 @@ def unstable_designs(study: Study, values: Array) -> dict[int, str]:
 
 
 def loaded_findings(study: Study) -> tuple[Finding, ...]:
-    """The smallest load factor at the range ends, if weight, payloads and forces are significant there.
+    """Report the smallest load factor at the range ends, if weight, payloads and forces are significant there.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> loaded_findings(neck_study())
@@ -63,7 +65,7 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
 
 
 def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
-    """Warnings about the design with `values` (d,) under its permanent load. Raises `DesignError` if it is unstable.
+    """Return the warnings about the design with `values` (d,) under its permanent load. Raises `DesignError` if it is unstable.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> require_stable(neck_study(), np.array([0.00154]))

@@ -1,4 +1,4 @@
-"""Numbers of the description by which a study's designs differ, if variables share them."""
+"""Numbers by which a study's designs differ, as linear functions of the variables."""
 
 from __future__ import annotations
 
@@ -11,14 +11,17 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """P numbers at `addresses`: `nominal` (P,) plus the variables (d,) by `matrix` (d, P); shared parts before overrides of them."""
+    """P numbers of the design at `addresses`: `nominal` (P,) plus the variables (d,) times `matrix` (d, P).
+
+    Numbers of shared parts precede the numbers of single instances that override them.
+    """
 
     addresses: tuple[str, ...]
     nominal: Array
     matrix: Array
 
     def at(self, values: Array) -> Array:
-        """The numbers (n, P) of designs with `values` (n, d) of the variables.
+        """Compute the numbers (n, P) of designs with `values` (n, d) of the variables.
 
         >>> Numbers(("a", "b"), np.array([1.0, 0.0]), np.array([[1.0, 3.0]])).at(np.array([[2.0]])).tolist()
         [[3.0, 6.0]]
@@ -26,7 +29,7 @@ class Numbers:
         return self.nominal + values @ self.matrix
 
     def ranges(self, low: Array, high: Array) -> tuple[Array, Array]:
-        """Smallest and largest numbers (P,) for independent variables from `low` to `high` (d,).
+        """Compute the smallest and largest numbers (P,) for independent variables from `low` to `high` (d,).
 
         >>> low, high = Numbers(("a",), np.array([5.0]), np.array([[-2.0]])).ranges(np.array([-1.0]), np.array([2.0]))
         >>> low.tolist(), high.tolist()

@@ -26,9 +26,9 @@ class Sampling(Enum):
 class Plan:
     """A sampling of `count` designs with its `seed`; a grid has `levels` instead, one number for each variable.
 
-    Saltelli: two Sobol samples A and B of `count` designs each, and for each of d variables A with that variable's column from B. These are
-    count (d + 2) designs in all, for Sobol indices (Saltelli et al., Computer Physics Communications 181 (2010) 259). With `pairs`
-    also B with each column from A: count (2 d + 2) designs, for second-order indices.
+    Saltelli: two Sobol samples A and B of `count` designs each, and for each of d variables A with this variable's column from B. The plan
+    has count (d + 2) designs, for Sobol indices (Saltelli et al., Computer Physics Communications 181 (2010) 259). With `pairs` it also has
+    B with each column from A: count (2 d + 2) designs, for second-order indices.
     """
 
     sampling: Sampling
@@ -60,7 +60,7 @@ class Plan:
 
 
 def shares(plan: Plan, start: int, stop: int) -> Array:
-    """Shares (stop - start, d) in [0, 1] of the ranges for designs from `start` to before `stop`.
+    """Compute shares (stop - start, d) in [0, 1] of the ranges for designs from `start` to before `stop`.
 
     >>> shares(Plan(Sampling.GRID, 2, levels=(3, 2)), 0, 6).tolist()
     [[0.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 1.0], [1.0, 0.0], [1.0, 1.0]]

@@ -42,8 +42,8 @@ class PairShare:
 class ResponseEffects(RequestedMeasure):
     """A response over the designs with values [SI], and the effects of variables.
 
-    By variable the first-order and total shares of its variance; the latter are absent unless the plan is Saltelli's. The largest
-    standard errors of an index and of one of second order come from Saltelli's plan, with pairs.
+    For each variable the first-order and total share of the response's variance. Total shares, and the largest standard errors of indices,
+    are absent unless the plan is Saltelli's. The standard error of second-order indices requires `pairs`.
     """
 
     TABLE: ClassVar[Layout] = Layout("Responses", "name address min_value mean spread max_value within_limits")

@@ -16,7 +16,7 @@ from flexstage.studies.form import StudyFile, VariedTable
 
 
 def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
-    """The design of a study's file, and its case: `None` for a design file, which is searched in `folder`.
+    """Return the design of a study's file, and its case; the case is `None` for a design file, which is searched in `folder`.
 
     Raises `DesignError` without a design.
 
@@ -69,7 +69,7 @@ def _leaves(tree: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any
 
 
 def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> tuple[tuple[str, ...], Quantity]:
-    """The parameters in a variable's table at `where`, by full name, and their quantity. Raises `DesignError` with all errors.
+    """Read the parameters in a variable's table at `where`: full names, and quantity. Raises `DesignError` with all errors.
 
     >>> names, quantity = read_parameters(VariedTable("1 mm", "2 mm", parameter=("neck_radius",)), "variables.r", Variant("hexapod"))
     >>> names, quantity.name
@@ -96,7 +96,7 @@ def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> 
 
 
 def one_quantity(where: str, found: list[Quantity]) -> Quantity:
-    """The common quantity; raises `DesignError` for several.
+    """Return the common quantity of several numbers; raises `DesignError` if the quantities differ.
 
     >>> from flexstage.base.units.quantity import ANGLE, LENGTH
     >>> one_quantity("variables.a.address", [LENGTH, LENGTH]).name

@@ -29,7 +29,7 @@ class Variable:
 
     `relative`: low and high are factors on the design's value at each address. `logarithmic`: equal steps are equal ratios. `levels`:
     number of values of a grid in the range, ends included. `step` [SI]: manufacturing increment, values are its multiples. With a
-    `variant`, its addresses are parameters of that case, from which the design is rebuilt.
+    `variant`, the addresses are parameters of that case, from which the design is rebuilt.
     """
 
     name: str
@@ -45,12 +45,12 @@ class Variable:
 
     @property
     def numbers(self) -> Annotated[tuple[str, ...], VIEW, Called("addresses")]:
-        """The numbers of the design that it sets."""
+        """The addresses of the design that the variable sets."""
         return self.addresses if self.variant is None else ()
 
     @property
     def parameters(self) -> Annotated[tuple[str, ...], VIEW]:
-        """The parameters of the case that it sets."""
+        """The parameters of the case that the variable sets."""
         return () if self.variant is None else self.addresses
 
     @property
@@ -59,7 +59,7 @@ class Variable:
         return self.quantity.si
 
     def at(self, shares: Array) -> Array:
-        """Values (n,) at shares (n,) of the range: 0 is low, 1 is high.
+        """Compute values (n,) at shares (n,) of the range: 0 is low, 1 is high.
 
         >>> import numpy as np
         >>> from flexstage.base.units.quantity import LENGTH
@@ -71,7 +71,7 @@ class Variable:
         return self.low + (self.high - self.low) * shares
 
     def text(self, value: float) -> str:
-        """A value as in a study's file: with its unit, or in percent of the design's value.
+        """Format a value as in a study's file: with its unit, or in percent of the design's value.
 
         >>> from flexstage.base.units.quantity import RATIO
         >>> Variable("t", ("parts.neck.thickness",), RATIO, 0.9, 1.1, relative=True).text(1.1)
@@ -80,7 +80,7 @@ class Variable:
         return f"{100.0 * (value - 1.0):+.4g} %" if self.relative else show(value, self.quantity, digits=6)
 
     def nominal(self, mechanism: Mechanism) -> float:
-        """The value in the unchanged design: 1 for a relative variable, else that of the first address.
+        """Return the value in the unchanged design: 1 for a relative variable, else the value at the first address.
 
         >>> from flexstage.base.units.quantity import LENGTH
         >>> from flexstage.cases.double_triangle import double_triangle
@@ -94,10 +94,10 @@ class Variable:
 
 
 def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -> Mechanism:
-    """The design with `values` (..., d) of the variables, in SI; with leading axes it is a batch.
+    """Build the design with `values` (..., d) of the variables, in SI; leading axes give a batch.
 
-    Parameters of a case come first, because the design is built from them. Then shared parts are written, then overrides of them, for
-    any order of the variables.
+    Parameters of a case come first, because the design is built from them. Then shared parts are written, then overrides of them, for any
+    order of the variables.
 
     >>> import numpy as np
     >>> from flexstage.base.units.quantity import LENGTH
@@ -111,7 +111,7 @@ def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) ->
 
 
 def apply_columns(mechanism: Mechanism, variables: tuple[Variable, ...], columns: tuple[Number, ...]) -> Mechanism:
-    """The same for values (...) by variable: only complex values make numbers of the design complex.
+    """Build the design with values (...) of each variable in `columns`; only complex values make numbers of the design complex.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -137,7 +137,7 @@ def _draw(mechanism: Mechanism, moves: list[tuple[str, Variable, Number]]) -> Me
 
 
 def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> Iterator[Finding]:
-    """Empty or inverted ranges, numbers set by two variables, parameters without effect.
+    """Check variables for empty or inverted ranges, numbers set by two variables, and parameters without effect.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle

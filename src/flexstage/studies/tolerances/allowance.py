@@ -23,9 +23,10 @@ _NEGLIGIBLE = 1e-9
 
 @dataclass(frozen=True)
 class AllowedEntry:
-    """Factors on one entry's deviations: `alone`, the others unchanged, with the deciding requirement; with `equal_shares` of the margin.
+    """Allowable factors on the deviations of one entry; infinite without an effect.
 
-    Infinite without an effect.
+    `alone`: the other entries are unchanged; `decided_by` is the requirement that limits it. `equal_shares`: all entries change, and each
+    uses the same share of the margin.
     """
 
     name: str
@@ -38,11 +39,11 @@ class AllowedEntry:
 class Allowance:
     """Factors on the specified deviations for which each requirement has at least the yield `wanted`, to first order.
 
-    `names` belong to the m entries. `reach` (l,): change of a requirement's value towards its limit at that yield, `share` (m, l): each
-    entry's share of its square. `together`: factor on all deviations (above one: a margin; 0: the nominal design fails).
-    `alone` (m,): factor on one entry, the others unchanged; `equal` (m,): on all at once, each entry with the same share. Infinite without
-    an effect. `binding` and `binds` (m,) name the deciding requirements. `then`: yield of the sample with its changes scaled
-    by `together`.
+    `names` are the m entries, `lines` the l requirements. `reach` (l,) is the change of a requirement's value towards its limit at this
+    yield, and `share` (m, l) the share of each entry in the square of `reach`. `together` is the factor on all deviations (above 1: a
+    margin; 0: the nominal design fails), limited by the requirement `binding`. `alone` (m,) is the factor on one entry with the others
+    unchanged, limited by `binds` (m,). `equal` (m,) are factors on all entries at once, each with the same share. Factors without an effect
+    are infinite. `then` is the yield of the sample with its changes scaled by `together`.
     """
 
     wanted: Annotated[float, Called("yield")]
@@ -72,10 +73,10 @@ class Allowance:
 
 
 def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary) -> Allowance:
-    """Allowable deviations for the specification; raises nothing, unlimited without a specification.
+    """Compute the allowable deviations for the specification; unlimited without a specification. Raises nothing.
 
-    Responses are linearised in the deviations if derivatives and sample agree; else the sample's quantile is used, with shares from the
-    samples of single entries. In both cases changes are proportional to the deviations: accurate for small ones.
+    Responses are linearised in the deviations if derivatives and sample agree. Otherwise the sample's quantile is used, with shares from
+    the samples of single entries. In both cases changes are assumed proportional to the deviations, which is accurate for small deviations.
     """
     names = tuple(study.columns)
     columns = [names.index(line.column) for line in found.lines]

@@ -16,7 +16,7 @@ from flexstage.studies.tolerances.scatter import Deviation, Target
 
 
 def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tuple[Deviation, ...]) -> Iterator[Finding]:
-    """Numbers with possible values out of bounds: within five standard deviations without truncation, else within the largest deviation.
+    """Find numbers that scatter may move out of their bounds: within five standard deviations, or within the largest deviation if bounded.
 
     One error for each entry of `[scatter]`, about the number with the largest excess.
 

@@ -1,4 +1,4 @@
-"""Crosstalk of a real stage, commanded and measured with the mapping of the nominal one."""
+"""Crosstalk of a stage with scatter, commanded and measured with the mapping of the nominal stage."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _SINGULAR = 1e9
 class Command:
     """Command of the nominal stage: nominal numbers known to a controller.
 
-    `gains` (n, f): strokes for a unit of each of the `coordinates` of the platform at `point`, with corrected lost motion, from R_a.
-    `strokes` (n,): full strokes of the stacks, proportional to a voltage; `reference` (3,): position of the point. `sensing` (6, g):
-    R_s^-1, pose from gauges there, absent if the gauges do not determine it.
+    `gains` (n, f): strokes per unit of each of the `coordinates` of the platform at `point`, R_a with corrected lost motion. `strokes`
+    (n,): full strokes of the stacks, proportional to a voltage; `reference` (3,): position of the point. `sensing` (6, g): R_s^-1, from
+    gauges to the pose at the point, absent if the gauges do not determine the pose.
     """
 
     point: str
@@ -48,7 +48,7 @@ class PoseMeasure(Measure):
 
 
 def command(bench: StageResults, point: str) -> Command:
-    """The command of a nominal design for motions of a point of the platform.
+    """Compute the command of a nominal design for motions of a point of the platform.
 
     Raises `DesignError` for stages whose strokes do not determine the platform, and for points of other bodies.
 
@@ -97,7 +97,7 @@ def _strokes(bench: StageResults) -> list[Array]:
 
 
 def pose_measures(asked: Command) -> Mapping[str, Measure]:
-    """Measures of `poses` by name: `open.x.rz` is the motion along x per command about z.
+    """Name the measures computed by `poses`: `open.x.rz` is the motion along x per command about z.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.analysis.assessment.judge import bench_of
@@ -120,12 +120,12 @@ def _quantity(row: str, column: str) -> Quantity:
 
 
 def poses(bench: StageResults, asked: Command) -> tuple[Array, ...]:
-    """Motion per command (...) of a real stage, or a batch, entry by entry with the names of `pose_measures`.
+    """Compute the motion per command (...) of a stage with scatter, or a batch, in the order of `pose_measures`.
 
-    Open: the voltages for the nominal stage, x = X T (stroke / nominal stroke) C e_j. C corrects the nominal stage's
-    lost motion and T = dx/da is the real one's elastic gain. Held: a controller regulates the pose measured with the nominal R_s^-1, so
-    that the real one is x = (R_s^-1 R_s,real)^-1 e_j. Both at the nominal point. For the nominal stage both are the identity (open, with
-    fewer than six motions: with its own parasitic motions).
+    Open loop (`open`): the voltages of the nominal stage give x = X T (stroke / nominal stroke) C e_j. X transfers to the nominal point, T
+    = dx/da is the elastic gain of the stage with scatter, and C corrects the nominal lost motion. Closed loop (`held`): a controller
+    regulates the pose measured with the nominal R_s^-1, so that the true pose is x = (R_s^-1 R_s,real)^-1 e_j. Both are identity matrices
+    for the nominal stage (open loop with fewer than six motions: plus its own parasitic motions).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import bench_of

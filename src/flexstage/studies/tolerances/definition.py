@@ -27,9 +27,10 @@ _MANY = 64
 
 @dataclass(frozen=True)
 class Copies(Plan):
-    """A plan of `count` samples with all scatter, then of `alone` more for each entry of `[scatter]` with only its scatter.
+    """Plan of a tolerance study: `count` samples with all scatter, then `alone` more for each entry of `[scatter]` with only its scatter.
 
-    Those are always a Latin hypercube, because they are few. `groups` is the number of variables of each entry, in order.
+    The samples of single entries are always a Latin hypercube, because they are few. `groups` is the number of variables of each entry, in
+    order.
     """
 
     alone: int = 0
@@ -46,7 +47,7 @@ class Copies(Plan):
         return self.count + self.alone * len(self.groups)
 
     def parts(self, start: int, stop: int) -> list[tuple[Plan, int, int, tuple[bool, ...]]]:
-        """Intervals of a piece: for each its plan, first and last design, and the mask of its variables.
+        """Split a piece into intervals: for each its plan, first and last design, and the mask of its variables.
 
         >>> from flexstage.studies.sweeps.plan import Sampling
         >>> [part[1:] for part in Copies(Sampling.SOBOL, 2, count=8, alone=4, groups=(1, 1)).parts(6, 13)]
@@ -69,8 +70,8 @@ class Copies(Plan):
 class Tolerance(Study):
     """A tolerance study: `scatters` are the entries of `[scatter]`, whose variables are the study's; `limits` are the specification.
 
-    `targets` are the numbers with scatter. `wanted` is the required yield of each requirement. `commanded`: the command of the
-    nominal stage, for crosstalk at its point; absent: no crosstalk.
+    `targets` are the numbers with scatter. `wanted` is the required yield of each requirement. `commanded` is the command of the nominal
+    stage for crosstalk at a point; without it no crosstalk is computed.
     """
 
     scatters: tuple[Scatter, ...]
@@ -90,7 +91,7 @@ class Tolerance(Study):
 
     @property
     def owners(self) -> tuple[int, ...]:
-        """The entry of each variable."""
+        """Index of the entry of each variable."""
         return tuple(number for number, each in enumerate(self.scatters) for _ in each.members)
 
     @property
@@ -100,23 +101,23 @@ class Tolerance(Study):
 
     @cached_property
     def measures(self) -> Mapping[str, Measure]:
-        """Measures of each sample, by name: the responses, and those of the specification."""
+        """Measures of each sample, by name: the responses, and the measures of the specification."""
         return {**self.responses, **{name: each for name, each in self.lines if name not in self.responses}}
 
     @property
     def columns(self) -> Mapping[str, Measure]:
-        """Computed measures of each sample: also poses per command, if crosstalk is requested."""
+        """Computed measures of each sample: `measures`, and poses per command if crosstalk is requested."""
         return {**self.measures, **(pose_measures(self.commanded) if self.commanded is not None else {})}
 
     @property
     def facts(self) -> dict[str, str]:
-        """Items that results depend on, as text."""
+        """Inputs on which the results depend, as text."""
         plain = {key: fact for key, fact in super().facts.items() if not key.startswith("variables.")}
         point = {} if self.commanded is None else {"crosstalk": f"at {self.commanded.point}"}
         return {**plain, **{f"scatter.{each.name}": repr(each) for each in self.scatters}, **point}
 
     def sample(self, start: int, stop: int) -> Array:
-        """Deviations (n, d) of samples from `start` to before `stop`; zero for an entry without scatter."""
+        """Compute deviations (n, d) of samples from `start` to before `stop`; zero for an entry without scatter."""
         if not isinstance(self.plan, Copies):
             return super().sample(start, stop)
         rows = []
@@ -126,7 +127,7 @@ class Tolerance(Study):
         return np.concatenate(rows)
 
     def mechanism_for(self, values: Array) -> Mechanism:
-        """The design with deviations (..., d) added to its numbers."""
+        """Build the design with deviations (..., d) added to its numbers."""
         return apply_deviations(self.design, self.targets, values)
 
     @property
@@ -135,13 +136,13 @@ class Tolerance(Study):
         return sums(self.targets, len(self.variables)) if self.plan.designs >= _MANY * len(self.targets) else None
 
     def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
-        """Measures of a sample or a batch, column by column or those of `names`."""
+        """Compute the measures `names` (default: all columns) of a sample or a batch."""
         columns = self.columns
         found = self.measure_on(bench_of(mechanism), tuple(columns[name] for name in (columns if names is None else names)))
         return tuple("no measure" if each is None else each for each in found)
 
     def measure_on(self, bench: StageResults, wanted: tuple[Measure | None, ...]) -> tuple[Array | str | None, ...]:
-        """The requested columns of the study, from a bench; the others are left out."""
+        """Evaluate the measures `wanted` from the analysis results `bench` of a stage; entries that are None are omitted."""
         requested = any(isinstance(each, PoseMeasure) for each in wanted)
         found = {}
         if self.commanded is not None and requested:
@@ -151,7 +152,7 @@ class Tolerance(Study):
         )
 
     def scale(self, factors: tuple[float, ...]) -> Tolerance:
-        """The same study with the deviations of each entry multiplied by a factor."""
+        """Return the same study with the deviations of each entry multiplied by a factor."""
         scatters = tuple(
             replace(each, distribution=each.distribution.times(factor)) for each, factor in zip(self.scatters, factors, strict=True)
         )
@@ -159,7 +160,7 @@ class Tolerance(Study):
 
 
 def line_name(line: Requirement) -> str:
-    """The column of a requirement's measure.
+    """Return the column name of a requirement's measure.
 
     >>> from flexstage.analysis.assessment.requirements import requirements
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -170,7 +171,7 @@ def line_name(line: Requirement) -> str:
 
 
 def nominal_command(design: Mechanism, point: str) -> Command:
-    """The nominal design's command at a point; raises `DesignError` if strokes do not determine its platform.
+    """Compute the nominal design's command at a point; raises `DesignError` if strokes do not determine its platform.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> nominal_command(parallelogram(), "platform").coordinates

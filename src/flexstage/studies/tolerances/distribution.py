@@ -16,7 +16,7 @@ _LEAST = 2.0**-54
 
 
 class Shape(Enum):
-    """The shape of a distribution; its size is the standard deviation of a normal, the half width of a uniform one."""
+    """Shape of a distribution; its size is the standard deviation (normal) or the half width (uniform)."""
 
     NORMAL = "normal"
     UNIFORM = "uniform"
@@ -24,7 +24,7 @@ class Shape(Enum):
 
 @dataclass(frozen=True)
 class Distribution:
-    """A distribution of `size` about `offset`, its mean; a normal one may be truncated at plus or minus `within` from there."""
+    """A distribution of `size` about its mean `offset`; a normal one may be truncated at `offset` plus or minus `within`."""
 
     shape: Shape
     size: float
@@ -32,7 +32,7 @@ class Distribution:
     offset: float = 0.0
 
     def quantile(self, shares: Array) -> Array:
-        """Deviations at shares of the probability, the inverse of the cumulative distribution.
+        """Compute deviations at shares of the probability: the inverse of the cumulative distribution.
 
         >>> Distribution(Shape.UNIFORM, 2.0, offset=1.0).quantile(np.array([0.0, 0.5, 1.0])).tolist()
         [-1.0, 1.0, 3.0]
@@ -70,7 +70,7 @@ class Distribution:
         return None if half is None else half + abs(self.offset)
 
     def times(self, factor: float) -> Distribution:
-        """The same shape, with a width multiplied by a factor.
+        """Return the same shape with its width multiplied by a factor.
 
         >>> Distribution(Shape.NORMAL, 1.0, within=2.0).times(2.0)
         Distribution(shape=<Shape.NORMAL: 'normal'>, size=2.0, within=4.0, offset=0.0)

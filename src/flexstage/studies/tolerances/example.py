@@ -7,7 +7,7 @@ from flexstage.studies.tolerances.file import loads_tolerance
 
 
 def leaf_study(copies: int = 64) -> Tolerance:
-    """The parallelogram with scatter of leaf thickness, common and individual, and its stiffness along x.
+    """Return a study of the parallelogram: common and individual scatter of leaf thickness, and the stiffness along x.
 
     >>> leaf_study().plan.count
     64

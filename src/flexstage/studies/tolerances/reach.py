@@ -29,26 +29,26 @@ KINDS: Mapping[str, tuple[type, ...]] = {
     "rods": (Rod,),
     "stacks": (Piezo,),
 }
-"""Kinds of parts in an entry: `hinges.thickness` is that of every notch, neck, leaf and compound hinge."""
+"""Kinds of parts in an entry: `hinges.thickness` is the thickness of every notch, neck, leaf and compound hinge."""
 PLACED = ("units", "gauges")
-"""Kinds with a placement: `units.shift` is that of every instance of a unit."""
+"""Kinds with a placement: `units.shift` is the shift of every instance of a unit."""
 _NONE = "no kind has a similar name"
 
 
 @dataclass(frozen=True)
 class ScatteredNumbers:
-    """Numbers of an entry, by component (one without components), and the shared number behind each."""
+    """Addresses of an entry's numbers, by vector component (`""` for scalars), and the shared number behind each address."""
 
     components: Mapping[str, tuple[str, ...]]
     shared: Mapping[str, str]
 
 
 def reach(design: Mechanism, source: str) -> ScatteredNumbers:
-    """Expand an address or a kind into numbers of single instances; vectors into their components.
+    """Expand an address or a kind into numbers of single instances, and vectors into their components.
 
-    Kinds are the keys of `KINDS`, `units`, `gauges` and `materials`, before a number's name: `hinges.thickness`, `units.rotation.z`,
-    `gauges.shift`, `stacks.stroke`, `materials.young`. The name of a unit or of a pattern means its instances: `horizontal.shift.x`,
-    `S1-S3.shift`. Raises `DesignError` for unknown addresses, with the nearest names.
+    A source with a kind has the form kind.number. Kinds are the keys of `KINDS`, `units`, `gauges` and `materials`: `hinges.thickness`,
+    `units.rotation.z`, `gauges.shift`, `stacks.stroke`, `materials.young`. The name of a unit or of a pattern means its instances:
+    `horizontal.shift.x`, `S1-S3.shift`. Raises `DesignError` for unknown addresses, with the nearest names.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> reach(parallelogram(), "hinges.thickness").components[""]

@@ -62,7 +62,7 @@ class Toleranced(StudyResult):
 
     @property
     def crosstalk(self) -> Annotated[tuple[Crosstalk, ...], VIEW]:
-        """Pose errors of the real stage, commanded and measured with the nominal mapping."""
+        """Pose errors of the stage with scatter, commanded and measured with the nominal mapping."""
         return self.summary.crosstalk
 
     def _response(self, column: int, name: str) -> ResponseSpread:

@@ -24,8 +24,8 @@ from flexstage.studies.tolerances.distribution import NONE, REACH, Distribution
 class Scatter:
     """One entry of a study's `[scatter]`: a `distribution` of deviations of numbers, in SI of `quantity`.
 
-    `members` are the addresses with common deviations, member by member: one for common scatter, one for each instance for individual
-    scatter. `relative`: deviations are shares of the design's value. `source` is the `address` in the file.
+    `members` are groups of addresses with a common deviation: one group for common scatter, one for each instance for individual scatter.
+    `relative`: deviations are shares of the design's value. `source` is the `address` in the file.
     """
 
     name: str
@@ -42,7 +42,7 @@ class Scatter:
         return self.quantity.si
 
     def variables(self) -> tuple[Deviation, ...]:
-        """Its variables, one for each member; several are named after their addresses."""
+        """Return the entry's variables, one for each member; several are named after their addresses."""
         low, high = -self._reach, self._reach
         several = len(self.members) > 1
         names = [f"{self.name}.{self._label(member)}" if several else self.name for member in self.members]
@@ -65,14 +65,14 @@ class Scatter:
 class Deviation(Variable):
     """A deviation of numbers, from a distribution about zero; `scatter` is its entry.
 
-    `low` and `high` are its reach. `relative`: the values are shares of the design's value, 0.01 for one per cent.
+    `low` and `high` are the smallest and largest deviation. `relative`: the values are shares of the design's value, 0.01 for one per cent.
     """
 
     distribution: Distribution = NONE
     scatter: str = ""
 
     def at(self, shares: Array) -> Array:
-        """Deviations at shares (n,) of the probability."""
+        """Compute deviations at shares (n,) of the probability."""
         return self.distribution.quantile(shares)
 
     @property
@@ -88,7 +88,7 @@ class Deviation(Variable):
 
 @dataclass(frozen=True)
 class Target:
-    """A number with scatter: its `address`, the design's value, and the factors on the variables' values added to it."""
+    """A number with scatter: its `address`, its `nominal` value, and `factors` of the variables whose sum is added to it."""
 
     address: str
     nominal: float
@@ -96,10 +96,10 @@ class Target:
 
 
 def targets(design: Mechanism, variables: Iterable[Variable], shared: dict[str, str]) -> tuple[Target, ...]:
-    """All numbers with deviations, in an order for writing.
+    """List all numbers with deviations, in an order for writing.
 
-    `shared` names the shared part's number behind an address of a single instance. If all instances have equal deviations, it is written
-    instead: fewer different parts are faster to compute.
+    `shared` maps an address of a single instance to the number of the shared part. If all instances have equal deviations, the shared
+    number is written instead: fewer different parts are faster to compute.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.base.units.quantity import LENGTH
@@ -133,7 +133,7 @@ def _merge_copies(design: Mechanism, reached: dict[str, tuple[tuple[int, float],
 
 
 def apply_deviations(design: Mechanism, reached: tuple[Target, ...], values: Array) -> Mechanism:
-    """The design with deviations (..., d) added; with leading axes it is a batch.
+    """Build the design with deviations (..., d) added; leading axes give a batch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> leaf = Target("parts.leaf.thickness", 1e-3, ((0, 1.0), (1, 1e-3)))
@@ -150,7 +150,7 @@ def _value(target: Target, values: Array) -> Array:
 
 
 def sums(reached: tuple[Target, ...], count: int) -> Numbers:
-    """The numbers of a description with `count` deviations.
+    """Express the numbers of the targets as linear functions of `count` deviations.
 
     >>> sums((Target("a", 1.0, ((0, 1.0), (1, 2.0))),), 2).at(np.array([[0.1, 0.2]])).round(9).tolist()
     [[1.5]]

@@ -30,10 +30,10 @@ _ERRORS = 4.0
 class Spread:
     """Distributions of r responses over the samples with values; `nominal` is the nominal design.
 
-    `percentiles` (5, r) are the 1st, 5th, 50th, 95th and 99th. `linear` (r,): the deviation by first-order propagation,
-    sqrt(sum (dy/dx s)^2), `trusted` if the response is smooth and the sample agrees to a tenth, or to four standard errors.
-    `by_slope` (m, r): shares of the variance by the m entries of `[scatter]`, from derivatives; `by_sample`: variance from samples of each
-    entry alone, over their sum. NaN for a constant response.
+    `percentiles` (5, r) are the 1st, 5th, 50th, 95th and 99th. `linear` (r,) is the standard deviation by first-order propagation, sqrt(sum
+    (dy/dx s)^2). `trusted` (r,): the response is smooth, and the sample's deviation agrees with `linear` to a tenth, or to four standard
+    errors. `by_slope` (m, r) are the shares of the variance by the m entries of `[scatter]`, from derivatives. `by_sample` (m, r) are the
+    shares from the variance of samples with a single entry, relative to the sum over all entries. NaN for a constant response.
     """
 
     names: tuple[str, ...]
@@ -51,8 +51,8 @@ class Spread:
 class ResponseSpread(RequestedMeasure):
     """A response over the samples with values [SI].
 
-    Its `percentiles`; the deviation by first-order propagation, and its validity (`linear`). By entry of `[scatter]` the shares
-    of its variance, by derivatives and by the samples of one entry alone; its derivatives by every number with scatter.
+    `linear_deviation` is the standard deviation by first-order propagation, `linear` its validity. The shares of the variance by entry of
+    `[scatter]` come from derivatives, and from the samples of one entry alone. `derivatives` are by every number with scatter.
     """
 
     nominal: float
@@ -68,9 +68,9 @@ class ResponseSpread(RequestedMeasure):
 
 @dataclass(frozen=True)
 class Yield:
-    """`kept` of `copies` keep a requirement, or all; `low` to `high` is the 95 % interval of Clopper and Pearson, exact for random samples.
+    """Yield of one requirement, or of all together: `kept` of `copies` samples meet it. Failed samples meet no requirement.
 
-    Failed samples meet no requirement.
+    `low` to `high` is the 95 % interval of Clopper and Pearson, exact for random samples.
     """
 
     kept: int
@@ -85,7 +85,7 @@ class Yield:
 
     @property
     def interval(self) -> Annotated[tuple[float, float], VIEW, RATIO, Heading("95 % interval", unit="%")]:
-        """The ends of its interval."""
+        """Ends of the 95 % interval of the yield."""
         return self.low, self.high
 
 
@@ -102,7 +102,7 @@ class Line:
 
     @property
     def unit(self) -> str:
-        """The SI unit of its value."""
+        """SI unit of the requirement's value."""
         return self.requirement.quantity.si
 
     @property
@@ -112,7 +112,7 @@ class Line:
 
     @property
     def margin(self) -> Annotated[float, VIEW]:
-        """Distance of the nominal value to the limit on the good side, in SI."""
+        """Distance of the nominal value to the limit [SI], positive if the requirement is met."""
         spare = self.nominal - self.requirement.limit
         return spare if self.requirement.sense is Sense.AT_LEAST else -spare
 
@@ -127,10 +127,10 @@ class Yields:
 
 @dataclass(frozen=True, eq=False)
 class Crosstalk:
-    """Pose error per command (6, f) over the samples, rows the motion, columns the command, less the unit matrix.
+    """Pose error per command (6, f) over the samples: rows are motions, columns commands. The identity matrix is subtracted.
 
-    `kind` is `open` (commanded by the nominal R_a) or `held` (regulated to the pose from the nominal R_s^-1). `nominal`, `mean`,
-    `deviation`, and of the magnitudes the 95th percentile `usual` and the `worst`; SI.
+    `kind` is `open` (commanded by the nominal R_a) or `held` (regulated to the pose from the nominal R_s^-1). `nominal`, `mean` and
+    `deviation` are signed. `usual` is the 95th percentile of the absolute errors, `worst` their maximum. All are in SI.
     """
 
     kind: str
@@ -188,7 +188,7 @@ def summary(study: Tolerance, results: Results, slope: Slopes) -> Summary:
 
 
 def binomial(passed: Array) -> Yield:
-    """The yield from a mask of passed samples, with the interval of Clopper and Pearson (Biometrika 26 (1934) 404).
+    """Compute the yield from a mask of passed samples, with the interval of Clopper and Pearson (Biometrika 26 (1934) 404).
 
     >>> found = binomial(np.array([True] * 9 + [False]))
     >>> found.share, round(found.low, 4), round(found.high, 4)
@@ -241,7 +241,10 @@ def _ratio(parts: Array, whole: Array) -> Array:
 
 
 def squares_alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
-    """Variance (m, r), or mean square about a centre, of the samples of one entry alone; of a single entry, the sample."""
+    """Compute the variance (m, r), or the mean square about a centre, of the samples of one entry alone.
+
+    A study with a single entry uses its whole sample.
+    """
     count, alone = study.copies, getattr(study.plan, "alone", 0)
     rows = []
     for number in range(len(study.scatters)):

@@ -20,11 +20,10 @@ LARGEST = number(Precision.DOUBLE.largest)
 def controller_code(given: Machine, name: str = "controller", about: str = "") -> Program:
     """Generate the computer's part of a machine: pose, error, controller, inverse hysteresis, converter, limits, voltages.
 
-    Inputs are `reference.<c>` and the readings `<gauge>` in the gauges' units. Outputs are `pose`, `error`, `command`, `asked`, `given`
-    (free strokes [m] from the bias), `volts` if the stacks' ranges are known, and `status`. Limits are included, so that the integrators
-    use the applied strokes. Non-finite readings, readings beyond the gauge's range and non-finite
-    references are rejected: the last valid value is held (initially zero) and `status` reports it, until the next valid one. All states
-    stay finite.
+    Inputs are `reference.<c>` and the readings `<gauge>` in the gauges' units. Outputs are `pose`, `error`, `command`, the strokes `asked`
+    (before the limits) and `given` (applied), both [m] from the bias, `volts` if the stacks' ranges are known, and `status`. The
+    integrators use the applied strokes (anti-windup). Non-finite readings, readings beyond the gauge's range and non-finite references are
+    rejected. The program then uses the last valid value (initially zero), and `status` reports this. All states stay finite.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -69,7 +68,7 @@ _STATUS = "for each reading, then each reference: 0 valid; held: 1 not finite, 2
 
 
 def inputs(given: Machine) -> tuple[Signal, Signal]:
-    """Signals of reference and readings.
+    """Return the input signals of a controller: reference and readings.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -82,7 +81,7 @@ def inputs(given: Machine) -> tuple[Signal, Signal]:
 
 
 def outputs(given: Machine) -> tuple[Signal, ...]:
-    """Output signals of a controller, with voltages if they are known.
+    """Return the output signals of a controller, with voltages if they are known.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -111,7 +110,7 @@ def outputs(given: Machine) -> tuple[Signal, ...]:
 
 
 def has_volts(given: Machine) -> bool:
-    """Whether every stack's range is known.
+    """Whether the voltage range of every stack is known.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -123,7 +122,7 @@ def has_volts(given: Machine) -> bool:
 
 
 def controller_states(given: Machine, core: Core) -> tuple[State, ...]:
-    """State of a controller: its own states, the last applied strokes, valid readings and references, and plays of the inverse model."""
+    """Return the state variables: states of the law, last applied strokes, last valid readings and references, plays of the inverse."""
     model = given.compensation
     plays = () if model is None else (hysteresis_step("model", model, given.amplifiers.bias)[1],)
     taken = ("last", len(given.actuators)), ("seen", len(given.gauges)), ("wanted", len(given.names))
@@ -131,7 +130,7 @@ def controller_states(given: Machine, core: Core) -> tuple[State, ...]:
 
 
 def limit_settings(given: Machine) -> tuple[ProgramSetting, ...]:
-    """Limits of strokes, and of their change per sample."""
+    """Return the settings for limits of strokes, and of their change per sample."""
     powers = given.amplifiers
     return (
         ProgramSetting("low", powers.low, "limits of the strokes (or inputs)"),
@@ -141,7 +140,7 @@ def limit_settings(given: Machine) -> tuple[ProgramSetting, ...]:
 
 
 def bounded(setting: ProgramSetting, precision: Precision) -> ProgramSetting:
-    """Setting with its numbers limited to finite values."""
+    """Return a setting with its numbers limited to the finite range of a number type."""
     return ProgramSetting(setting.field, np.clip(setting.values, -precision.largest, precision.largest), setting.meaning)
 
 
@@ -160,7 +159,7 @@ def _tables(given: Machine, precision: Precision, *, fixed: bool) -> list[str]:
 
 
 def controller_part(given: Machine, core: Core, reading: str, precision: Precision = Precision.DOUBLE, *, fixed: bool = True) -> Code:
-    """Tables and statements of one sample of a controller whose readings are named `reading`.
+    """Generate tables and statements of one sample of a controller whose readings are named `reading`.
 
     If not `fixed`, limits and gains are read from the parameters `set`, and `set->enable` = 0 holds the last applied strokes.
     """
@@ -229,7 +228,7 @@ def _one_actuator(given: Machine, precision: Precision, *, fixed: bool) -> list[
 
 
 def limited(where: str, most: str, last: str, place: str) -> list[str]:
-    """Statements that limit `stroke` to the range, and its change from `last`.
+    """Generate statements that limit `stroke` to its range, and limit its change from `last`.
 
     >>> limited("set->", "most", "last", "i")[0]
     'if (stroke > set->high[i]) stroke = set->high[i];'

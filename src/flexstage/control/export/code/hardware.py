@@ -20,7 +20,7 @@ from flexstage.control.simulation.machine import Machine
 from flexstage.control.simulation.result import Simulated
 
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
-"""Compiler flags: without contraction, products and sums are rounded as written."""
+"""Compiler flags. Contraction (fused multiply-add) is off, so that every product and every sum is rounded."""
 NO_INVERSE = ("the inverse of this hysteresis model has no embedded form", 'Remove "hysteresis" from compensate, or use --export')
 
 
@@ -50,10 +50,10 @@ def hardware_code(
     """Generate the controller of a machine as C99 for hardware; `law` for single PI or PID loops, whose gains are adjustable.
 
     Any other law is in modal form with fixed gains. `tested` is a simulation of the machine: the generated test replays its reference and
-    readings and compares the strokes. The step uses no library call and no heap. Sums have one order, rounding is to nearest, contraction
-    is off, subnormals are kept. Finite inputs therefore give the same bits on every IEEE 754 processor. With `legs` a second function,
-    `<name>_damp`, runs the sampled force feedback; the test also replays tensions. Raises `DesignError` for an inverse hysteresis, which
-    has no such form.
+    readings and compares the strokes. The step uses no library call and no heap. Sums have a fixed order, rounding is to nearest,
+    contraction is off, subnormals are kept. Finite inputs therefore give the same bits on every IEEE 754 processor. With `legs` a second
+    function, `<name>_damp`, runs the sampled force feedback; the test also replays tensions. Raises `DesignError` for an inverse
+    hysteresis, which is not supported in this form.
     """
     if given.compensation is not None:
         raise refuse("--hardware", *NO_INVERSE)

@@ -27,8 +27,8 @@ from flexstage.models.linear.model import Channel
 class Core:
     """Control law as C: state arrays with sizes, settings, and statements.
 
-    `locals` are declared at the head. `command` follows from errors and states. `begin` sets states so that the command equals the last
-    applied one. `next` states go to arrays `next_<state>`. `tables` are at file level.
+    `locals` are declared at the head. `command` computes the command from errors and states. `begin` sets the states so that the command
+    equals the last applied one. `next` computes the next states into arrays `next_<state>`. `tables` are at file level.
     """
 
     states: tuple[tuple[str, int], ...]
@@ -43,7 +43,7 @@ class Core:
 
 
 def law_as_c(given: Machine, law: Decentralised | None) -> Core:
-    """Law of a machine: PI or PID loops individually, any other law in modal form."""
+    """Generate the law of a machine as C: PI or PID loops individually, any other law in modal form."""
     if law is not None and all(isinstance(each, (PI, PID)) for each in law.laws):
         return _single_loops(given, law)
     linear = parts(replace(given, controller=modal_form(given.controller)))
@@ -52,7 +52,7 @@ def law_as_c(given: Machine, law: Decentralised | None) -> Core:
 
 
 def matrix_core(linear: Parts) -> Core:
-    """Any law by the matrices of plant and controller: z+ = A z + ..., command = C z + ...
+    """Generate any law from the matrices of plant and controller: z+ = A z + ..., command = C z + ...
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

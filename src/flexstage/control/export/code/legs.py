@@ -101,7 +101,7 @@ def _sample(outer: Program, given: Machine, legs: SampledLegs) -> list[str]:
 
 
 def legs_beside(outer: Program, given: Machine, legs: SampledLegs, precision: Precision) -> Program:
-    """Program with settings and a separate function, `<name>_damp`, for the inner loops at their own rate."""
+    """Generate a program with settings, and a separate function `<name>_damp` for the inner loops at their own rate."""
     m, largest, places = len(given.actuators), number(precision.largest), _places(given, legs)
     volts = [f", double volts[{m}]", "volts[i] = stroke * per_metre[i] + bias[i];"] if has_volts(given) else ["", ""]
     sizes = f"const double tension[{len(places)}], double total[{m}]{volts[0]}"
@@ -163,7 +163,7 @@ def _one_leg(legs: SampledLegs, target: str, gain: str, tension: str, *, place: 
 
 
 def legs_test(given: Machine, legs: SampledLegs, name: str) -> Sequence[str]:
-    """Function that replays tensions swept up to a tenth of the rate, and returns the largest stroke deviation from the law."""
+    """Generate a function that replays tensions swept up to a tenth of the rate and returns the largest stroke deviation from the law."""
     tensions, wanted = _swept(given, legs)
     m, volts = len(given.actuators), ", volts" if has_volts(given) else ""
     return [

@@ -1,4 +1,4 @@
-"""Controller in modal form: decoupled states, single or in pairs."""
+"""Controller in modal form: decoupled blocks of one or two states."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ _WORST = 1e8
 
 
 def modal_form(given: System) -> System:
-    """Transform a system to blocks of one and two states in A: z = V^-1 x, V real vectors of the modes, each of unit length.
+    """Transform a system to blocks of one and two states in A: z = V^-1 x. The columns of V are the real mode vectors, of unit length.
 
-    Unchanged if its modes are not independent: V worse conditioned than 1e8.
+    Returns the system unchanged if the condition number of V exceeds 1e8 (dependent modes).
 
     >>> from flexstage.control.example import integral_loop
     >>> closed = integral_loop().system

@@ -1,4 +1,4 @@
-"""Number type of a controller for hardware, and C text in it."""
+"""Number type of a controller for hardware, and the conversion of C text to it."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ class Precision(Enum):
 
     @property
     def digits(self) -> int:
-        """Binary digits after the first."""
+        """Number of binary digits after the leading one."""
         return int(np.finfo(self.value).nmant)
 
     @property
     def tolerance(self) -> float:
-        """Allowed deviation of outputs from the simulation, relative to the largest: accumulated rounding of some hundred samples."""
+        """Tolerance of outputs relative to the largest output: the accumulated rounding of some hundred samples."""
         return 1e-4 if self is Precision.SINGLE else 1e-11
 
     @property
     def largest(self) -> float:
-        """Largest number."""
+        """Largest finite number."""
         return float(np.finfo(self.value).max)
 
 
 def typed(text: str, precision: Precision) -> str:
-    """Convert constants and types in a text to a precision."""
+    """Convert the constants and types of a C text to the number type of a precision."""
     if precision is Precision.DOUBLE:
         return text
     marked = re.sub(r"/\*.*?\*/", lambda comment: re.sub(r"(\d)", "\\1\0", comment.group()), text, flags=re.DOTALL)  # no constants

@@ -12,7 +12,7 @@ from flexstage.models.linear.model import Channel
 
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")
 FLAGS = ("-std=c99", "-O3", "-ffp-contract=off", "-fPIC", "-shared", *WARNINGS)
-"""Compiler flags. Without contraction, a product and a sum round as written on every machine."""
+"""Compiler flags. Contraction (fused multiply-add) is off: products and sums are rounded equally on every machine."""
 
 
 @dataclass(frozen=True)

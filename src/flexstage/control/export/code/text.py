@@ -49,7 +49,7 @@ def indent(lines: Iterable[str], depth: int = 1) -> list[str]:
 
 
 def comment(text: str) -> list[str]:
-    r"""Comment of one or several lines, wrapped; an end mark inside is split, invisible characters are escaped.
+    r"""Format a comment of one or several lines, wrapped. An end mark inside is split, invisible characters are escaped.
 
     >>> comment("low is */ fine"), comment("name \u202e")
     (['/* low is * / fine */'], ['/* name \\u202e */'])
@@ -63,7 +63,7 @@ def comment(text: str) -> list[str]:
 
 
 def wrap(line: str, further: str = "    ") -> list[str]:
-    """Break long statements at blanks.
+    """Wrap a long C statement at spaces; continuation lines start with `further`.
 
     >>> wrap("a;")
     ['a;']

@@ -15,9 +15,10 @@ from flexstage.control.simulation.parts import parts
 
 
 def loop_code(given: Machine, name: str = "loop") -> Program:
-    """Generate the program of a machine: reference, disturbances and noise in; poses, commands, voltages, readings, strokes, motions out.
+    """Generate the program of the whole loop of a machine; inputs are reference, disturbances and noise.
 
-    One step equals one sample of `simulate`, except for the order of summation. Raises `DesignError` for a hysteresis without a C form.
+    Outputs are poses, commands, voltages, readings, strokes and motions. One step equals one sample of `simulate`, except for the order of
+    summation. Raises `DesignError` for a hysteresis without a C form.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

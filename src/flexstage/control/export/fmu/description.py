@@ -16,7 +16,7 @@ _BASE = {"mass": "kg", "length": "m", "time": "s", "current": "A", "temperature"
 
 
 def guid(program: Program) -> str:
-    """Identifier computed from the program's text: equal programs have equal identifiers.
+    """Compute an identifier from the program's text: equal programs have equal identifiers.
 
     >>> from flexstage.control.export.code.product import Code
     >>> one, other = (guid(Program(name, (), 1.0, (), (), (), Code())) for name in ("one", "other"))

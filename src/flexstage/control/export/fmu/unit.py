@@ -21,9 +21,9 @@ _FOLDERS = {("linux", "x86_64"): ("linux64", "so"), ("darwin", "x86_64"): ("darw
 def fmu(program: Program, *, sources_only: bool = False) -> bytes:
     """Build an FMI 2.0 co-simulation unit (`.fmu`) of a program: `modelDescription.xml`, sources, and a library for this machine.
 
-    A step of the importer includes the program's samples within it, at multiples of the program's step from the start; inputs are those set
-    before it. Equal program and compiler give equal bytes. Raises `DesignError` without a compiler, or if FMI 2.0 has no name for this
-    machine type; `sources_only` omits the library.
+    One communication step of the importer runs all samples of the program within it, at multiples of the program's step from the start. The
+    samples use the inputs set before the communication step. Equal program and compiler give equal bytes. Raises `DesignError` without a
+    compiler, or if FMI 2.0 has no name for this machine type; `sources_only` omits the library.
 
     >>> from flexstage.control.export.code.controller import controller_code
     >>> from flexstage.control.example import integral_loop

@@ -48,7 +48,7 @@ class BoucWen(Hysteresis):
         return len(self.gain)
 
     def start(self, value: Array) -> Array:
-        """State (axes, 2) after a monotonic path from 0 V to the voltages (axes,)."""
+        """Return the state (axes, 2) after a monotonic path from 0 V to the voltages (axes,)."""
         return self.step(np.zeros((self.axes, 2)), np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[0]
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:

@@ -13,7 +13,7 @@ from flexstage.base.number import Array, freeze
 
 
 def freeze_rows(record: Any, *names: str) -> None:
-    """Convert arrays of a frozen record to (axes, m), and make them read-only."""
+    """Convert the named arrays of a frozen record to read-only arrays (axes, m)."""
     for name in names:
         object.__setattr__(record, name, freeze(np.atleast_2d(np.asarray(getattr(record, name), dtype=float))))
 
@@ -50,7 +50,7 @@ class Envelope:
         return np.diff(self.values) / np.diff(self.knots)
 
     def at(self, arguments: Array) -> Array:
-        """Values (..., axes) at arguments (..., axes)."""
+        """Compute values (..., axes) at arguments (..., axes)."""
         if self is IDENTITY:
             return np.asarray(arguments, dtype=float)
         beyond = np.asarray(arguments, dtype=float)[..., None] - self.knots[:, :-1]
@@ -89,7 +89,7 @@ def straight(slope: Sequence[float] | Array, start: Sequence[float] | Array | fl
 
 
 def invert(envelope: Envelope) -> Envelope:
-    """The inverse of an ascending envelope. Raises `DesignError` naming the piece that does not ascend.
+    """Compute the inverse of an ascending envelope. Raises `DesignError` naming the piece that does not ascend.
 
     >>> bent = Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 3.0])
     >>> invert(bent).at(bent.at(np.array([[-1.0], [0.7], [5.0]]))).ravel().tolist()
@@ -100,7 +100,7 @@ def invert(envelope: Envelope) -> Envelope:
 
 
 def descent_findings(envelope: Envelope, where: str) -> list[Finding]:
-    """Findings for each piece of an envelope that does not ascend: the inverse is not unique there.
+    """Find the pieces of an envelope that do not ascend: the inverse is not unique there.
 
     >>> descent_findings(Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 1.0]), "envelope")[0].what
     'from 1 to 2 on axis 0 it goes from 2 to 1 (expected ascending values)'

@@ -24,7 +24,7 @@ class Hysteresis(Protocol):
         ...
 
     def start(self, value: Array) -> Array:
-        """State after a monotonic path from the initial state to the input `value` (axes,)."""
+        """Return the state after a monotonic path from the initial state to the input `value` (axes,)."""
         ...
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:
@@ -58,7 +58,7 @@ class Hysteresis(Protocol):
 
 
 def freeze_by_axis(model: Any) -> None:
-    """Convert all numbers of a dataclass to (axes,), read-only.
+    """Convert all numbers of a dataclass to read-only arrays (axes,).
 
     >>> from flexstage.control.hysteresis.models.bouc_wen import BoucWen
     >>> BoucWen(np.array([1e-7, 2e-7]), 4e-8, 4e-3, 2e-3).lag.tolist()

@@ -26,8 +26,8 @@ def scale_to_stacks(model: PrandtlIshlinskii, volts: Range, stacks: Stacks) -> P
     """Scale a one-axis model over `volts` to n axes: major loops of the same form over each stack's own range and stroke.
 
     Scales the knots of the envelope before the plays, and values of the envelope after them; thresholds and weights do not change. The full
-    stroke is that of the settled loop, from 0 at its lower end. Raises `DesignError` for a model of more axes, and for invalid ranges and
-    strokes.
+    stroke is the stroke of the settled loop, with 0 at the loop's lower end. Raises `DesignError` for a model of more axes, and for invalid
+    ranges and strokes.
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> two = Stacks(np.array([0.0, -100.0]), np.array([1000.0, 400.0]), np.array([150e-6, 30e-6]))

@@ -18,7 +18,8 @@ Range: TypeAlias = tuple[float, float]
 class MajorLoop:
     """Settled major loop over a range: outputs (k, axes) of the branches `up` and `down` at ascending inputs `volts` (k,).
 
-    `stroke` (axes,) is the output span between the ends, `width` (axes,) the largest distance of the branches at one input, relative to it.
+    `stroke` (axes,) is the output span between the ends. `width` (axes,) is the largest distance of the branches at one input, relative to
+    `stroke`.
     """
 
     volts: Array

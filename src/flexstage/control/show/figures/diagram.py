@@ -31,8 +31,8 @@ class Block:
 class Diagram:
     """Content of a block diagram: blocks from error to pose, and from pose to its estimate, in signal order.
 
-    `onto` are external signals, each with the name of the block it enters. `fed_forward`: the reference bypasses the controller. Without
-    `closed` the loop ends at the pose.
+    `onto` are external signals, each with the name of the block it enters. `fed_forward`: the reference bypasses the controller. If not
+    `closed`, the loop ends at the pose.
     """
 
     forward: tuple[Block, ...]

@@ -48,7 +48,7 @@ def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) ->
 
 
 def nyquist_figure(found: Curves, highest: float, points: Array) -> Any:
-    """Nyquist plot of the open loops near -1: unit circle, circle where abs(S) is the `highest` Ms allowed, `points` (m,) at the margins.
+    """Plot the open loops near -1 (Nyquist): unit circle, circle where abs(S) is the `highest` Ms allowed, `points` (m,) at the margins.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.systems.closed import LoopBreak
@@ -94,7 +94,7 @@ def sensitivity_figure(found: Curves, highest: float) -> Any:
 
 
 def measured_figure(found: ReadLines, names: tuple[str, ...]) -> Any:
-    """Plot |S| of every loop by measured responses, shaded 95 % interval, over fit and model; one panel per loop."""
+    """Plot |S| of every loop from measured responses with its 95 % interval, and |S| of fit and model; one panel per loop."""
     columns = min(3, len(names))
     rows = -(-len(names) // columns)
     with style_context():
@@ -158,7 +158,7 @@ def _damping_panel(axes: Any, poles: Array, step: float, alone: Array | None) ->
 
 
 def thin_out(x: Array, y: Array) -> tuple[Array, Array]:
-    """Reduce the points of a curve: the minimum and maximum of each of many intervals."""
+    """Reduce the points (n,) of a curve to the minimum and maximum of each of many intervals."""
     if len(x) <= 2 * _POINTS:
         return x, y
     stretches = np.array_split(np.arange(len(x)), _POINTS)
@@ -173,7 +173,7 @@ def _phase(values: Array) -> Array:
 
 
 def look(index: int) -> dict[str, Any]:
-    """Return the line style of a series: its colour; every second one is dashed."""
+    """Return the line style of series number `index`: its colour, and dashes for every second series."""
     return {"color": SERIES[index % (len(SERIES) - 1)], "linestyle": (0, (4.0, 2.0)) if index % 2 else "-"}
 
 

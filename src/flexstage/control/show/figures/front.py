@@ -13,7 +13,7 @@ from flexstage.show.figures.style import FULL, SERIES, Margins, canvas, panels, 
 
 
 def front_figure(found: Mapping[str, DetunedController], front: Collection[str]) -> Any:
-    """Plot each tuned controller as a dot, filled on the Pareto `front`, and its line for reduced gain."""
+    """Plot each tuned controller as a dot, filled on the Pareto `front`, with a line for the same controller at reduced gains."""
     told = {
         "noise [nm]": (lambda one: one.noise, 1e9),
         "settling [ms]": (lambda one: one.settling, 1e3),

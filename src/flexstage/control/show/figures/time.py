@@ -21,7 +21,7 @@ _FEW = 1.5
 
 
 def step_figure(found: Sequence[tuple[str, Simulated]]) -> Any:
-    """Plot step responses, one panel per coordinate: the reference, the true motion and, paler, the others of the same unit.
+    """Plot step responses, one panel per coordinate: the reference, the true motion and, paler, other motions of the same unit.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -158,7 +158,7 @@ def _height(path: Array) -> float:
 
 
 def magnification(size: float, error: Array) -> float:
-    """Magnification factor, 1, 2 or 5 times a power of ten and at least 1, that makes the largest error about a twentieth of a size.
+    """Choose the magnification (1, 2 or 5 times a power of ten, at least 1) that shows the largest error as about 1/20 of a size.
 
     >>> magnification(1.0, np.array([[0.001, 0.0]]))
     50.0

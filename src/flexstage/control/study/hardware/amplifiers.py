@@ -37,7 +37,7 @@ class AmplifierForm(CheckedFields):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Findings for the table on its own, each with its key."""
+        """Check the table independently of the stage; each finding has its key."""
         yield from ()
 
 
@@ -45,10 +45,10 @@ class AmplifierForm(CheckedFields):
 class AmplifierSetup(AmplifierForm):
     """Amplifiers and their converter: first-order lag with the stack's capacitance; ideal by default.
 
-    `bandwidth` as specified, or by the output `resistance`, 1/(2 pi R C). `current` is the maximum output current and `slew` the maximum
-    voltage rate; both limit the stroke rate. `noise` is white at the output, `bits` are the converter's over the full voltage range. Each
-    stack's range converts voltage to free stroke. Voice coil amplifiers control the current: `bandwidth`, `current`, `current_noise` and
-    `bits` apply.
+    `bandwidth` is specified, or follows from the output `resistance`, 1/(2 pi R C). `current` is the maximum output current and `slew` the
+    maximum voltage rate; both limit the stroke rate. `noise` is white at the output. `bits` is the resolution of the converter over the
+    full voltage range. Each stack's range converts voltage to free stroke. Voice coil amplifiers control the current: `bandwidth`,
+    `current`, `current_noise` and `bits` apply.
     """
 
     kind: ClassVar[str] = "voltage"
@@ -68,7 +68,7 @@ class AmplifierSetup(AmplifierForm):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Findings for both a bandwidth and a resistance, and for invalid bits."""
+        """Check for both a bandwidth and a resistance, and for invalid bits."""
         if self.bandwidth is not None and self.resistance is not None:
             yield Finding("amplifier", "both its bandwidth and its resistance are given", "Specify one of them: the other follows")
 
@@ -97,7 +97,7 @@ class ChargeSetup(AmplifierSetup):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Findings for a missing coupling, a missing or double corner, and the data of voltage amplifiers."""
+        """Check for a missing coupling, a missing or double corner, and data of voltage amplifiers that do not apply."""
         yield from super().faults
         if self.coupling is None:
             advice = "Use e.g. coupling = 0.7: data-sheet strokes and capacitances, d^2 k / C, overestimate it"

@@ -18,10 +18,10 @@ _EDGE = 1e-7
 
 
 def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, ...]:
-    """Binding limits and range ends of an optimum, by their effect on the objective (for a tenth of their value).
+    """Find the binding limits and range ends of an optimum, sorted by their effect on the objective (for a tenth of their value).
 
-    The multipliers belong to the convex model around the optimum with unit curvature, whose solution is the optimum itself. For
-    min c_0 with c_i <= e_i they are -d c_0 / d e_i. From derivatives only: valid for small changes, and one-sided for repeated modes.
+    The multipliers belong to the convex model around the optimum with unit curvature, whose solution is the optimum itself. For min c_0
+    with c_i <= e_i they are -d c_0 / d e_i. They come from derivatives only: valid for small changes, and one-sided for repeated modes.
     """
     size = len(point.shares)
     model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))

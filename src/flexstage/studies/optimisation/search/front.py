@@ -30,11 +30,11 @@ _KEEP = 1e-6
 @check_arguments
 @one_thread
 def pareto_front(study: Study, definition: OptimisationProblem, progress: Progress | None = None) -> Front:
-    """The front of two objectives within ranges and limits (epsilon-constraint method: Haimes, Lasdon & Wismer 1971).
+    """Compute the Pareto front of two objectives within ranges and limits (epsilon-constraint method: Haimes, Lasdon & Wismer 1971).
 
-    First each objective is optimised alone, then the other improved without loss. Between these ends the first is optimised with the second
-    bounded at equally spaced values, each from both ends. Dominated designs are left out. An interruption ends the search
-    with the designs so far.
+    First each objective is optimised individually, then the other improved without loss. Between these ends the first is optimised with the
+    second bounded at equally spaced values, each from both ends. Dominated designs are left out. An interruption ends the search with the
+    designs so far.
     """
     if len(definition.objectives) != 2:
         raise refuse("optimise", f"a front needs two objectives (got {len(definition.objectives)})", "Use optimise for one")
@@ -108,7 +108,7 @@ def _between(set_up: Setting, ends: list[Point], counted: Count) -> list[Point]:
 
 
 def non_dominated(set_up: Setting, points: Iterable[Point]) -> list[Point]:
-    """The non-dominated points, from the best in the first objective on."""
+    """Select the non-dominated points, ordered from the best in the first objective."""
     points = list(points)
     worth = np.array([[set_up.objective(number).at(point) for number in (0, 1)] for point in points]).reshape(-1, 2)
     kept = [number for number in range(len(points)) if not _is_dominated(worth, number)]

@@ -34,8 +34,8 @@ def optimise(study: Study, definition: OptimisationProblem, progress: Progress |
     """Find the best design within the variables' ranges that keeps all limits.
 
     From every start, a sequence of convex models with exact derivatives is solved. Frequencies enter as matrices of neighbouring modes, so
-    that repeated and crossing modes are no obstacle. A local method: `starts` lists the number of equal ends. A keyboard interrupt ends the
-    search with the best design so far. Raises `DesignError` for a study that cannot be optimised.
+    that repeated and crossing modes are no obstacle. The method is local: `Optimum.agreeing` counts the starts that end at an equally good
+    design. A keyboard interrupt ends the search with the best design so far. Raises `DesignError` for a study that cannot be optimised.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> found = optimise(*leaf_study())
@@ -103,14 +103,14 @@ class Count:
         self.progress, self.about, self.done = progress, about, 0
 
     def __call__(self, more: int) -> None:
-        """Count some more designs."""
+        """Count `more` further designs."""
         self.done += more
         if self.progress is not None:
             self.progress(f"{self.about}: {self.done} designs")
 
 
 def best_of(problem: Problem, traces: list[Trace]) -> Point | None:
-    """The best feasible design of all searches.
+    """Select the best feasible design of all searches.
 
     >>> best_of(Problem((), ()), []) is None
     True

@@ -26,7 +26,7 @@ class Side:
     scale: float
 
     def of(self, value: float) -> float:
-        """c for a value of the measure.
+        """Compute c for a value of the measure.
 
         >>> Side(0, Sense.AT_LEAST, 100.0, 100.0).of(90.0)
         0.1
@@ -35,7 +35,7 @@ class Side:
         return -spare if self.sense is Sense.AT_LEAST else spare
 
     def at(self, point: Point) -> float:
-        """c at a design."""
+        """Compute c for a design."""
         return self.of(point.found[self.index].value)
 
 
@@ -47,21 +47,21 @@ class Problem:
     limits: tuple[Side, ...]
 
     def worth(self, point: Point) -> float:
-        """The largest c of the objective."""
+        """Return the largest c of the objective."""
         return max(side.at(point) for side in self.objective)
 
     def excess(self, point: Point) -> float:
-        """The largest violation, normalised; 0 for a feasible design."""
+        """Return the largest c of the limits; positive for a violation, 0 without limits."""
         return max((side.at(point) for side in self.limits), default=0.0) if self.limits else 0.0
 
     def violation(self, point: Point) -> float:
-        """The largest violation, none negative."""
+        """Return the largest violation; 0 for a feasible design."""
         return max(0.0, self.excess(point))
 
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """One side around a design: c = the largest eigenvalue of constant + sum_p d_p slope_p, matrices (k, k) and (n, k, k).
+    """Linear model of one side around a design: c is the largest eigenvalue of constant (k, k) + sum_p d_p slope_p (n, k, k).
 
     For scalars the matrices are diagonal, and only their diagonals are stored: (m,) and (n, m).
     """
@@ -71,23 +71,24 @@ class Linear:
 
     @property
     def diagonal(self) -> bool:
-        """Whether these are scalars."""
+        """Whether the side consists of scalars."""
         return self.constant.ndim == 1
 
     def project(self, vector: Array) -> tuple[float, Array]:
-        """Constant and gradient (n,) of v^T C v, never more than c for a unit vector."""
+        """Return the constant and gradient (n,) of v^T C v, which is at most c for a unit vector v."""
         return float(vector @ self.constant @ vector), np.einsum("i,pij,j->p", vector, self.slope, vector)
 
     def after(self, change: Array) -> tuple[Array, Array]:
-        """Eigenvalues ascending and vectors of the matrix after a change (n,)."""
+        """Return ascending eigenvalues, and eigenvectors, of the matrix after a change (n,)."""
         return np.linalg.eigh(self.constant + np.tensordot(change, self.slope, axes=1))
 
 
 def linear(side: Side, point: Point) -> Linear:
-    """A side to first order around a design.
+    """Linearise a side around a design.
 
-    The pieces of a minimum are all bounded from below, and likewise of a maximum from above. Of frequencies, those from the requested
-    number upward are bounded from below, or those up to it from above. In the opposite direction, only the active piece counts.
+    A lower bound of a minimum applies to all its pieces, and an upper bound of a maximum likewise. A lower bound of a frequency applies to
+    all modes from the requested number upward, an upper bound to all modes up to this number. In the opposite direction, only the active
+    piece counts.
 
     >>> at = Point(np.zeros(1), (Scalars(np.array([3.0, 2.0]), np.ones((2, 1)), Extreme.LEAST),))
     >>> linear(Side(0, Sense.AT_LEAST, 1.0, 1.0), at).constant.tolist()
@@ -103,7 +104,7 @@ def linear(side: Side, point: Point) -> Linear:
 
 
 def second_order_correction(side: Side, point: Point, tried: Point) -> Linear:
-    """A side linearised about a design, with its constant corrected to match the value at another design.
+    """Linearise a side around a design, with its constant corrected to match the value at another design, `tried`.
 
     >>> first, second = (Point(np.array([x]), (Scalars(np.array([x * x]), np.array([[2.0 * x]]), Extreme.LEAST),)) for x in (1.0, 2.0))
     >>> second_order_correction(Side(0, Sense.AT_MOST, 0.0, 1.0), first, second).constant.tolist()  # 4 - 2 (2 - 1)
@@ -117,7 +118,7 @@ def second_order_correction(side: Side, point: Point, tried: Point) -> Linear:
 
 
 def members(side: Side, found: NumberedFrequency) -> slice:
-    """The modes of the spectrum that a side contains.
+    """Return the modes of the spectrum to which a side applies.
 
     >>> from flexstage.studies.optimisation.search.spectrum import Spectrum
     >>> one = NumberedFrequency(Spectrum(np.ones(3), np.zeros((0, 3, 3)), np.eye(3), np.eye(3)), 2)
@@ -146,14 +147,14 @@ class Weights:
         return float(np.trace(self.values) if self.values.ndim == 2 else np.sum(self.values))
 
     def gradient(self, at: Linear) -> Array:
-        """Contribution of the side to the gradient (n,) of the Lagrangian."""
+        """Compute the contribution of the side to the gradient (n,) of the Lagrangian."""
         if self.values.ndim == 1:
             return at.slope @ self.values
         return np.einsum("pij,ij->p", at.slope, self.values)
 
 
 def sides(problem: Problem) -> Iterator[Side]:
-    """All sides, the objective's first.
+    """Iterate over all sides, the objective's first.
 
     >>> len(list(sides(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()))))
     1
@@ -163,9 +164,10 @@ def sides(problem: Problem) -> Iterator[Side]:
 
 
 def lagrangian(problem: Problem, point: Point, weights: tuple[Weights, ...], seen_from: Point | None = None) -> Array | None:
-    """Gradient (n,) of the Lagrangian at a design, with weights of the modes and pieces of the design `seen_from` (absent: of this one).
+    """Compute the gradient (n,) of the Lagrangian at a design `point`.
 
-    `None` if the pieces do not correspond.
+    `weights` are the multipliers. They belong to the modes and pieces of the design `seen_from` (default: of `point`). Returns `None` if
+    the pieces of both designs do not correspond.
 
     >>> at = Point(np.zeros(1), (Scalars(np.array([3.0]), np.array([[2.0]]), Extreme.LEAST),))
     >>> lagrangian(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()), at, (Weights(np.ones(1)),)).tolist()

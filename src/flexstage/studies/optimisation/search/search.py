@@ -47,8 +47,8 @@ def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough
     """Search from shares (n,) of the ranges; `trace` can be read during the search. Ends early if the objective reaches `enough`.
 
     Sequential quadratic programming with an exact penalty of the largest violation (Fletcher & de la Maza, Mathematical Programming 43
-    (1989) 235). The Lagrangian's curvature is estimated by damped BFGS updates (Powell 1978); modes carry
-    over their weights by their overlap.
+    (1989) 235). The Lagrangian's curvature is estimated by damped BFGS updates (Powell 1978). The weights of modes are transferred to the
+    next design by the overlap of mode shapes.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting

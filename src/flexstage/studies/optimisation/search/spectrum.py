@@ -41,9 +41,10 @@ class Modes:
 
 
 def spectra(model: LinearModel, asked: tuple[Modes, ...], shape: tuple[int, int]) -> list[tuple[Spectrum, ...]]:
-    """Spectra of s designs from the model of a batch (s n,): design after design, each with a tiny imaginary step in one variable.
+    """Compute the spectra of s designs from the model of a batch (s n,), in which each design occurs n times.
 
-    `shape` is (s, n); with n = 0 the batch is (s,), real, and there are no slopes. Raises `DesignError` for too few modes.
+    Each occurrence has a tiny imaginary step in one variable. `shape` is (s, n); with n = 0 the batch is (s,), real, and there are no
+    slopes. Raises `DesignError` for too few modes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -20,7 +20,10 @@ _SAME = 9
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """A `change` (n,) of shares; in the model: `gain` of the merit, remaining `excess` over the limits; `weights` of all sides."""
+    """Result of one step: the `change` (n,) of shares, and the `weights` of all sides.
+
+    In the model, `gain` is the improvement of the merit, and `excess` the remaining violation of limits.
+    """
 
     change: Array
     gain: float
@@ -59,9 +62,8 @@ def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: 
     """Minimise t + d^T B d / 2 + penalty s over a change d within the radius and the ranges.
 
     t is above every side of the objective to first order, s >= 0 above every limit. Sides of frequencies are matrices: their eigenvectors
-    after the change are added as planes until no eigenvalue is above them, which is exact also for crossing modes. A design
-    already `tried` lifts the planes to its values: the second-order correction, without which steps along curved limits
-    are short.
+    after the change are added as planes until no eigenvalue is above them. This is exact also for crossing modes. A design already `tried`
+    shifts the planes to its values. Without this second-order correction, steps along curved limits are short.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting

@@ -12,7 +12,7 @@ from flexstage.studies.optimisation.result import Front, Optimum
 
 
 def convergence_figure(found: Optimum) -> Any:
-    """The objective over accepted designs, one line for each start; open marks are infeasible. Right: the variables in their ranges.
+    """Plot the objective over accepted designs, one line for each start (open marks: infeasible), and the variables in their ranges.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.search.optimum import optimise
@@ -60,7 +60,7 @@ def _ranges(ax: Any, found: Optimum) -> None:
 
 
 def front_figure(found: Front) -> Any:
-    """Both objectives of the designs of a front, and the nominal design."""
+    """Plot both objectives of the designs of a front, and of the nominal design."""
     forms = [
         display_unit_of(each.measure.quantity.si, float(np.max(np.abs([*found.values[:, number], found.before.values[number]]))))
         for number, each in enumerate(found.definition.objectives)

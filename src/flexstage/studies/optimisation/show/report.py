@@ -26,7 +26,7 @@ _SEARCH = "Left: accepted designs of every start; open: infeasible. Right: each 
 
 
 def optimise_report(found: Optimum) -> str:
-    """An optimisation as an HTML page: objective, variables, limits, binding limits, convergence.
+    """Write an optimisation as an HTML page: objective, variables, limits, binding limits, convergence.
 
     Raises `DesignError` if the best design is unstable under its permanent load.
     """
@@ -65,7 +65,7 @@ def _still(data: StageData, name: str, caption: str) -> Picture:
 
 
 def front_report(found: Front) -> str:
-    """A front as an HTML page."""
+    """Write a front as an HTML page."""
     picture = Picture(to_svg(front_figure(found), "front", "designs of the front"), "Pareto-optimal designs.")
     data = stage_data(found.study.design)
     sections = [

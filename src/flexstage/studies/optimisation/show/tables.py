@@ -14,7 +14,7 @@ from flexstage.studies.sweeps.definition import Study
 
 
 def optimise_tables(found: Optimum) -> list[Table | None]:
-    """Objective and variables before and after, limits, binding limits and their sensitivities, the starts.
+    """Tabulate objective and variables before and after, limits, binding limits and their sensitivities, the starts.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.search.optimum import optimise
@@ -25,7 +25,7 @@ def optimise_tables(found: Optimum) -> list[Table | None]:
 
 
 def front_tables(found: Front) -> list[Table]:
-    """The designs of a front: objectives and variables."""
+    """Tabulate the designs of a front: objectives and variables."""
     objectives = found.definition.objectives
     heads = [f"{each.name} ({each.direction.value})" for each in objectives]
     rows = []
@@ -100,7 +100,7 @@ def _starts(found: Optimum) -> dict[str, Start]:
 
 
 def contradiction_text(each: Contradiction, found: Optimum | Front) -> tuple[str, str]:
-    """A contradiction as text, with the nearest values of its limits, and the advice."""
+    """Describe a contradiction: the text with the nearest values of its limits, and the advice."""
     said = [f"'{limit.key} {limit.text}'" for limit in each.limits]
     at = [_nearest_value(limit.key, limit.point, each.point, found) for limit in each.limits]
     least = f"the smallest violation is {100.0 * each.violation:.3g} %, with {', '.join(at)}"

@@ -1,7 +1,7 @@
-"""Platform frequencies of a study's designs, thousands a second: planned once for a study, then evaluated for any designs.
+"""Fast platform frequencies of a study's designs, thousands per second: planned once for a study, then evaluated for any designs.
 
-The method of a design, and whether descriptions are fitted, depend only on the study. They do not depend on the division into pieces,
-nor on the number of remaining designs.
+The method of a design, and whether descriptions are fitted, depend only on the study. They do not depend on the division into pieces, nor
+on the number of remaining designs.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ _SURE = (Status.ITERATED, Status.WHOLE)
 
 @dataclass(frozen=True, eq=False)
 class Engine:
-    """Responses computed by the engine: platform modes (from 0) by name of the response, none without a `plan`.
+    """Responses that the engine computes: `modes` is the platform mode (from 0) of each response; empty without a `plan`.
 
-    The plan is for `numbers`, or else for the variables themselves. `loaded`: designs may be unstable under their permanent load.
+    The inputs of the plan are the `numbers`, or without them the variables. `loaded`: designs may be unstable under their permanent load.
     """
 
     modes: Mapping[str, int]
@@ -47,7 +47,7 @@ class Engine:
     loaded: bool = False
 
     def answers(self, values: Array) -> tuple[Array, Array]:
-        """Frequencies (n, m) [Hz] of the m responses for designs with `values` (n, d) of the variables, and the valid designs (n,).
+        """Compute frequencies (n, m) [Hz] of the m responses for designs with `values` (n, d), and the mask (n,) of valid designs.
 
         An invalid design may have fewer such modes, or a rigid-body motion: a separate evaluation gives the reason.
 
@@ -62,7 +62,7 @@ class Engine:
 
     @property
     def provenance(self) -> str:
-        """Versions of the programs: with equal ones, results are equal to the bit.
+        """Versions of the programs. Equal versions give bit-identical results.
 
         >>> Engine(Table({})).provenance
         'flexstage ..., numpy ... on ...'
@@ -72,7 +72,7 @@ class Engine:
 
 
 def engine_covers(study: Study) -> bool:
-    """Whether a study with its own description of designs supports complex numbers, or names the numbers.
+    """Whether the engine supports a study: it has the standard `mechanism_for`, its own `mechanism_at` (complex values), or `numbers`.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> engine_covers(neck_study())
@@ -85,7 +85,7 @@ def engine_covers(study: Study) -> bool:
 def engine_of(study: Study) -> Engine:
     """Make the engine of a study: its plan, over the variables' ranges if the study has enough designs.
 
-    Other designs are left to dense matrices: those with a description of the study's own. Raises nothing.
+    The engine is empty for studies that it does not cover (`engine_covers`); dense matrices are then used. Raises nothing.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> dict(engine_of(neck_study()).modes)

@@ -24,9 +24,10 @@ Reasons = dict[int, str]
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Designs from `start` on: variables (n, d) and responses (n, r) in SI; `failures` are reasons by row, their responses are NaN.
+    """Designs from number `start`: variables (n, d) and responses (n, r) in SI.
 
-    `provenance` contains versions: with different versions the last digits may differ.
+    `failures` are the reasons of failed designs by row; their responses are NaN. `provenance` contains versions: with different versions
+    the last digits may differ.
     """
 
     start: int
@@ -54,7 +55,7 @@ def piece(study: Study, start: int, stop: int, engine: Engine | None = None) -> 
 
 
 def nominal(study: Study) -> Array:
-    """Responses (r,) of the nominal design. Raises `DesignError` for measures that this stage does not have.
+    """Compute responses (r,) of the nominal design. Raises `DesignError` for measures that this stage does not have.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> nominal(neck_study()).round(0).tolist()

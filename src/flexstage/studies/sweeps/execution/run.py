@@ -91,7 +91,7 @@ def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progre
 
 
 def piece_size(study: Study) -> int:
-    """Number of designs computed at once: more if the engine computes all responses of many.
+    """Return the number of designs computed at once: larger if the engine computes all responses of a large study.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> piece_size(neck_study()), piece_size(neck_study(1_000_000))

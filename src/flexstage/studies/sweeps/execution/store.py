@@ -78,14 +78,14 @@ class Results:
         return tuple(Failure(design, reason) for design, reason in self.failures.items())
 
     def column(self, name: str) -> Array:
-        """Values (n,) of a variable or a response by name."""
+        """Return values (n,) of a variable or a response by name."""
         for names, values in zip(self.names, (self.variables, self.responses), strict=True):
             if name in names:
                 return values[:, names.index(name)]
         raise refuse(name, "unknown column", f"They have {', '.join(sum(self.names, ()))}")
 
     def to_xarray(self) -> Any:
-        """The results as an xarray dataset over the design number, units in the attributes (extra `tables`)."""
+        """Convert the results to an xarray dataset over the design number, units in the attributes (extra `tables`)."""
         import xarray
 
         named = [(name, unit) for names, units in zip(self.names, self.units, strict=True) for name, unit in zip(names, units, strict=True)]
@@ -93,14 +93,14 @@ class Results:
         return xarray.Dataset(data, coords={"design": self.designs}, attrs={"study": self.text})
 
     def to_pandas(self) -> Any:
-        """The results as a pandas frame, one row a design (extra `tables`)."""
+        """Convert the results to a pandas data frame, one row per design (extra `tables`)."""
         import pandas
 
         return pandas.DataFrame({name: self.column(name) for names in self.names for name in names}, index=pandas.Index(self.designs))
 
 
 def folder_of(path: Path) -> Path:
-    """The folder of pieces of a results file.
+    """Return the folder of pieces of a results file.
 
     >>> folder_of(Path("a/results.h5")).as_posix()
     'a/results.h5.pieces'
@@ -109,9 +109,9 @@ def folder_of(path: Path) -> Path:
 
 
 def write_piece(folder: Path, found: Piece) -> Path:
-    """Write a piece into the folder: `<start>.npz`, the designs from `start` on.
+    """Write a piece into the folder: `<start>.npz`, the designs from number `start`.
 
-    Raises `DesignError` if the disk refuses.
+    Raises `DesignError` if the file cannot be written.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as place:
@@ -127,7 +127,7 @@ def write_piece(folder: Path, found: Piece) -> Path:
 
 
 def read_piece(path: Path) -> Piece:
-    """Read a piece back.
+    """Read a piece from its file.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as place:
@@ -146,7 +146,7 @@ def read_piece(path: Path) -> Piece:
 
 
 def pending_pieces(path: Path) -> dict[int, Path]:
-    """Pieces not yet combined, by their first design.
+    """Find the pieces that are not yet combined, by the number of their first design.
 
     >>> pending_pieces(Path("nowhere/results.h5"))
     {}
@@ -156,7 +156,7 @@ def pending_pieces(path: Path) -> dict[int, Path]:
 
 
 def columns_of(study: Study) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], tuple[tuple[str, ...], tuple[str, ...]]]:
-    """Names, then SI units, of the variables and of the responses.
+    """Return names and SI units of the variables, then of the responses.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> columns_of(neck_study())
@@ -167,7 +167,7 @@ def columns_of(study: Study) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], t
 
 
 def open_results(path: Path) -> Hdf:
-    """The results file, read by the process for all HDF5 files; existing files are never written, so that no lock is needed.
+    """Open a results file. One process reads all HDF5 files; existing files are never written, so that no lock is needed.
 
     Raises `FileNotFoundError` for a missing file, `DesignError` for an invalid one.
 
@@ -292,9 +292,9 @@ def _read(file: Hdf, pieces: Iterable[Path]) -> Results:
 
 
 def gather(path: Path, study: Study, size: int) -> Array:
-    """Write the results file with all pieces of `size` designs, and remove them; returns the mask (k,) of its pieces.
+    """Write the results file with all pieces of `size` designs, and remove them; returns the mask (k,) of the pieces in the file.
 
-    Raises `DesignError` if the disk refuses; then file and pieces are unchanged.
+    Raises `DesignError` if the file cannot be written; then file and pieces are unchanged.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study
@@ -343,7 +343,7 @@ def _write(file: Any, stored: _Stored, study: Study) -> None:
 
 
 def require_room(path: Path, study: Study) -> None:
-    """Raise `DesignError` if the disk has no space for a study's results: the file, and its pieces until they are combined.
+    """Raise `DesignError` if the disk has no space for a study's results: the file, and the pieces until they are combined.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> require_room(Path("results.h5").absolute(), neck_study())
@@ -357,7 +357,7 @@ def require_room(path: Path, study: Study) -> None:
 
 
 def file_size(study: Study) -> int:
-    """Largest size of a study's results file [B], without reasons of failures.
+    """Compute the maximum size of a study's results file [B], without reasons of failures.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> file_size(neck_study(2_000_000)) - file_size(neck_study(1_000_000))
@@ -380,7 +380,7 @@ def _labels(file: Hdf, name: str, label: str) -> tuple[str, ...]:
 
 
 def differences(path: Path, study: Study, size: int) -> Iterator[Finding]:
-    """Differences between the study of a results file and this one, in pieces of `size` designs.
+    """Compare the study of a results file with this one, in pieces of `size` designs; one finding for each difference.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study

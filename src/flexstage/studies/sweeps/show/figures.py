@@ -29,16 +29,16 @@ class Display:
     offset: float = 0.0
 
     def of(self, values: Any) -> Any:
-        """SI values in display units."""
+        """Convert SI values to display units."""
         return (values - self.offset) * self.factor
 
     def label(self, name: str) -> str:
-        """A name with its unit."""
+        """Return a name with its unit."""
         return name if self.unit == "1" else f"{name} [{self.unit}]"
 
 
 def display(of: Variable | Measure, values: Array) -> Display:
-    """Display form of SI values of a variable or a response: variables in the units of design files.
+    """Choose the display form of SI values of a variable or a response: variables in the units of design files.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> display(Variable("t", ("parts.neck.thickness",), LENGTH, 1e-3, 2e-3), np.array([1e-3])).unit
@@ -54,7 +54,7 @@ def display(of: Variable | Measure, values: Array) -> Display:
 
 
 def effects_figure(study: Study, found: Effects) -> Any:
-    """Mean of each response over each variable, one panel each; all panels of a response have one scale, to compare slopes."""
+    """Plot the mean of each response over each variable. All panels of a response have the same scale, to compare slopes."""
     rows, columns = len(found.responses), len(found.variables)
     with style_context():
         figure = canvas(FULL, 0.55 + 1.25 * rows)
@@ -81,9 +81,9 @@ def _scale(values: Array) -> tuple[float, float]:
 
 
 def designs_figure(study: Study, results: Results) -> Any:
-    """Designs as lines over parallel axes, variables then responses, each from minimum to maximum; coloured by the first response.
+    """Plot designs as lines over parallel axes, variables then responses, each from minimum to maximum.
 
-    Infeasible ones are grey.
+    Lines are coloured by the first response. Infeasible designs are grey.
     """
     sound = np.flatnonzero(np.all(np.isfinite(results.responses), axis=1))
     chosen = sound[np.linspace(0, len(sound) - 1, min(len(sound), _MOST_LINES)).astype(int)] if len(sound) else sound

@@ -26,7 +26,7 @@ _STRONGEST = "The strongest pairs: lines that are not parallel show interaction.
 
 
 def sweep_report(sweep: Sweep) -> str:
-    """A sweep as an HTML page: distributions first, variables, main effects, shares of variance, designs as lines."""
+    """Write a sweep as an HTML page: distributions first, variables, main effects, shares of variance, designs as lines."""
     study, results, found = sweep.study, sweep.results, sweep.effects
     effects = designs = None
     if found.used:
@@ -46,7 +46,7 @@ def sweep_report(sweep: Sweep) -> str:
 
 
 def study_head(study: Study, kind: str, said: Headline) -> Head:
-    """The head of a study's page: its name, its design and the version."""
+    """Return the head of a study's page: its name, its design and the version."""
     origin = (("design", study.design.name), ("physics", digest(study.design, physics=True)[:16]), ("flexstage", __version__))
     return Head(study.name, kind, origin, said)
 

@@ -21,7 +21,7 @@ _NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")
 
 
 def study_tables(sweep: Sweep) -> list[Table | None]:
-    """Variables, distributions of the responses, variance contributions, and failed designs."""
+    """Tabulate variables, distributions of the responses, variance contributions, and failed designs."""
     study, results, found = sweep.study, sweep.results, sweep.effects
     tables: list[Table | None] = [
         variable_table(study, results),
@@ -33,7 +33,7 @@ def study_tables(sweep: Sweep) -> list[Table | None]:
 
 
 def variable_table(study: Study, results: Results) -> Table:
-    """Variables with their ranges, and the number of designs."""
+    """Tabulate variables with their ranges, and the number of designs."""
     rows = [
         (
             Cell(each.name, Mark.STRONG),
@@ -49,7 +49,7 @@ def variable_table(study: Study, results: Results) -> Table:
 
 
 def limit_notes(study: Study, results: Results) -> list[str]:
-    """Number of feasible designs; without any, the limits that no design meets, or that contradict one another."""
+    """Report the number of feasible designs. If there are none, name the limits that no design meets, or that contradict one another."""
     kept = study.feasible(results.responses)
     if not study.limits or not len(kept):
         return []
@@ -65,7 +65,7 @@ def limit_notes(study: Study, results: Results) -> list[str]:
 
 
 def share_table(found: Effects) -> Table:
-    """First-order and, if known, total indices."""
+    """Tabulate first-order and, if known, total indices."""
     columns: list[Column | str] = ["variable"]
     for name in found.responses:
         columns += [Column(name, "first order")] + ([] if found.total is None else [Column(name, "total")])
@@ -92,7 +92,7 @@ def _error_note(found: Effects, order: int) -> list[str]:
 
 
 def pair_table(found: Effects) -> Table:
-    """Pairs of variables that explain at least a hundredth of a response's variance beyond each alone, the strongest first."""
+    """Tabulate pairs of variables that explain at least 1 % of a response's variance beyond each alone, the strongest first."""
     known = np.nan_to_num(found.pairs).max(axis=2)
     ranked = sorted(combinations(range(len(found.variables)), 2), key=lambda pair: -known[pair])
     shown_pairs = [pair for pair in ranked if known[pair] >= _LEAST][:_MOST_PAIRS]
@@ -112,7 +112,7 @@ def pair_table(found: Effects) -> Table:
 
 
 def share_cell(value: float, form: str = "{:.1f} %") -> Cell:
-    """A share of a variance in percent, with a bar of that length.
+    """Format a share of a variance in percent, with a bar of this length.
 
     >>> share_cell(0.25).text, share_cell(float("nan")).text
     ('25.0 %', '-')
@@ -124,7 +124,7 @@ def share_cell(value: float, form: str = "{:.1f} %") -> Cell:
 
 
 def failure_table(results: Results) -> Table:
-    """Reasons of failed designs, the most frequent first."""
+    """Tabulate the reasons of failed designs, the most frequent first."""
     reasons: dict[str, list[int]] = {}
     for design, reason in results.failures.items():
         reasons.setdefault(_NUMBER.sub("", reason), []).append(design)

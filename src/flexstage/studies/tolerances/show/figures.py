@@ -1,4 +1,4 @@
-"""Distributions of responses over the samples of a tolerance study, with their limits."""
+"""Figures of the responses' distributions over the samples of a tolerance study, with their limits."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FEWEST = 12
 
 
 def distributions_figure(found: Toleranced) -> Any:
-    """A histogram of each response with the nominal design and its limits; violations are red."""
+    """Plot a histogram of each response with the nominal design and its limits; violations are red."""
     names = list(found.study.measures)
     rows = -(-len(names) // _ACROSS)
     with style_context():
@@ -32,7 +32,7 @@ def distributions_figure(found: Toleranced) -> Any:
 
 
 def separate_panels(figure: Any, rows: int) -> list[Any]:
-    """Panels in rows of three, each with axes of its own.
+    """Add panels in rows of three, each with its own axes.
 
     >>> len(separate_panels(canvas(7.0, 3.0), 2))
     6

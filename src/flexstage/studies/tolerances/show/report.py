@@ -19,7 +19,7 @@ _LIMITS = "Samples by value; black: the nominal design; red: the limits, and sam
 
 
 def tolerance_report(found: Toleranced) -> str:
-    """A tolerance study as an HTML page: yields first, scatter, distributions, contributions, allowable tolerances, crosstalk."""
+    """Write a tolerance study as an HTML page: yields first, scatter, distributions, contributions, allowable tolerances, crosstalk."""
     study, statistics = found.study, found.summary
     drawn = Picture(to_svg(distributions_figure(found), "distributions", "histograms of the responses"), _LIMITS)
     data = stage_data(study.design)

@@ -26,7 +26,7 @@ _NO_YIELD = "No yield: neither the design's [requirements] nor the study's [limi
 
 
 def tolerance_tables(found: Toleranced) -> list[Table | None]:
-    """Scatter, yield, distributions of responses, variance contributions, allowable tolerances, crosstalk."""
+    """Tabulate scatter, yield, distributions of responses, variance contributions, allowable tolerances, crosstalk."""
     tables: list[Table | None] = [scatter_table(found), yield_table(found), spread_table(found), share_table(found)]
     if found.summary.lines:
         tables.append(allowance_table(found))
@@ -35,7 +35,7 @@ def tolerance_tables(found: Toleranced) -> list[Table | None]:
 
 
 def scatter_table(found: Toleranced) -> Table:
-    """Deviations, and the numbers they apply to."""
+    """Tabulate the deviations, and the numbers to which they apply."""
     rows = [
         (Cell(each.name, Mark.STRONG), ", ".join(each.source), distribution_text(each, each.distribution), _reach_text(each))
         for each in found.study.scatters
@@ -56,7 +56,7 @@ def _reach_text(scatter: Scatter) -> str:
 
 
 def distribution_text(scatter: Scatter, distribution: Distribution) -> str:
-    """A distribution as text: `5 um (sigma), within 10 um`.
+    """Format a distribution as text: `5 um (sigma), within 10 um`.
 
     >>> from flexstage.studies.tolerances.example import leaf_study
     >>> [distribution_text(each, each.distribution) for each in leaf_study().scatters]
@@ -77,7 +77,7 @@ def _size(scatter: Scatter, value: float) -> str:
 
 
 def yield_table(found: Toleranced) -> Table | None:
-    """Each requirement, its nominal value and its yield; or the absence of a specification."""
+    """Tabulate each requirement with its nominal value and its yield; without a specification, its absence is stated."""
     together, failed = found.summary.together, found.summary.failed
     if together is None:
         return make_table("Yield", [""], [(_NO_YIELD,)])
@@ -92,7 +92,7 @@ def _percent(share: float) -> str:
 
 
 def spread_table(found: Toleranced) -> Table:
-    """Distributions of the responses."""
+    """Tabulate the distributions of the responses."""
     spread, rows = found.summary.spread, []
     for column, (name, measure) in enumerate(found.study.measures.items()):
         values = [
@@ -114,7 +114,7 @@ def spread_table(found: Toleranced) -> Table:
 
 
 def share_table(found: Toleranced) -> Table:
-    """Variance contributions of the entries to each response."""
+    """Tabulate the variance contributions of the entries to each response."""
     spread, rows, sampled = found.summary.spread, [], False
     for column, name in enumerate(found.study.measures):
         trusted = bool(spread.trusted[column])
@@ -129,7 +129,7 @@ def share_table(found: Toleranced) -> Table:
 
 
 def allowance_table(found: Toleranced) -> Table:
-    """Allowable deviation of each entry."""
+    """Tabulate the allowable deviation of each entry."""
     allowed = found.allowance
     rows = [
         (
@@ -164,7 +164,7 @@ def _allowed_notes(allowed: Allowance) -> list[str]:
 
 
 def crosstalk_table(found: Toleranced, crosstalk: Crosstalk) -> Table:
-    """Deviations of the pose per command, and the worst."""
+    """Tabulate the deviations of the pose per command, and the worst deviation."""
     opened = crosstalk.kind == OPEN
     title = "Crosstalk, commanded by the nominal R_a" if opened else "Crosstalk, regulated by gauges with the nominal R_s^-1"
     heads = [Column("", numeric=False), *(Column(name, "urad" if name.startswith("r") else "um") for name in crosstalk.coordinates)]
