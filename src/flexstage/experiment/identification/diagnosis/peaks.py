@@ -168,7 +168,7 @@ def narrow_peaks(responses: Responses, left: ResidualResponses) -> list[Peak]:
     """List prominent single lines of the residual responses.
 
     An F-test compares each line with a cubic through its neighbours, from the 2nd to the 12th on both sides. The false-alarm rate is one in
-    twenty data sets. Lines within four half-widths of a mode, or within three lines, belong to the mode and are not tested. Responses with
+    twenty data sets. Lines within four half-widths of a mode, or within three lines, belong to the mode and are not listed. Responses with
     unevenly spaced lines are not tested.
 
     >>> lines, noise = np.arange(100.0), np.random.default_rng(2).standard_normal((2, 100, 1, 1))
