@@ -177,7 +177,7 @@ class Compared(InNotebook):
 
     @property
     def fea_order(self) -> Annotated[int | None, VIEW]:
-        """Polynomial order of the finite elements; `None` without finite elements."""
+        """Polynomial order of the finite elements; null without finite elements."""
         return None if self.fea is None else self.fea.order
 
 

@@ -117,7 +117,7 @@ class RecordTexts:
         )
 
     def require_unsaid(self) -> None:
-        """Refuse all record options, for a command without a record."""
+        """Raise `DesignError` for every record option in use, for a command without a record."""
         said = ("array" if name == "arrays" else name.replace("_", "-") for name, value in vars(self).items() if value)
         require(Finding(f"--{name}", "needs a record, and there is none", "Name them by --record, or leave it out") for name in said)
 

@@ -142,9 +142,7 @@ def _decades(axes: Any) -> None:
 
 
 def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[float, float]) -> Any:
-    """Plot the estimators H1 (`first`), H2 and the paper's T_ij = G_ij/G_ii (`others`) of each output for its dominant input.
-
-    Returns a matplotlib Figure over `band` [Hz].
+    """Plot H1 (`first`) and `others`, such as H2, of each output for its dominant input over `band` [Hz], as a matplotlib Figure.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> from flexstage.experiment.spectral.transfer import h1, h2

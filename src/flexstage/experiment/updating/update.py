@@ -289,8 +289,8 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
     identified deviations and the model error. With a `gain_error`, static gains are also data. Intervals are valid if frequencies are
     nearly linear in x within the intervals.
 
-    Raises `DesignError` for unknown, ambiguous and zero numbers, for numbers without effect, for fewer data than numbers, for a record
-    without the stage's gauges, and if the iteration does not converge.
+    Raises `DesignError` for numbers that are unknown, ambiguous, zero or without effect, for fewer data than numbers, and for a record
+    without the stage's gauges. Raises it also if the iteration does not converge.
     """
     freed = free(mechanism, names, known)
     model = start_design(freed.mechanism, ()).model

@@ -26,8 +26,8 @@ from flexstage.parts.amplifier import Amplifier
 class NoiseDrive(CheckedFields):
     """Independent Gaussian noise drive of the actuators.
 
-    `stroke` is the rms of the commanded free stroke [m], `voltage` the rms of the command [V], `current` [A], `force` [N] or `torque` [N m]
-    the rms of a force actuator's input. Default: 1 % of each full stroke, or of the largest sustained input of a force actuator.
+    `stroke` [m] and `voltage` [V] are the rms of a stack's commanded free stroke or voltage. `current` [A], `force` [N] or `torque` [N m]
+    is the rms of a force actuator's input. Default: 1 % of each full stroke, or of the largest sustained input of a force actuator.
 
     The density is constant within `band` (low, high) [Hz], by default 0 to 0.4 times the sampling rate. It decays to zero from `low` to
     `low`/2 and from `high` to 1.25 `high`. `actuators` names the driven and recorded actuators (default: all).

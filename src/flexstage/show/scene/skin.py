@@ -103,7 +103,7 @@ def fan(corners: Array) -> Array:
 
 
 def face(points: Array, share: float) -> DrawnSurface:
-    """Build the surface of a convex polygon (k, 3); all its points have the same share.
+    """Build the surface of a convex polygon (k, 3); all its points have the same `share` (see `DrawnSurface`).
 
     >>> len(face(np.zeros((5, 3)), 1.0).triangles)
     3

@@ -126,7 +126,7 @@ def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[t
 
 
 def foreign_links(ranked: Iterable[str], columns: Mapping[str, Mapping[str, float]]) -> list[str]:
-    """Select the links of other units that tables name, from all links `ranked` by size, for the shares by actuator in `columns`.
+    """Select, from all links `ranked` by size, the links of other units with a significant share of a loss in `columns`.
 
     >>> foreign_links(["front.rz", "B2/front", "B2/back"], {"B1": {"front.rz": 0.02, "B2/front": 0.01, "B2/back": 0.0002}})
     ['B2/front']

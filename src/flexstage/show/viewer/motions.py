@@ -24,7 +24,7 @@ from flexstage.show.display import format_value, number, to_typography
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 PLATFORM_MODE = "a mode of the platform"
-"""Start of the remark of a platform mode."""
+"""First words of the remark on a platform mode."""
 _UNIT_STROKES = {"m": 1e-6, "N": 1.0, "A": 1.0}
 _UNIT_MOTION = 1e-6
 _WARMER = ("1 K warmer", "1 K/m along x", "1 K/m along y", "1 K/m along z")

@@ -42,8 +42,8 @@ def export_superelement(
 
     The solid contains the body or link of this `name` and all parts of the same component (see `fea.component`). Its ports are the end
     faces of links to other components: the ground, rigid bodies, stacks, other units. A port remains plane and has the name of its link
-    (`left`, or `left-platform` if both ends of the link are ports). The frame of a port is at the middle of the face, with the axes of the
-    stage, or of the unit for a solid drawn in a unit.
+    (`left`, or `left-platform` if both ends of the link are ports). The frame of a port is at the middle of the face. Its axes are
+    those of the stage, or of the unit if the solid belongs to a unit.
 
     Stiffness `K` and mass `M` are in SI units. Their coordinates are the ports' twists, then inner coordinates: the `reduction.modes`
     lowest modes with all ports fixed, and static responses that replace the omitted modes. These are the responses to wrenches on the

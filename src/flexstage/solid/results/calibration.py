@@ -54,8 +54,8 @@ class Calibration(InNotebook):
 def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
     """Compute the 6x6 compliance of every distinct hinge in a design file's text and insert the results; comments are kept.
 
-    Raises `DesignError` for hinges that are calibrated already, have overrides in single instances or are members of a compound, and if
-    FEA cannot compute a hinge with sufficient accuracy.
+    Raises `DesignError` for hinges that are calibrated already, have overrides in single instances or are members of a compound. Raises it
+    also if FEA cannot compute a hinge with sufficient accuracy.
     """
     mechanism = loads(text, where=where)
     require(_refuse_calibrated(mechanism))

@@ -80,12 +80,12 @@ class SolidHinge(DistinctHinge, InNotebook):
 
     @property
     def error(self) -> Annotated[float | None, RATIO]:
-        """Estimated relative error of the compliance at the hinge's end, for any entry; `None` if unknown."""
+        """Estimated relative error of the compliance at the hinge's end, for any entry; null if unknown."""
         return self.found.error if np.isfinite(self.found.error) else None
 
     @property
     def errors(self) -> Annotated[Array | None, RATIO]:
-        """Estimated relative errors (6,) of the direct compliances about the centre; `None` if unknown."""
+        """Estimated relative errors (6,) of the direct compliances about the centre; null if unknown."""
         if self.error is None:
             return None
         return np.maximum(self.error, np.where(np.isfinite(self.found.changes), self.found.changes, 0.0))

@@ -47,9 +47,9 @@ class SolidStage(InNotebook):
     """Results of a stage by the solid model.
 
     `statics` and `modes` are as for any model. `stress` is the highest stress at every link and body over all corners of the strokes from
-    zero, permanent load included (`None` without strokes or with too many corners). `worst` (N,) are the model's coordinates at the corner
-    with the highest stress of the weakest link. `blocks` (k,) is the strain-energy fraction of the bodies, which are rigid in other models,
-    in each mode.
+    zero, permanent load included. It is `None` without strokes or with too many corners. `worst` (N,) are the model's coordinates at the
+    corner with the highest stress of the weakest link. `blocks` (k,) is the strain-energy fraction of the bodies, which are rigid in other
+    models, in each mode.
     """
 
     statics: Annotated[Statics, Called("stiffness")]

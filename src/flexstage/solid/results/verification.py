@@ -112,7 +112,7 @@ class Row:
 
     @property
     def trust(self) -> Annotated[TheoryCheck | None, VIEW, Heading(absent="no verdict", mark=_GRADES.__getitem__)]:
-        """Verdict: the model that is reliable for this figure; `None` without a verdict."""
+        """Verdict: the model that is reliable for this figure; null without a verdict."""
         if self.calibration:
             return TheoryCheck.DEPENDENT
         if self.difference is None or self.fea_error is None:

@@ -129,7 +129,7 @@ def verification_headline(found: Verification) -> Headline:
 
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """Convert the platform's modes by finite elements to motions of a viewer, with remarks on the paired modes of `theory` by index."""
+    """Convert the platform's modes by finite elements to motions of a viewer, with remarks on their paired modes of `theory`, by index."""
     return fea_motions(still_data(mechanism).bones, Moving(stage.modes, stage.read.model), theory)
 
 

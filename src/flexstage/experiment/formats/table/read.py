@@ -68,7 +68,7 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
 
 
 def read_record(samples: TableSamples, said: Mapping[str, Attribute], options: Options, time: int | None) -> tuple[Record | Responses, ...]:
-    """Build the record from all columns of a table except the times, column number `time`; `said` are the file's attributes."""
+    """Build a record from a table: times from the column with index `time`, channels from all others; `said` are the file's attributes."""
     layout = samples.layout
     columns = tuple(number for number in range(len(layout.names)) if number != time)
     texts: dict[str, Attribute] = {kind: tuple(getattr(layout, kind)[number] for number in columns) for kind in ("names", "units")}

@@ -103,8 +103,9 @@ def peaks(
 ) -> tuple[Peak, ...]:
     """List all peaks that are not modes, by ascending frequency.
 
-    The list has removed tones; resonances `refused` for lack of excitation by the inputs; resonances `lost` for lack of significance, if
-    noise is as strong in at most one of a thousand trials; and prominent single lines of an analyser's responses.
+    The list has removed tones, resonances `refused` because the inputs do not excite them, and resonances `lost` because they are not
+    significant. Of the latter, only resonances are listed that noise reaches in at most one of a thousand trials. Of an analyser's
+    responses, prominent single lines are listed, too.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
