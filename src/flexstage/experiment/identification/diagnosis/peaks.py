@@ -104,8 +104,8 @@ def peaks(
     """List all peaks that are not modes, by ascending frequency.
 
     The list has removed tones, resonances `refused` because the inputs do not excite them, and resonances `lost` because they are not
-    significant. Of the latter, only resonances are listed that noise reaches in at most one of a thousand trials. Of an analyser's
-    responses, prominent single lines are listed, too.
+    significant. A lost resonance is listed only if noise is as strong in less than one of a thousand trials. For an analyser's responses,
+    the list also has prominent single lines.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
