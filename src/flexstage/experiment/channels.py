@@ -1,4 +1,4 @@
-"""Channels of a test that appear exchanged, inverted or scaled, from the effect of a correction on the modes."""
+"""Detection of exchanged, inverted or scaled channels of a test, from the effect of a correction on the modes."""
 
 from __future__ import annotations
 
@@ -31,9 +31,10 @@ Score = Callable[[Array], float]
 
 @dataclass(frozen=True, eq=False)
 class Residues:
-    """Modal gains (groups, outputs, inputs) of model and test, in equal units; `inputs_known` (m,) are inputs with convertible units.
+    """Modal gains (groups of modes, outputs, inputs) of the model, `theory`, and of the test, `measured`, in equal units.
 
-    `direct` (m,) are inputs in the actuator's own quantity or a force; a voltage may precede an unknown amplifier.
+    `inputs_known` (m,) marks inputs with convertible units. `direct` (m,) marks inputs in the actuator's own quantity or a force. A voltage
+    is not direct: the gain of the amplifier after it may be unknown.
     """
 
     outputs: tuple[str, ...]
@@ -46,7 +47,7 @@ class Residues:
 
 @dataclass(frozen=True, eq=False)
 class SuspectedFault:
-    """Suspected fault of outputs; corrected, output i is `factors[i]` times the channel `order[i]`."""
+    """Suspected fault of outputs, with its correction: output i becomes `factors[i]` times the channel number `order[i]`."""
 
     what: str
     how: str
@@ -55,21 +56,22 @@ class SuspectedFault:
     text: str = ""
 
     def put_right(self, values: Array) -> Array:
-        """Values (p, ...) of the outputs after correction."""
+        """Return the values (p, ...) of the outputs after correction."""
         return self.factors[:, None] * values[self.order]
 
     def then(self, other: SuspectedFault) -> SuspectedFault:
-        """Both corrections in sequence."""
+        """Return one correction: this one, followed by `other`."""
         return SuspectedFault(
             f"{self.what} and {other.what}", "put right", self.order[other.order], other.factors * self.factors[other.order]
         )
 
 
 def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Callable[[], Array] | None = None) -> SuspectedFault | None:
-    """Find the correction that makes shapes similar: two outputs exchanged, one or two inverted, or all divided by `scales` (p,).
+    """Find the correction of `outputs` that makes the measured `shapes` (p, k) similar to the model's, or `None`.
 
-    If none suffices, two corrections together are tried, with an almost complete match required. Of several equal ones the first counts; of
-    equal pairs with different channels, none. `scales` are computed only if an improvement is possible.
+    A correction exchanges two outputs, inverts one or two, or divides all by `scales` (p,). If one correction is insufficient, pairs of
+    corrections are tried, which must give an almost complete match. Of several equally good corrections the first is returned. If
+    equally good pairs differ in their effect, no pair is used. `scales` is called only if an improvement is possible.
 
     >>> theory = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
     >>> theory = theory / np.linalg.norm(theory, axis=0)
@@ -141,7 +143,9 @@ def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[Suspec
 
 
 def output_scales(theory: Array, measured: Array) -> Array:
-    """Estimate the measured size of each output (p, groups) relative to the model and to the typical one; groups have any size.
+    """Estimate the scale (p,) of each output's amplitudes (p, groups) in the test relative to the model.
+
+    The median scale of all outputs is 1. Each group of modes may have its own scale, which is eliminated.
 
     >>> theory = np.array([[1.0, 2.0, 1.0], [3.0, 1.0, 2.0], [1.0, 1.0, 3.0]])
     >>> output_scales(theory, theory * [[1.0], [1.0], [1000.0]] / [1.0, 2.0, 7.0]).round(3).tolist()
@@ -157,9 +161,10 @@ def output_scales(theory: Array, measured: Array) -> Array:
 
 
 def gain_doubts(residues: Residues) -> tuple[str, ...]:
-    """Find inputs or outputs that appear exchanged or inverted, or scaled, from their part in the modes.
+    """Find inputs or outputs that appear exchanged, inverted or scaled, from their gains in the modes.
 
-    If an exchange on either side suffices, the side with the smaller residual counts; inputs are evaluated again after corrected outputs.
+    If exchanged outputs explain the gains better than exchanged inputs, the outputs are reported. The inputs are then evaluated again
+    with corrected outputs.
 
     >>> theory = np.array([[[1.0, 0.2], [0.1, 1.0]], [[0.3, -1.0], [1.0, 0.5]]])
     >>> gain_doubts(Residues(("S1", "S2"), ("B1", "B2"), theory, theory[:, :, ::-1], *np.ones((2, 2), dtype=bool)))
@@ -257,6 +262,6 @@ def _nearest_median(ratios: Array) -> float:
 
 
 def normalise(residues: Residues) -> Residues:
-    """Divide both, group by group, by the model's size, for equal weight of every mode."""
+    """Divide the gains of model and test, group by group, by the norm of the model's gains, for equal weight of every mode."""
     size = np.maximum(np.linalg.norm(residues.theory, axis=(1, 2)), 1e-300)[:, None, None]
     return replace(residues, theory=residues.theory / size, measured=residues.measured / size)

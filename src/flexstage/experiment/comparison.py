@@ -61,7 +61,7 @@ class Measured:
 
     @property
     def number(self) -> Annotated[int, VIEW, Heading("mode of the record")]:
-        """Number in the record, from 1."""
+        """Number of the mode among those identified in the record, from 1."""
         return self.index + 1
 
 
@@ -69,9 +69,9 @@ class Measured:
 class ComparedMode:
     """Platform mode by model, finite elements and test, frequencies in Hz.
 
-    `number` counts the platform's modes from 1. `assurance` is the modal assurance of model and test at the sensors; for repeated modes the
-    share of the measured shape within the model's subspace. `fea_assurance` compares model and finite elements by all common motions: below
-    0.8 `fea` is absent.
+    `number` counts the platform's modes from 1. `assurance` is the modal assurance of model and test at the sensors. For repeated modes it
+    is the share of the measured shape within the model's subspace. `fea_assurance` compares model and finite elements by all common
+    motions. If it is below 0.8, `fea` is absent.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -96,17 +96,17 @@ class ComparedMode:
 
     @property
     def difference(self) -> Annotated[float | None, RATIO, _DIFFERENCE]:
-        """Model relative to test, minus one."""
+        """Frequency of the model over the test's, minus one."""
         return None if self.experiment is None else self.theory / self.experiment.frequency - 1.0
 
     @property
     def fea_difference(self) -> Annotated[float | None, RATIO, replace(_DIFFERENCE, text="FEA difference")]:
-        """FEA relative to test, minus one."""
+        """Frequency of the finite elements over the test's, minus one."""
         return None if self.experiment is None or self.fea is None else self.fea / self.experiment.frequency - 1.0
 
     @property
     def uncertainty(self) -> Annotated[float | None, INNER, RATIO, Heading("+-", digits=2, unit="%")]:
-        """Half of the test's 95 % interval, relative."""
+        """Half of the test's 95 % interval, relative to the measured frequency."""
         if self.experiment is None:
             return None
         low, high = self.experiment.frequency_interval
@@ -151,8 +151,8 @@ class FurtherMode:
 class Compared(InNotebook):
     """Comparison of model, finite elements and test, mode by mode.
 
-    `modes` are the platform's. `further` are measured modes without a partner among them. `sensors` are the outputs of the shape
-    comparison. `warnings` list missing information and unreliable pairings; `misnamed` lists channels that appear exchanged, inverted or
+    `modes` are the platform's modes. `further` are measured modes not paired with a platform mode. `sensors` are the outputs of the shape
+    comparison. `warnings` list missing information and unreliable pairings. `misnamed` lists channels that appear exchanged, inverted or
     scaled.
     """
 
@@ -169,7 +169,7 @@ class Compared(InNotebook):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes: the analytical model, and the order of finite elements."""
+        """Notes on the analytical model and on the order of the finite elements."""
         if self.fea is None:
             return (f"Theory: {self.model.value} model.",)
         error = "error estimated from the order below" if self.fea.errors else "error not estimated: no coarser result"
@@ -177,7 +177,7 @@ class Compared(InNotebook):
 
     @property
     def fea_order(self) -> Annotated[int | None, VIEW]:
-        """Order of the finite elements; null without them."""
+        """Polynomial order of the finite elements; null without finite elements."""
         return None if self.fea is None else self.fea.order
 
 
@@ -185,11 +185,11 @@ class Compared(InNotebook):
 def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, model: Model = Model.LUMPED) -> Compared:
     """Compare the platform's modes by model, optional finite elements, and test.
 
-    Compares shapes at the outputs common to record and stage, by modal assurance (Allemang & Brown 1982), measured shapes by their real
-    part. Each mode gets the most similar measured mode, all pairs optimised together. Modes of the model within 1 % are one subspace, with
-    any basis. Frequency distance has a small weight, which decides between shapes that the sensors cannot distinguish. Modes more than a
-    factor 1.6 apart are not paired, nor below an assurance of 0.5. Measured modes may also be local modes of the model. Raises
-    `DesignError` without a common output.
+    Shapes are compared at the outputs common to record and stage, by modal assurance (Allemang & Brown 1982), with the real part of
+    measured shapes. The assignment of measured modes to modes of the model maximises the similarity of all pairs together. Modes of the
+    model within 1 % in frequency are one subspace. The frequency distance has a small weight: it decides between shapes that the sensors
+    cannot distinguish. Pairs differ by less than a factor of 1.6 in frequency and have an assurance of at least 0.5. Measured modes may
+    also be paired with local modes of the model. Raises `DesignError` without a common output.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.experiment.example import one_mode_record

@@ -10,11 +10,13 @@ from flexstage.experiment.records.record import Channel, Record, Role, in_memory
 from flexstage.experiment.spectral.lines import edges, gather_cells, record_lines
 
 POLE = 10.0 * (-0.02 + 1j * np.sqrt(1.0 - 0.02**2))
-"""Its pole in Hz: a natural frequency of 10 Hz, damping ratio 2 %."""
+"""Pole of the example stage in Hz (rad/s over 2 pi): natural frequency 10 Hz, damping ratio 2 %."""
 
 
 def one_mode_record(*, seconds: float = 64.0, noise: float = 0.05) -> Record:
-    """Generate a record of white noise input and the stage's motion, with measurement noise relative to its rms; always the same numbers.
+    """Generate a record of a white noise input and the stage's motion, with the same numbers in every call.
+
+    `noise` is the rms of the measurement noise relative to the motion's rms.
 
     >>> one_mode_record().duration
     64.0
@@ -30,7 +32,7 @@ def one_mode_record(*, seconds: float = 64.0, noise: float = 0.05) -> Record:
 
 
 def one_mode_band(second: Array | None = None) -> tuple[Band, Modal]:
-    """Return the band around that mode, and start poles of a fit in Hz near the true one, and at `second` if given.
+    """Return the band around the example's mode, and start values of a fit: a pole near `POLE` and, if specified, at `second` [Hz].
 
     >>> one_mode_band()[0].cells.width
     2

@@ -34,8 +34,9 @@ _DEFAULT = Search()
 class Identification:
     """Identification of a test: its data, modes and spectra.
 
-    `multiple` (f, p) is the multiple coherence. `second` and `ratio` are H2 and the paper's T_ij = G_ij/G_ii (Eq. 29), absent if the
-    spectra do not define them. All are absent for an analyser's responses. H1 and the ordinary coherence are in `found.responses`.
+    `multiple` (f, p) is the multiple coherence. `second` and `ratio` are H2 and the paper's T_ij = G_ij/G_ii (Eq. 29); they are absent if
+    the spectra do not define them. For an analyser's responses all three are absent. `found.responses` contains H1 and the ordinary
+    coherence.
     """
 
     test: Annotated[Measurement, INNER]
@@ -65,9 +66,9 @@ def usable_measurement(
     accept_faults: frozenset[FaultTolerance] = frozenset(),
     requirements: RecordRequirements | None = None,
 ) -> Measurement:
-    """Check which file contents can be used together; raises `DesignError` with every fault that is not accepted.
+    """Return the usable measurement of file contents; raises `DesignError` with every fault that is not accepted.
 
-    Several records are tests of one stage; responses are used alone.
+    Several records must be tests of one stage. Responses of an analyser cannot be combined with other contents.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> [each.duration for each in usable_measurement([one_mode_record()])]
@@ -92,7 +93,7 @@ def usable_measurement(
 
 
 def identification(test: Measurement, search: Search = _DEFAULT) -> Identification:
-    """Identify the modes of a test, with their spectra. Raises `DesignError` as `identify`.
+    """Identify the modes of a test, with spectra and coherences. Raises `DesignError` for the errors of `identify`.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> seen = identification((one_mode_record(),))

@@ -1,4 +1,4 @@
-"""Progress of a computation: its observer, and the current part of the whole."""
+"""Progress of a computation: callback for the progress, and the current part of the computation."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from contextvars import ContextVar
 from typing import TypeAlias
 
 ProgressCallback: TypeAlias = Callable[[str, float], None]
-"""Callback with the current work and the completed share, 0 to 1."""
+"""Callback with two arguments: a text for the current step, and the completed share, 0 to 1."""
 
 
 def _ignore(_text: str, _share: float) -> None:
@@ -20,7 +20,7 @@ _FOLLOWER: ContextVar[ProgressCallback] = ContextVar("_FOLLOWER", default=_ignor
 
 @contextmanager
 def followed(told: ProgressCallback) -> Generator[None]:
-    """Report the progress of the computations within to `told`.
+    """Report the progress of computations inside the `with` block to the callback `told`.
 
     >>> with followed(print), part(0.5, 1.0, "finding modes"):
     ...     report(0.5)
@@ -35,7 +35,7 @@ def followed(told: ProgressCallback) -> Generator[None]:
 
 @contextmanager
 def part(start: float, stop: float, text: str = "") -> Generator[None]:
-    """Assign the range from `start` to `stop` (shares) of the whole to the work within; `text` describes it."""
+    """Assign the range from `start` to `stop` of the total progress, 0 to 1, to the work inside the `with` block; `text` describes it."""
     outer = _FOLLOWER.get()
     with followed(lambda own, share: outer(text or own, start + share * (stop - start))):
         yield

@@ -83,7 +83,7 @@ FrequencyResolution: TypeAlias = Annotated[
 
 @dataclass(frozen=True)
 class RecordTexts:
-    """Record options as command-line texts; only some commands have `excitation`."""
+    """Record options as command-line texts; commands without the option `excitation` leave it empty."""
 
     inputs: Inputs = None
     outputs: Outputs = None
@@ -117,12 +117,12 @@ class RecordTexts:
         )
 
     def require_unsaid(self) -> None:
-        """Refuse every record option without a record."""
+        """Raise `DesignError` for every record option in use, for a command without a record."""
         said = ("array" if name == "arrays" else name.replace("_", "-") for name, value in vars(self).items() if value)
         require(Finding(f"--{name}", "needs a record, and there is none", "Name them by --record, or leave it out") for name in said)
 
     def search(self) -> Search:
-        """Search parameters."""
+        """Convert to search parameters of the identification."""
         band = None if self.band is None else (_hertz("--band", self.band[0]), _hertz("--band", self.band[1]))
         if self.band is not None and band is not None and band[0] >= band[1]:
             raise refuse("--band", f"{self.band[0]} to {self.band[1]} is no band", "Use a low frequency and a higher one")
@@ -131,7 +131,7 @@ class RecordTexts:
         return Search(band=band, segments=None if lines is None else Segments(1.0 / lines), excitation=moved)
 
     def requirements(self, model: LinearModel | None, highest: float | None = None) -> RecordRequirements:
-        """Requirements of records: the stage's outputs, if known, a rate for the highest mode or the band, the resolution."""
+        """Convert to record requirements: the model's outputs, a rate for the band or else the `highest` mode [Hz], resolution."""
         top = _hertz("--band", self.band[1]) if self.band is not None else highest
         outputs = None if model is None else tuple((channel.name, channel.unit) for channel in model.outputs)
         unrecorded = self.excitation not in (None, Excitation.RECORDED)
@@ -142,7 +142,7 @@ class RecordTexts:
 
 
 def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record | Responses]:
-    """Read the files; raises `DesignError` with the errors of all."""
+    """Read the record files; raises `DesignError` with the errors of all files."""
     found: list[Record | Responses] = []
     findings = list(_repeated(paths))
     for path in dict.fromkeys(paths):
@@ -155,7 +155,7 @@ def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record 
 
 
 def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearModel | None, highest: float | None = None) -> Identification:
-    """Identify the modes of records and print each warning; with the stage's model and its `highest` mode [Hz], if known."""
+    """Identify the modes of records and print each warning. If known, the stage's model and `highest` mode [Hz] set record requirements."""
     reader, search, needs = texts.options(), texts.search(), texts.requirements(model, highest)
     with progress_bar() as shown, followed(shown.share):
         seen = identification(usable_measurement(open_records(paths, reader), reader.accept_faults, needs), search)
@@ -165,7 +165,7 @@ def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearMod
 
 
 def shapes_on(mechanism: Mechanism, seen: Identification) -> StageShapes:
-    """Map measured shapes to the stage; prints the reason if impossible."""
+    """Map measured shapes to motions of the stage; prints the reason if this is impossible."""
     found = stage_shapes(ideal(mechanism), seen.found)
     if found.missing:
         print_note(f"no shapes on the stage: {found.missing}")

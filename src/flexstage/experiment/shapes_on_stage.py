@@ -1,4 +1,4 @@
-"""Measured shapes on the stage: body motions from outputs named as the stage's gauges and motions."""
+"""Measured shapes as motions of the stage's bodies, from outputs with the names of the stage's gauges and motions."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ class StageShapes:
     """Measured shapes as motions of the stage.
 
     `motions` are the twists (6, k) [m, rad] of all modes by body. `used` names the outputs used. `explained` (k,) is the share of each
-    measured shape explained by ideal motion: 1 if outputs do not exceed degrees of freedom. `missing` is the reason for missing twists.
+    measured shape explained by ideal motion. It is 1 if there are no more outputs than degrees of freedom. `missing` is the reason for
+    missing twists.
     """
 
     motions: Mapping[str, Array]
@@ -43,10 +44,11 @@ class StageShapes:
 
 
 def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
-    """Fit ideal stage motions to the measured shapes: x = V (R V)^+ s, rows of R from R_s or from a body's twist.
+    """Fit ideal stage motions to the measured shapes s by least squares: x = V (R V)^+ s.
 
-    Least squares, with rotations weighted by `length`; equals R_s^-1 of the paper (Eq. 14) for six gauges. Bodies move with hinges free
-    about their intended axes.
+    The columns of V are the ideal motions. A row of R is the row of a gauge in R_s, or a component of a body's twist. Rotations are
+    weighted by the kinematics' characteristic length. For six gauges the result equals R_s^-1 of the paper (Eq. 14). All bodies move by
+    the ideal kinematics, with hinges free about their intended axes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -74,7 +76,7 @@ def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
 
 
 def si_shapes(found: Identified, names: Sequence[str] | None = None) -> Array:
-    """Convert real shapes (p, k) of all or the named outputs to coherent SI units, for example with um and mm mixed.
+    """Convert the real shapes (p, k) of all or the named outputs to SI units, because outputs may have different units such as um and mm.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -89,7 +91,7 @@ def si_shapes(found: Identified, names: Sequence[str] | None = None) -> Array:
 
 
 def si_factor(channel: Channel) -> float:
-    """Return the size of a channel's unit in SI; 1 if unknown.
+    """Return a channel's unit in SI units (1e-6 for um); 1 if unknown.
 
     >>> si_factor(Channel("S1", "um")), si_factor(Channel("S1"))
     (1e-06, 1.0)

@@ -29,7 +29,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 
 def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
-    """A path as an HTML page: an animated stage with curves and a cursor; static in print."""
+    """Write a stroke along a load path as an HTML page: an animated stage with curves and a cursor; static in print."""
     data, words_beyond = stroke_data(mechanism, path, found), limits(found)
     beyond = [each for each in words_beyond if each]
     words = f"{len(found.along.values)} points, {path.drive} {data.motions[0].label.partition('  ')[2]}"
@@ -46,7 +46,7 @@ def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
 
 
 def stroke_tables(found: Stroke) -> list[Table]:
-    """Results at every point of a stroke, and the static deflection before it."""
+    """Tabulate the results at every point of a stroke, and the static deflection at its start, if any."""
     start = "static equilibrium" if found.sag is not None else "the undeformed configuration"
     free = "f1 to f3 and the number of unstable modes are those of the free stage under the force of the drive."
     table = along_table(f"Along {found.drive}", found.along, [f"Relative to {start}. {free} Stress: von Mises, the largest of a flexure."])
@@ -55,7 +55,7 @@ def stroke_tables(found: Stroke) -> list[Table]:
 
 
 def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
-    """Results at every point of a path: one row for each point, one column for each quantity in its own display unit."""
+    """Tabulate results along a path: one row for each point, one column for each quantity in its own display unit."""
     kept = quiet(along.values)
     quantities = list(quantities_of(replace(along, values=kept)))
     heads = [Column(name, "" if form.unit == "1" else form.unit) for name, _, form in quantities]
@@ -65,9 +65,9 @@ def along_table(title: str, along: Matrix, notes: Iterable[str] = ()) -> Table:
 
 
 def buckling_report(mechanism: Mechanism, found: CaseFactors, after: PostBuckling | None = None) -> str:
-    """Buckling in every load case as an HTML page: the buckling mode at the last stable state, the lowest factor first.
+    """Write the buckling in all load cases as an HTML page: buckling modes at the last stable states, the lowest factor first.
 
-    `after` is the post-buckling path of the lowest factor.
+    `after` is the post-buckling path of the load case with the lowest factor.
     """
     least = found.least
     known = sorted((case for case in found.cases if case.found is not None), key=lambda case: case.factor)
@@ -94,7 +94,7 @@ def _buckling_text(found: CaseFactors) -> str:
 
 
 def buckling_tables(found: CaseFactors, after: PostBuckling | None = None) -> list[Table | None]:
-    """Load cases and stroke ends with their factors; the buckling mode of the lowest, and equilibria `after` it."""
+    """Tabulate the buckling factors by load case and stroke end, the mode of the lowest factor, and equilibria `after` buckling."""
     table = result_table(found.cases)
     least = found.least
     if least is None:
@@ -106,7 +106,7 @@ def buckling_tables(found: CaseFactors, after: PostBuckling | None = None) -> li
 
 
 def shape_of(case: CaseFactor) -> Matrix:
-    """The buckling mode, scaled to a largest number of 1; without rows if there is none."""
+    """Return the buckling mode, scaled to a largest entry of 1; without rows if the case does not buckle."""
     if case.found is None:
         return Matrix(np.zeros((0, 6)), (), COMPONENTS, ())
     shape = case.found.shape / (np.max(np.abs(case.found.shape), initial=0.0) or 1.0)
@@ -124,7 +124,7 @@ _BENT = "Flexures are shown as bent by the misalignment. Red: beyond a limit."
 
 
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
-    """The effect of a misaligned instance as an HTML page: the deformed stage, loads, frequencies and stress over the misalignment."""
+    """Write the effect of one misaligned instance as an HTML page: deformed stage, loads, frequencies, stress over the misalignment."""
     sections = [
         _misaligned_curves(found),
         caveat_section(mechanism, found.warnings),
@@ -149,7 +149,7 @@ def _misaligned_text(found: Misaligned) -> str:
 
 
 def misaligned_tables(found: Misaligned) -> list[Table]:
-    """Critical misalignment, results up to the last misalignment, and the loads in all flexures there."""
+    """Tabulate the critical misalignment, results up to the largest misalignment, and the loads in all flexures at the largest."""
     last = format_value(float(found.along.values[-1, 0]), MOTION.unit(found.axis), 4)
     return [
         make_table("Misaligned", ["instance", "axis", "stability"], [[found.copy, found.axis, critical_text(found)]]),
@@ -159,7 +159,7 @@ def misaligned_tables(found: Misaligned) -> list[Table]:
 
 
 def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
-    """Misalignment of each instance as an HTML page; the animation shows the most critical."""
+    """Write the effect of misaligning each instance as an HTML page; the animation shows the most critical instance."""
     worst = found.worst
     sections = [
         section("Copy by copy", misalignment_tables(found)),
@@ -175,7 +175,7 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
 
 
 def misalignments_text(found: Misalignments) -> str:
-    """The number of instances, and the first that buckles."""
+    """Format the number of instances, and the instance that buckles first, as text."""
     count, worst = len(found.critical.rows), found.worst
     if worst is None:
         return "no instance and no link joins the ground"
@@ -187,13 +187,13 @@ def misalignments_text(found: Misalignments) -> str:
 
 
 def critical_text(found: Misaligned) -> str:
-    """The critical misalignment as a text."""
+    """Format the critical misalignment as text."""
     size = format_value(found.followed, MOTION.unit(found.axis), 4)
     return f"stable up to {size}, not followed beyond" if np.isnan(found.critical) else f"buckles at {size}"
 
 
 def misalignment_tables(found: Misalignments) -> list[Table]:
-    """Results of each instance along or about its axes: critical misalignment, load and stress at one amount."""
+    """Tabulate the results by instance and axis: critical misalignment, and load and stress at a given misalignment."""
     size = format_value(found.size, MOTION.unit(found.critical.columns[0]), 4)
     alone = "One misaligned instance, in its own frame"
     return [

@@ -81,7 +81,7 @@ def _factor(name: str, unit: str) -> float:
 
 
 def display_unit_of(unit: str, largest: float = 1.0, *shown: str) -> DisplayUnit:
-    """The display unit of an SI unit for values up to `largest` [SI]: one of those `shown`, else the best for the values.
+    """Return the display unit of an SI unit for values up to `largest` [SI]: the first applicable of `shown`, else the best unit.
 
     >>> display_unit_of("N/m", 15e6).unit, display_unit_of("m", 5e-9).unit, display_unit_of("rad/m").unit
     ('N/um', 'nm', 'urad/um')
@@ -98,7 +98,7 @@ def display_unit_of(unit: str, largest: float = 1.0, *shown: str) -> DisplayUnit
 
 
 def preferred_unit(unit: str) -> DisplayUnit:
-    """The preferred display unit of an SI unit, whatever the values.
+    """Return the preferred display unit of an SI unit, independent of the values.
 
     >>> preferred_unit("m/N")
     DisplayUnit(unit='um/N', factor=1000000.0)
@@ -108,7 +108,7 @@ def preferred_unit(unit: str) -> DisplayUnit:
 
 @lru_cache(maxsize=256)
 def field_unit(quantity: Quantity) -> DisplayUnit:
-    """The display unit of a description's field: that of its quantity.
+    """Return the display unit of a field of the description, by its quantity.
 
     >>> from flexstage.base.units.quantity import ANGLE, LENGTH
     >>> field_unit(LENGTH), round(field_unit(ANGLE).factor, 6)
@@ -118,7 +118,7 @@ def field_unit(quantity: Quantity) -> DisplayUnit:
 
 
 def display_unit(quantity: Quantity | None, unit: str = "") -> DisplayUnit:
-    """The display unit of results of a quantity: `unit`, one of its display units, or if absent the preferred one.
+    """Return the display unit for results of a quantity: `unit`, if specified, else the preferred unit of the quantity.
 
     >>> from flexstage.base.units.quantity import PIEZO_GAIN
     >>> display_unit(PIEZO_GAIN, "um/V"), display_unit(None)
@@ -130,7 +130,7 @@ def display_unit(quantity: Quantity | None, unit: str = "") -> DisplayUnit:
 
 
 def number(value: float, digits: int = DIGITS) -> str:
-    """A number to `digits` significant digits, without trailing zeros; an exponent only outside 1e-4 ... 1e6.
+    """Format a number to `digits` significant digits, without trailing zeros; with an exponent only outside 1e-4 ... 1e6.
 
     >>> number(15.4499), number(-0.0000123456), number(2e9), number(float("nan"))
     ('15.45', '-1.2346e-5', '2e9', '-')
@@ -148,9 +148,10 @@ def number(value: float, digits: int = DIGITS) -> str:
 
 
 def align_numbers(values: Iterable[float], digits: int = DIGITS) -> list[str]:
-    """Numbers of one column with equal decimals: `digits` significant ones for the largest, one more if the smallest needs it.
+    """Format the numbers of a column with equal decimals: `digits` significant digits for the largest number.
 
-    A column that spans more than four decades keeps significant digits instead.
+    One more decimal is used if the smallest number needs it. In a column that spans more than four decades, each number has the same
+    significant digits instead.
 
     >>> align_numbers([110.9101, 1690.27]), align_numbers([0.0, 0.5]), align_numbers([1.0, 2.0])
     (['110.91', '1690.27'], ['0', '0.5'], ['1', '2'])
@@ -170,7 +171,7 @@ def _decimals(text: str) -> int:
 
 
 def percent(share: float, digits: int = 4) -> str:
-    """A ratio as per cent.
+    """Format a ratio in per cent.
 
     >>> percent(0.031251), percent(1.0)
     ('3.125 %', '100 %')
@@ -179,7 +180,7 @@ def percent(share: float, digits: int = 4) -> str:
 
 
 def format_value(value: float, unit: str, digits: int = DIGITS) -> str:
-    """An SI value with its display unit.
+    """Format an SI value with its display unit.
 
     >>> format_value(15.45e6, "N/m"), format_value(2e-9, "m"), format_value(0.5, "1")
     ('15.45 N/um', '2 nm', '0.5')

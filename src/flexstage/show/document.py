@@ -1,4 +1,4 @@
-"""Documents of commands: the envelope, combined results, and manual wording. Results describe themselves."""
+"""JSON documents of commands: the envelope, and the contents of documents that combine several results."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "
 
 
 def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: Any, more: Iterable[Finding] = ()) -> Document:
-    """A document: kind, description (`None`: a record only), model, version, warnings and defaults, then its `body`.
+    """Build a JSON document: kind, description (`None`: a record only), model, version, warnings, defaults, then the `body`.
 
     `body` is a result, or a mapping with results. `more` are further warnings about the result.
 
@@ -50,7 +50,9 @@ def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: 
 
 
 def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) -> Document:
-    """The document of a check: whether the design is sound, and its errors; without the envelope's digest and warnings if it is not.
+    """Build the document of a check: whether the design is sound, and its errors.
+
+    `mechanism` is `None` for a design with errors: the document then has no digest and no warnings.
 
     >>> check_document(None, [Finding("B4/pivot", "it is thin", "Thicken it")])["sound"]
     False
@@ -63,7 +65,7 @@ def check_document(mechanism: Mechanism | None, errors: Iterable[Finding] = ()) 
 
 
 def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
-    """Every result of an analysis under its command's name; `None` if the model or the stage has none."""
+    """Return the results of an analysis by the name of their command; `None` for results that the model or the stage does not have."""
     damping = None if analysis.linear is None else analysis.linear.damping
     return {
         "mapping": analysis.kinematics,
@@ -87,7 +89,9 @@ def analysis_results(analysis: Analysis) -> Mapping[str, Any]:
 
 
 def analysis_body(analysis: Analysis) -> Document:
-    """Requirements first, then every analysis under its command's name; null with a reason if the model or the stage has none.
+    """Build the body of a complete analysis: requirements, then every result under the name of its command.
+
+    A result that the model or the stage does not have is null, with a reason.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -111,20 +115,20 @@ def stiffness_body(
     mass: MassMatrix | None = None,
     missing: Mapping[str, str] | None = None,
 ) -> SideBySide:
-    """Statics of the platform, its stiffness by DOF if fewer than six are free, its mass, and its deflection under permanent load."""
+    """Combine the platform's statics, stiffness by DOF (if fewer than six are free), mass, and deflection under permanent load."""
     reasons = {} if freedoms is not None else {"freedoms": (missing or {}).get("freedoms", _UNSORTED)}
     reasons |= {} if deflection is not None else {"dead_load": _UNLUMPED}
     return SideBySide((statics, {"freedoms": freedoms, "mass": mass, "dead_load": deflection, "reasons": reasons}))
 
 
 def response_body(response: Response, damping: Damping | None) -> SideBySide:
-    """A frequency response and its damping."""
+    """Combine a frequency response with its damping."""
     laws: dict[type, str] = {ModalDamping: "modal", RayleighDamping: "rayleigh", StructuralDamping: "structural"}
     return SideBySide((response, {"damping": None if damping is None else {"law": laws[type(damping)], **walk(damping)}}))
 
 
 def requirements_body(verdicts: Iterable[Verdict]) -> list[Document]:
-    """Verdicts on the design's requirements: limit and value in SI, relative margin, whether it is met."""
+    """List the verdicts on the design's requirements: limit and value in SI, relative margin, and whether the requirement is met."""
     return [_verdict(verdict) for verdict in verdicts]
 
 

@@ -15,7 +15,7 @@ from flexstage.show.table import Cell, Mark, Table, make_table, text_table
 
 
 def case_table() -> Table | None:
-    """The shipped cases by name.
+    """Tabulate the shipped cases by name.
 
     >>> case_table().rows[0][0].text
     'double-triangle'
@@ -25,7 +25,7 @@ def case_table() -> Table | None:
 
 
 def parameter_table(name: str) -> Table | None:
-    """The parameters of a shipped case: name, quantity, value. Raises `DesignError` with the nearest name for an unknown case.
+    """Tabulate the parameters of a shipped case: name, quantity, value. Raises `DesignError` with the nearest name for an unknown case.
 
     >>> parameter_table("parallelogram").texts()[-2]
     ['spacing', 'length', '50 mm']
@@ -36,7 +36,7 @@ def parameter_table(name: str) -> Table | None:
 
 
 def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
-    """Materials, actuators and sensors: every number as in a design file, with its source.
+    """Tabulate the materials, actuators and sensors of a catalogue, with numbers as in a design file, and sources.
 
     >>> from flexstage.mechanism.catalogue import Catalogue
     >>> catalogue_tables(Catalogue((), {}).extended({"materials": {"steel": {"young": "200 GPa"}}}))[0].texts()[1]
@@ -46,7 +46,7 @@ def catalogue_tables(catalogue: Catalogue) -> tuple[Table, ...]:
 
 
 def find_section(catalogue: Catalogue, name: str) -> Catalogue:
-    """The catalogue with one section only, such as `materials` or `coils`. Raises `DesignError` for another name.
+    """Return the catalogue with one section only, such as `materials` or `coils`. Raises `DesignError` for an unknown section.
 
     >>> from flexstage.mechanism.catalogue import shipped_catalogue
     >>> [section.record.__name__ for section in find_section(shipped_catalogue(), "gauges").sections]
@@ -58,7 +58,7 @@ def find_section(catalogue: Catalogue, name: str) -> Catalogue:
 
 
 def catalogue_body(catalogue: Catalogue) -> dict[str, Any]:
-    """The catalogue as plain values: section, entry, and its values as written in a design file; and the sources.
+    """Convert the catalogue to plain values by section and entry, as written in a design file, with the sources.
 
     >>> from flexstage.mechanism.catalogue import Catalogue
     >>> catalogue_body(Catalogue((), {}).extended({"materials": {"steel": {"young": "200 GPa"}}}))["materials"]

@@ -25,7 +25,7 @@ from flexstage.models.linear.state_space import state_space
 
 
 def as_mat(analysis: Analysis) -> bytes:
-    """The MATLAB v5 file of an analysis (see `mat_variables`).
+    """Convert an analysis to the bytes of a MATLAB v5 file (see `mat_variables`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -43,9 +43,10 @@ def _write_mat(variables: dict[str, Any]) -> bytes:
 
 @check_arguments
 def to_mat(result: Any) -> bytes:
-    """The MATLAB v5 file of a result, its parts as structs of columns, those of matrices with `values`, `rows`, `columns` and `unit`.
+    """Convert a result to the bytes of a MATLAB v5 file, in SI units.
 
-    Names are as in the document, with `_` for characters that MATLAB names cannot contain; SI units.
+    Parts of the result are structs of columns. The struct of a matrix has `values`, `rows`, `columns` and `unit`. Names are as in the JSON
+    document, with `_` for characters that MATLAB names cannot contain.
 
     >>> import scipy.io
     >>> scipy.io.loadmat(io.BytesIO(to_mat({"loss": {"B/1": 0.1}})), simplify_cells=True)["loss"]
@@ -89,10 +90,10 @@ def _words(value: Any) -> str:
 
 
 def mat_variables(analysis: Analysis) -> dict[str, Any]:
-    """Variables of the MATLAB file: R_a, R_s, and for elastic models K, M, B, C, D, frequencies and state space.
+    """Return the variables of the MATLAB file: R_a, R_s, and for elastic models K, M, B, C, D, frequencies and state space.
 
-    M q'' + K q = B u, y = C q + D u. Variables that a model or a stage does not have are left out, with the reason in `notes`. SI units;
-    names and units of rows and columns in cell arrays.
+    The model is M q'' + K q = B u, y = C q + D u, in SI units. Variables that a model or a stage does not have are left out, with the
+    reason in `notes`. Names and units of rows and columns are in cell arrays.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

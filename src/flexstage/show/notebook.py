@@ -56,9 +56,9 @@ _TABLES: Mapping[type, Callable[[Any], Iterable[Table | None]]] = {
 
 
 def to_html(value: Any) -> str:
-    """A stage's picture, or the tables that summarise a result: its own tables, else one for each part.
+    """Convert a stage to its picture, or a result to its tables, as HTML for notebooks.
 
-    A stage that cannot be drawn is replaced by its errors.
+    A result without tables of its own has one table for each part. A stage that cannot be drawn is replaced by its errors.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -76,7 +76,7 @@ _LINES, _WIDTH, _NAMES = 25, 100, 8
 
 
 def to_text(value: Any) -> str:
-    """Print the tables of a result, or the sizes of its fields, in at most 25 lines.
+    """Format the tables of a result, or the sizes of its fields, in at most 25 lines of text.
 
     >>> import flexstage as fs
     >>> print(fs.ideal(fs.case("parallelogram")))  # doctest: +ELLIPSIS

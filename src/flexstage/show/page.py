@@ -1,4 +1,4 @@
-"""A self-contained HTML page: sections of prose, tables and pictures, inline style, nothing loaded."""
+"""A self-contained HTML page: sections of text, tables and pictures, with inline style and without external files."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class Prose:
 
 @dataclass(frozen=True)
 class Picture:
-    """An SVG element with a caption (plain text); `plays` is the motion of the page's viewer that it shows ("mode 1").
+    """An SVG element with a caption (plain text); `plays` names the motion of the page's viewer that the picture shows ("mode 1").
 
-    `reading` is the data for its cursor, from `show.figures.reading`.
+    `reading` is the data for the cursor over the picture, from `show.figures.reading`.
     """
 
     svg: str
@@ -40,9 +40,10 @@ class Picture:
 
 @dataclass(frozen=True)
 class Viewer:
-    """An animated stage: the page's data named `key`, starting with a `motion` ("mode 1"), with data named `ghost` behind it.
+    """An animated stage, starting with a `motion` ("mode 1").
 
-    `instead` replaces it in print, and without scripts or WebGL.
+    `key` names the stage's data in the page; `ghost` names the data of another stage drawn behind it. `instead` replaces the animation in
+    print, and without scripts or WebGL.
     """
 
     key: str
@@ -53,7 +54,7 @@ class Viewer:
 
 @dataclass(frozen=True)
 class JoinedViewers:
-    """Two viewers side by side: a motion chosen in one plays its counterpart in the other."""
+    """Two viewers side by side: if a motion is chosen in one viewer, the other shows its partner from `partners`."""
 
     viewers: tuple[Viewer, Viewer]
     partners: tuple[tuple[str, str], ...]
@@ -70,7 +71,7 @@ class Fact:
 
 @dataclass(frozen=True)
 class Facts:
-    """Facts side by side."""
+    """Summary values side by side."""
 
     items: tuple[Fact, ...]
 
@@ -93,7 +94,7 @@ class Folded:
 
 @dataclass(frozen=True)
 class Legend:
-    """Names of colours: pairs of a CSS colour and its meaning."""
+    """Legend of colours: pairs of a CSS colour and its meaning."""
 
     entries: tuple[tuple[str, str], ...]
 
@@ -111,7 +112,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Headline:
-    """The summary of a page in one line; `good` is its verdict, `None` without requirements."""
+    """The summary of a page in one line; `good` states whether requirements are met, `None` without requirements."""
 
     text: str
     good: bool | None = None
@@ -119,7 +120,7 @@ class Headline:
 
 @dataclass(frozen=True)
 class Head:
-    """The top of a page: title, kind of page and headline; its sources for the end of the page, as pairs of a name and a value."""
+    """The head of a page: title, kind of page and headline; `origin` are the sources listed at its end, pairs of name and value."""
 
     title: str
     kind: str
@@ -128,7 +129,7 @@ class Head:
 
 
 def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
-    """A section of the blocks that exist; `None` if there are none.
+    """Make a section of the blocks that are not `None`; returns `None` if there are none.
 
     >>> section("Empty", [None]) is None
     True
@@ -138,7 +139,7 @@ def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
 
 
 def fold(title: str, *blocks: Block | None) -> Folded | None:
-    """The blocks that exist, shown on demand; `None` if there are none.
+    """Make a folded part of the blocks that are not `None`, shown on demand; returns `None` if there are none.
 
     >>> fold("Empty", None) is None
     True
@@ -148,9 +149,9 @@ def fold(title: str, *blocks: Block | None) -> Folded | None:
 
 
 def page(head: Head, sections: Iterable[Section | None], stages: Mapping[str, StageData] = MappingProxyType({})) -> str:
-    """The HTML page with the existing sections; every text is escaped, SVG is inserted unchanged.
+    """Write the HTML page with the sections that are not `None`; texts are escaped, SVG is inserted unchanged.
 
-    `stages` are the data of its viewers by key. The content security policy allows only the page's own scripts and no loading.
+    `stages` are the data of the page's viewers by key. The content security policy allows only scripts in the page, and no loading.
 
     >>> "<h1>a &lt; b</h1>" in page(Head("a < b", "report", ()), [Section("One", (Prose("x"),))])
     True

@@ -22,7 +22,7 @@ from flexstage.show.scene.view import Side, edges_of, fit, solid_parts, view, wr
 from flexstage.show.viewer.data import StageData
 
 _FILLS = {Kind.GROUND: "#56606b", Kind.BODY: "#8d99a6", Kind.DRIVE: "#f2a33c", Kind.HINGE: "#0f8a7e", Kind.GAUGE: "#c2395a"}
-"""From the lowest layer to the highest."""
+"""Fill colours of the kinds of parts, from the lowest layer to the highest."""
 _OPACITY = 0.55
 _ARROW = {"arrowstyle": "<|-|>", "color": INK, "lw": 0.5, "mutation_scale": 5, "shrinkA": 0.0, "shrinkB": 0.0}
 _PLATE = {"boxstyle": "round,pad=0.15", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.85}
@@ -39,7 +39,7 @@ class Ring:
 
 
 def rings(mechanism: Mechanism) -> tuple[Ring, ...]:
-    """The circles of units and gauges.
+    """Find the circles on which instances of units and gauges are placed.
 
     >>> rings(Mechanism(""))
     ()
@@ -60,9 +60,9 @@ def _ring(names: tuple[str, ...], pattern: Polar) -> Ring:
 
 
 def plan_figure(mechanism: Mechanism, data: StageData) -> Any:
-    """The stage from above with dimensions in mm, as a matplotlib Figure.
+    """Draw the stage from above with dimensions in mm, as a matplotlib Figure.
 
-    Drawn are outlines of bodies and parts, circles of units and gauges with radius and position angles, envelope and aperture.
+    The drawing has outlines of bodies and parts, circles of units and gauges with radius and position angles, envelope and aperture.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import still_data

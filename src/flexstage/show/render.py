@@ -1,4 +1,4 @@
-"""Renderers: tables as HTML from templates, and for the terminal."""
+"""Rendering of tables: as HTML from templates, and for the terminal."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _STYLES = {
 
 
 def to_html(table: Table) -> str:
-    """The table as HTML without style; classes give the meaning of cells, all texts are escaped.
+    """Render a table as HTML without style; CSS classes state the meaning of cells, all texts are escaped.
 
     >>> from flexstage.show.table import make_table
     >>> to_html(make_table("a < b", ["x"], [("1",)]))
@@ -44,7 +44,7 @@ def to_html(table: Table) -> str:
 
 @functools.cache
 def templates() -> Any:
-    """The macros of `static/page.html`: every inserted text is typeset and escaped."""
+    """Load the macros of `static/page.html`; they typeset and escape every inserted text."""
     loader = jinja2.PackageLoader("flexstage.show", "static")
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, finalize=_typeset)
     environment.filters |= _FILTERS
@@ -114,10 +114,10 @@ class _Span:
 
 
 def to_rich(table: Table, width: int) -> Iterator[Any]:
-    """The printed parts of a table on a terminal with this number of columns: title, table, notes.
+    """Render a table for a terminal that is `width` characters wide: title, table, notes.
 
-    Texts are broken between words only, and numbers stay with their units. Columns that do not fit are printed in further tables
-    below, with the row names repeated.
+    Lines are broken only between words, and numbers stay with their units. Columns that do not fit are printed in further tables below,
+    with the row names repeated.
 
     >>> from flexstage.show.table import make_table
     >>> [type(each).__name__ for each in to_rich(make_table("Masses", ["body"], [("platform",)]), 80)]
@@ -211,7 +211,9 @@ def _fill(text: str, width: int) -> str:
 
 
 def fold(text: str, width: int) -> list[str]:
-    """A line on lines of at most this width, broken between words, in longer names after a dot or a slash; numbers keep their units.
+    """Break a line into lines of at most `width` characters, between words; numbers stay with their units.
+
+    Names longer than a line are broken after a dot or a slash.
 
     >>> fold("at least 50 um at parts.neck.thickness", 15)
     ['at least 50 um', 'at parts.neck.', 'thickness']

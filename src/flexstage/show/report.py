@@ -24,11 +24,10 @@ from flexstage.show.viewer.motions import Group
 
 @check_arguments
 def report(analysis: Analysis, compared: Comparison | None = None) -> str:
-    """The analysis of a stage as a self-contained HTML page: verdict and stage first, no date.
+    """Write the analysis of a stage as a self-contained HTML page: verdict and stage first, no date.
 
-    With `compared`, the changed values and their effects follow the requirements, as old, new and change.
-    Results that the model or the stage does not have are left out, with the reasons under "Limits". One design; of a
-    batch the first is shown.
+    With `compared`, the changed values and their effects follow the requirements, with columns old, new and change. Results that the model
+    or the stage does not have are left out, with the reasons under "Limits". Of a batch the first design is shown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

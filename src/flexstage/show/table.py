@@ -1,4 +1,4 @@
-"""Tables: results in a layout for readers, independent of the output format."""
+"""Tables of results for readers, independent of the output format."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Cell:
 
     @property
     def length(self) -> float:
-        """The bar's share, limited to the cell."""
+        """Length of the bar relative to the cell, limited to the cell."""
         return min(max(self.bar or 0.0, 0.0), 1.0)
 
 
@@ -56,7 +56,7 @@ _MANY = 60
 _PLAIN = Heading()
 _NO_FIELDS: Mapping[str, Field] = {}
 PAGE_ROWS = 300
-"""Rows of a table in a page: all DOFs of a thousand bodies would need a megabyte."""
+"""Largest number of rows of a table in an HTML page: all DOFs of a thousand bodies would need a megabyte."""
 
 Content: TypeAlias = str | Cell
 
@@ -88,7 +88,7 @@ def make_table(
     notes: Iterable[str] = (),
     provenance: str = "",
 ) -> Table:
-    """A table from columns (a text is the head of a text column) and rows of cells (a text is a plain cell).
+    """Make a table from columns (a text is the head of a text column) and rows of cells (a text is a plain cell).
 
     >>> make_table("Masses", ["body", Column("mass", "kg")], [("platform", "14")]).texts()
     [['body', 'mass [kg]'], ['platform', '14']]
@@ -106,7 +106,7 @@ def text_table(
     notes: Iterable[str] = (),
     provenance: str = "",
 ) -> Table | None:
-    """A table of names with a text each, or several; `None` without any.
+    """Make a table of names, each with one or several texts; `None` without rows.
 
     >>> text_table("Sources", ["", "source"], {"steel": "data sheet"}).texts()
     [['', 'source'], ['steel', 'data sheet']]
@@ -116,9 +116,9 @@ def text_table(
 
 
 def number_cells(values: Iterable[float], form: DisplayUnit, digits: int | None = None) -> list[Cell]:
-    """A column of SI values in a display unit, decimals aligned, or each with this number of significant `digits`.
+    """Format a column of SI values in a display unit, with aligned decimals, or with this number of significant `digits` each.
 
-    Rounding noise against the column's largest value is shown as 0.
+    Values at the level of rounding noise, relative to the column's largest value, are shown as 0.
 
     >>> [cell.text for cell in number_cells([15e6, 1e-6], DisplayUnit("N/um", 1e-6))]
     ['15', '0']
@@ -136,11 +136,12 @@ def row_table(
     notes: Iterable[str] = (),
     provenance: str = "",
 ) -> Table:
-    """One row for each record, or name, and one column for each field; a `Heading` or the field's name and unit is the head.
+    """Make a table with one row for each record or name, and one column for each field.
 
-    `source` is a mapping or sequence of records of one kind, or a record. Arrays with `Along` names, and labelled matrices, have one
-    row for each name. `fields` are the shown fields in order (absent: all that a cell can show); `head` is the head of the names,
-    `path, axis` for two. Values outside a field's `Bound` are marked.
+    `source` is a mapping or sequence of records of one class, or a record. In a record, arrays with `Along` names and labelled matrices
+    have one row for each name. `fields` are the fields to show, in order (default: all that fit into cells). The head of a column is the
+    field's `Heading`, else its name and unit. `head` is the head of the names, `path, axis` for two columns of names. Values outside a
+    field's `Bound` are marked.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
@@ -205,7 +206,7 @@ def _columns_at(records: Sequence[Any], path: str, counts: Sequence[int], names:
 
 
 def merge_rows(table: Table) -> Table:
-    """Merge rows with equal cells under all their names; links of instances only with those of the same name.
+    """Merge rows with equal cells into one row that lists their names; links of instances are merged only if their link names are equal.
 
     >>> merge_rows(make_table("", ["link", "free"], [("B1/tip", "rz"), ("B1/foot", "rz"), ("B2/tip", "rz")])).texts()[1:]
     [['tip (B1, B2)', 'rz'], ['B1/foot', 'rz']]
@@ -224,13 +225,15 @@ def _join_names(names: Sequence[str]) -> str:
 
 
 def sheet_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance: str = "") -> Table:
-    """Rows and columns of a result, names first."""
+    """Make a table of the rows and columns of a sheet, names first."""
     names = [_name_column(*each) for each in sheet.names.items()]
     return _columns_table(title, [*names, *(field_column(*each) for each in sheet.columns.items())], notes, provenance)
 
 
 def column_table(title: str, matrix: Matrix, *, head: str = "", unit: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table:
-    """A labelled matrix whose columns are quantities, as in `matrix_columns`; `head` is the head of the names, `unit` a display unit.
+    """Make a table of a labelled matrix whose columns are quantities (see `matrix_columns`).
+
+    `head` is the head of the row names; `unit` replaces the preferred display unit.
 
     >>> column_table("a", Matrix(np.array([[2e-6, 3.0]]), ("x",), ("low", "share"), (("m", "1"),)), head="along").texts()
     [['along', 'low [um]', 'share'], ['x', '2', '3']]
@@ -251,22 +254,22 @@ def _columns_table(title: str, columns: Sequence[_ColumnCells], notes: Iterable[
 def array_table(
     title: str, record: Any, *fields: str, names: Mapping[str, Iterable[Any]] = MappingProxyType({}), notes: Iterable[str] = ()
 ) -> Table:
-    """Arrays of a record as columns, one row for each entry; `names` of the rows by their head."""
+    """Make a table with arrays of a record as columns; `names` are columns of row names by their head."""
     columns = (field_column(field, list(values)) for field, values in (field_at(record, name) for name in fields))
     return _columns_table(title, [*(_name_column(*each) for each in names.items()), *columns], notes)
 
 
 def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (), provenance: str = "") -> Table:
-    """A record as rows of name, value and unit; `fields` as for `row_table`."""
+    """Make a table of a record with rows of name, value and unit; see `row_table` for `fields`."""
     told = values_of(record)[0].items()
     chosen = [field_at(record, path) for path in fields] or [each for each in told if not each[0].axes and is_cell(each[1])]
     return _vertical_table(title, Sheet({}, {each: (value,) for each, value in chosen}), notes, provenance)
 
 
 def result_table(source: Any, fields: str = "", *, title: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table | None:
-    """The table of a result, or of results in a sequence or by name, from `TABLE` of its class; `None` without one.
+    """Make the table of a result, or of results in a sequence or by name, with the layout `TABLE` of its class; `None` without rows.
 
-    `fields` and `title` replace those of `TABLE`.
+    `fields` and `title` replace the fields and title of `TABLE`.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
@@ -306,7 +309,7 @@ def _vertical_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provena
 
 
 def result_tables(result: Any) -> Iterator[Table]:
-    """A table for every part of a result, with its path in the document as head; long tables show their first rows.
+    """Make a table for every part of a result, with the part's path in the document as title; long tables show their first rows.
 
     >>> [table.title for table in result_tables({"gain": 2.0, "loss": {"B1": 0.1, "B2": 0.2}})]
     ['', 'loss']
@@ -322,7 +325,7 @@ def result_tables(result: Any) -> Iterator[Table]:
 
 
 def first_rows(table: Table, most: int) -> Table:
-    """A table limited to `most` rows; a note counts the others.
+    """Limit a table to its first `most` rows; a note states the number of further rows.
 
     >>> first_rows(make_table("", ["body"], [("b1",), ("b2",), ("b3",)]), 1).notes
     ('2 further rows.',)
@@ -332,7 +335,7 @@ def first_rows(table: Table, most: int) -> Table:
 
 
 def further(rest: int) -> str:
-    """The number of rows not shown, as a sentence.
+    """Format the number of rows not shown as a sentence.
 
     >>> further(12)
     '12 further rows.'
@@ -341,7 +344,7 @@ def further(rest: int) -> str:
 
 
 def field_column(field: Field, values: Sequence[Any], units: Sequence[str] = ()) -> _ColumnCells:
-    """The column of a field and its cells, for tables with further columns; `units`: the SI unit of each value.
+    """Make the column of a field and its cells, for tables with further columns; `units` are the SI units of the values.
 
     >>> from flexstage.base.units.quantity import SHARE, STIFFNESS
     >>> from flexstage.base.record import Heading
@@ -394,7 +397,7 @@ def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> 
 
 
 def interval_text(low: float, high: float) -> str:
-    """An interval, its ends to two significant digits of its width.
+    """Format an interval; its ends are rounded to two significant digits of its width.
 
     >>> interval_text(118.0101, 118.0145), interval_text(1.0, float("inf"))
     ('118.0101 to 118.0145', '-')
@@ -407,9 +410,10 @@ def interval_text(low: float, high: float) -> str:
 
 
 def matrix_columns(matrix: Matrix, fields: Mapping[str, Field] = _NO_FIELDS, heading: Heading = _PLAIN) -> Iterator[_ColumnCells]:
-    """The columns of a labelled matrix (first design): numbers with a common SI unit in one display unit, else each with its own.
+    """Make the columns of a labelled matrix (first design of a batch).
 
-    A column named as one of `fields` has its heading and bound, others that of the matrix.
+    Numbers of a column with a common SI unit have a common display unit, others each their own. A column with the name of one of `fields`
+    has the heading and bound of that field, other columns have `heading`.
 
     >>> [cells[0].text for _, cells in matrix_columns(Matrix(np.array([[2e-6], [1e-3]]), ("x", "rx"), ("low",), (("m",), ("rad",))))]
     ['2 um']
@@ -450,11 +454,11 @@ def matrix_table(
     notes: Iterable[str] = (),
     provenance: str = "",
 ) -> Table:
-    """A labelled matrix (first design of a batch) in display units.
+    """Make a table of a labelled matrix (first design of a batch) in display units.
 
-    Rows and columns have units, and an entry is in row unit per column unit; if the entries' units are not such ratios, each entry
-    has its own. `against` sets the scale of rounding noise; `units` replace the preferred display units
-    (with mrad, lever arms are in mm).
+    Rows and columns have units, and an entry is in row unit per column unit. If the units of the entries are not such ratios, each entry
+    shows its unit. Values at the level of rounding noise are shown as 0; `against` is a further matrix that sets this level. `units`
+    replace the preferred display units (with mrad, lever arms are in mm).
 
     >>> table = matrix_table("K", Matrix(np.array([[2e6]]), ("fx",), ("x",), (("N/m",),)))
     >>> table.texts()
@@ -478,7 +482,7 @@ def matrix_table(
 
 
 def short_names(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Names without a common owner.
+    """Remove the owner from names if all names have the same owner (the part before the dot).
 
     >>> short_names(("platform.x", "platform.y")), short_names(("platform.x", "chuck.x")), short_names(("B1", "B2"))
     (('x', 'y'), ('platform.x', 'chuck.x'), ('B1', 'B2'))
@@ -546,7 +550,7 @@ def _mark_of(text: str) -> Mark:
 
 
 def first_design(values: Array, axes: int) -> Array:
-    """The first design of a batch: the last `axes` axes of real values.
+    """Return the values of the first design of a batch: the last `axes` axes, real parts.
 
     >>> first_design(np.ones((4, 2, 2)), 2).shape
     (2, 2)
@@ -556,7 +560,7 @@ def first_design(values: Array, axes: int) -> Array:
 
 
 def batch_note(values: Array, axes: int) -> tuple[str, ...]:
-    """The note under a table of a batch's first design; nothing for a single design.
+    """Return the note for a table that shows the first design of a batch; no note for a single design.
 
     >>> batch_note(np.ones((4, 2, 2)), 2)
     ('The first of 4 designs.',)

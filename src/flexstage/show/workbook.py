@@ -1,4 +1,4 @@
-"""Results as an Excel workbook (XLSX): a sheet for each part (see `base.sheet`), numbers in SI units, and their source."""
+"""Results as an Excel workbook (XLSX): a sheet for each part (see `base.sheet`), numbers in SI units, and the source of the numbers."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ _WRITTEN = datetime(1980, 1, 1)  # noqa: DTZ001 (a workbook's dates have no zone
 
 @check_arguments
 def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
-    """Every part of a result as a sheet of an XLSX file: heads, SI units below them, then names and numbers of 16 digits.
+    """Convert a result to the bytes of an XLSX file, a sheet for each part: heads, SI units below, then names and numbers of 16 digits.
 
     Unknown values are empty cells; infinity and numbers too large for a cell (1e308) are texts. The last sheet lists the source: the
-    version of flexstage and the entries of `about`. Equal results are equal bytes. Raises `DesignError` for tables longer or wider than a
+    version of flexstage and the entries of `about`. Equal results have equal bytes. Raises `DesignError` for tables longer or wider than a
     sheet.
 
     >>> to_xlsx({"gain": 2.0, "loss": {"B1": 0.1}})[:2]
@@ -104,7 +104,9 @@ def _about(result: Any, about: Mapping[str, Any]) -> Grid:
 
 
 def sheet_names(paths: Sequence[str]) -> list[str]:
-    """Valid Excel names, one for each path: 31 characters, without `[ ] : * ? /` and backslashes, different also without regard to case.
+    """Return valid names of Excel sheets, one for each path: 31 characters at most, without `[ ] : * ? /` and backslashes.
+
+    Names are unique, also if upper and lower case are not distinguished.
 
     >>> sheet_names(["", "modes", "Modes", "a/b", "statics.stiffness.by_direction.principal"])
     ['result', 'modes', 'Modes (2)', 'a_b', 'by_direction.principal']

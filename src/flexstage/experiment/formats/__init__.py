@@ -1,4 +1,4 @@
-"""Test file formats, reading and writing: a register that other packages can extend."""
+"""File formats of test records, for reading and writing: a register that other packages can extend."""
 
 from flexstage.base.register import Register
 from flexstage.experiment.formats.format import Format

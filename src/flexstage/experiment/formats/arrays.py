@@ -1,8 +1,8 @@
 """Records and responses from the named arrays of a file: by the names of a documented form, or by a user's assignment.
 
-A record: `samples` (n, channels) and `time` (n,) [s], `rate` [Hz] or `step` [s]; optional `start` [s], `name`, and lists of texts `names`,
-`units`, `roles`. Responses: `frequencies` (f,) [Hz] and complex `responses` (f, outputs, inputs); optional `coherence` of that shape,
-`output_names`, `output_units`, `input_names`, `input_units`, `window`, `averages`, `name`.
+A record has `samples` (n, channels) and one of `time` (n,) [s], `rate` [Hz] and `step` [s]. Optional are `start` [s], `name`, and the
+lists of texts `names`, `units` and `roles`. Responses have `frequencies` (f,) [Hz] and complex `responses` (f, outputs, inputs). Optional
+are `coherence` of the same shape, `output_names`, `output_units`, `input_names`, `input_units`, `window`, `averages` and `name`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from flexstage.experiment.records.record import Channel, ComputedSamples, Record
 from flexstage.experiment.records.unit import plain_unit
 
 RECORD_FORM, RESPONSES_FORM = "flexstage record 1", "flexstage responses 1"
-"""Format identifiers in files written here."""
+"""Format identifiers in files written by flexstage."""
 _LISTED = 24
 _TIMED = "time = seconds({0}.Properties.RowTimes); samples = {0}.Variables; names = {0}.Properties.VariableNames"
 _SAVED = {
@@ -42,7 +42,7 @@ _PLAIN = "{0}'s numbers, time [s] and samples (one column a channel)"
 
 
 Spans: TypeAlias = tuple[tuple[int, int], ...]
-"""Part of an array: start and stop on each axis, or None for the whole."""
+"""Part of an array: start and stop on each axis; empty for the whole array."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +60,7 @@ class Variable:
         return self.read(())
 
     def samples(self, axis: int) -> Samples:
-        """Lazy samples along an axis, as floats; the other axes are its channels, in order."""
+        """Return samples along an axis, read on demand, as floats; the other axes are the channels, in order."""
 
         def read(start: int, stop: int) -> Array:
             spans = [(0, length) for length in self.shape]
@@ -82,9 +82,9 @@ def held_array(name: str, values: Array) -> Variable:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """Contents of a file: arrays, and texts, lists of texts and numbers by name; `where` names it.
+    """Contents of a file, named `where` in messages: arrays (`variables`), and texts, lists of texts and numbers by name (`said`).
 
-    `objects` are readable only by the program that wrote them, by name, each with its class.
+    `objects` maps names to classes of objects that only the program that wrote the file can read.
     """
 
     where: str
@@ -98,13 +98,13 @@ class Contents:
         return tuple(dict.fromkeys(fitting))
 
     def vector(self, names: tuple[str, ...]) -> Variable | None:
-        """First real array of these with more than one number, along one axis."""
+        """Return the first real one-dimensional array with one of the names and more than one number; `None` if absent."""
         return next(
             (each for each in self.find(names) if not each.is_complex and 1 < max(each.shape, default=0) == np.prod(each.shape)), None
         )
 
     def number(self, *names: str) -> float | None:
-        """First number with one of these names.
+        """Return the first number with one of these names; `None` if absent.
 
         >>> Contents("a.mat", (held_array("data.fs", np.array([[50.0]])),)).number("data.fs")
         50.0
@@ -114,12 +114,12 @@ class Contents:
         return next((value for value in found if isinstance(value, float)), None)
 
     def texts(self, *names: str) -> tuple[str, ...]:
-        """List of texts, or the single text, of the first of these names; empty if there is none."""
+        """Return the texts of the first of these names that is present; empty if none is."""
         found = next((self.said[name] for name in names if name in self.said), ())
         return found if isinstance(found, tuple) else (str(found),)
 
     def text(self, name: str) -> str:
-        """Single text; empty if there is none."""
+        """Return the text of this name, a list joined by blanks; empty if absent."""
         return " ".join(self.texts(name))
 
 
@@ -157,7 +157,7 @@ def side_by_side(sources: Sequence[Samples]) -> Samples:
 
 
 def complex_of(real: Array, imaginary: Array) -> Array:
-    """Combine real and imaginary arrays exactly: a sum would lose the sign of zeros.
+    """Combine real and imaginary parts in a complex array; unlike a sum, this keeps the sign of zeros.
 
     >>> complex_of(np.array([-0.0]), np.array([2.0])).tolist()
     [(-0+2j)]
@@ -170,7 +170,7 @@ def complex_of(real: Array, imaginary: Array) -> Array:
 def read_arrays(contents: Contents, options: Options) -> tuple[Record | Responses, ...]:
     """Read the record, the responses, or both from a file's arrays, according to `options.kind`.
 
-    Raises `DesignError` with a list of the arrays if neither is present, and with the faults of unreadable ones.
+    Raises `DesignError` with a list of the arrays if the file has neither record nor responses, and with all faults of unreadable arrays.
 
     >>> both = (held_array("u", np.zeros((1, 8))), held_array("y", np.ones((8, 2))), held_array("fs", np.array(4.0)))
     >>> (found,) = read_arrays(Contents("a.mat", both), Options(arrays=Arrays(samples=("u", "y"), rate=("fs",))))

@@ -14,8 +14,9 @@ from flexstage.experiment.records.record import Record, Responses
 class Format:
     """Record file format: its file name endings, and three functions.
 
-    `claims` recognises a file from its first 4096 bytes and its ending. `read` returns its record, responses or both, according to the
-    options. `write` writes either, completely or not at all. All raise `DesignError`.
+    `claims` recognises a file from its first 4096 bytes and its ending. `read` returns the file's record, responses or both, according to
+    the options. `write` writes a record or responses, completely or not at all; it is absent in formats that are only read. The functions
+    raise `DesignError` for errors.
     """
 
     suffixes: tuple[str, ...]

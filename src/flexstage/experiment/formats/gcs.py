@@ -1,4 +1,4 @@
-"""GCS arrays, the files of data recorders of controllers by Physik Instrumente: ASCII under a header of `# ` lines."""
+"""GCS arrays: ASCII files with a header of `# ` lines, written by the data recorders of Physik Instrumente controllers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SEEN = ("actual position", "current position", "real position", "position of", 
 
 
 def is_gcs(start: bytes, _suffix: str) -> bool:
-    r"""rRecognise a file with the initial comments of GCS arrays: dimension and sampling.
+    r"""Recognise a GCS array from the keys DIM and SAMPLE_TIME in its header.
 
     >>> is_gcs(b"# VERSION = 1 \n# SEPARATOR = 32 \n# DIM = 2 \n# SAMPLE_TIME = 0.0002 \n", ".dat"), is_gcs(b"# time, u1\n", ".dat")
     (True, False)
@@ -31,13 +31,13 @@ def is_gcs(start: bytes, _suffix: str) -> bool:
 
 
 def read_gcs(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    r"""rRead the record of a GCS array: columns named by NAME0, NAME1, ..., a line every SAMPLE_TIME seconds.
+    r"""Read the record of a GCS array: columns named by NAME0, NAME1, ..., a line every SAMPLE_TIME seconds.
 
-    The header (`# KEY = value` up to `# END_HEADER`) follows the general command set, as read by the maker's library (PIPython,
-    `getgcsheader`): SEPARATOR is the code of the column separator, DIM the number of columns, NDATA the number of lines. It has no units:
-    they are the axes' units, specified by the user. Commanded and control values are inputs, positions and sensors outputs, others are
-    classified by their names. Raises `DesignError` for a header without times (if no rate is specified), a header that contradicts its
-    columns, and a truncated file (its data are used with `FaultTolerance.TRUNCATED`).
+    The header (`# KEY = value` up to `# END_HEADER`) follows PI's general command set, as read by PI's library (PIPython,
+    `getgcsheader`). SEPARATOR is the code of the column separator, DIM the number of columns, NDATA the number of lines. The header has no
+    units: the user specifies them. Commanded and control values are inputs, positions and sensors are outputs. Other columns are
+    classified by their names. Raises `DesignError` for a header without sampling time (if no rate is specified), for a header that
+    contradicts its columns, and for a truncated file (accepted with `FaultTolerance.TRUNCATED`).
 
     >>> import tempfile
     >>> head = "# SEPARATOR = 32\n# DIM = 2\n# SAMPLE_TIME = 0.5\n# NDATA = 2\n# NAME0 = Target Position of axis 1\n"

@@ -18,13 +18,13 @@ from flexstage.experiment.records.record import Record, Responses
 
 BLOCK = 65_536
 NUMBERS = frozenset("fiub")
-"""Kinds of real numbers in numpy."""
+"""Codes of numpy's kinds of real numbers."""
 _FRAME = 1_000_000
 """Maximum bytes of a file in addition to its numbers: names, units, the tree of chunks."""
 
 
 def stored_array(file: Hdf, array: HdfArray, *, name: str = "", column: str = "", turned: bool = False) -> Variable:
-    """Wrap an array in an HDF5 file, or one `column` of a table; `turned` for files with reversed axes, such as MAT files."""
+    """Wrap an array in an HDF5 file, or one `column` of a table, as a variable; `turned` reverses the axes, as MAT files require."""
 
     def read(spans: Spans) -> Array:
         values = file.read(array.name, tuple(reversed(spans)) if turned else spans, column)
@@ -41,8 +41,8 @@ def is_hdf(start: bytes, _suffix: str) -> bool:
 def read_hdf(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     """Read the contents of an HDF5 file by array name; arrays stay in the file. Columns of tables are separate arrays.
 
-    Lists of names, units and roles are attributes of their array, or arrays themselves; single values are attributes of the file. Raises
-    `DesignError` for an invalid, truncated or damaged file, and as `read_arrays`.
+    Lists of names, units and roles are attributes of the array, or separate arrays. Single values are attributes of the file. Raises
+    `DesignError` for an invalid, truncated or damaged file, and for the errors of `read_arrays`.
 
     >>> import h5py, tempfile
     >>> from flexstage.experiment.records.options import Arrays
@@ -69,8 +69,8 @@ def _variables(file: Hdf, array: HdfArray) -> list[Variable]:
 def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
     """Write an HDF5 file: the array `samples` (n, channels), or `frequencies` and `responses` (f, outputs, inputs) with `coherence`.
 
-    Names, units and roles are attributes. Numbers are exact to the bit; a record is written block by block. Raises `DesignError` if the
-    file cannot be written.
+    Names, units and roles are attributes. Numbers keep all bits; a record is written block by block. Raises `DesignError` if the file
+    cannot be written.
 
     >>> import h5py, tempfile
     >>> from flexstage.experiment.records.record import Channel, in_memory
@@ -102,4 +102,4 @@ def _texts(texts: tuple[str, ...]) -> Any:
 
 
 HDF5 = Format((".h5", ".hdf5", ".hdf"), is_hdf, read_hdf, write_hdf)
-"""HDF5 file: to the bit, of any size."""
+"""HDF5 format: numbers keep all bits, any size."""

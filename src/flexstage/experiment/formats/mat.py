@@ -35,10 +35,11 @@ def is_mat(start: bytes, suffix: str) -> bool:
 
 
 def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    """Read the contents of a MAT file by array name; structure members by their paths (`test.u`), lists of texts as cells.
+    """Read the contents of a MAT file by array name. Members of structures have paths (`test.u`); lists of texts are cells.
 
-    Objects of classes (`timeseries`, `table`, `idfrd`) cannot be read outside MATLAB: they are listed, with a hint on export. Arrays of
-    version 7.3 stay in the file, others are read at once. Raises `DesignError` for an invalid or truncated file, and as `read_arrays`.
+    MATLAB objects (`timeseries`, `table`, `idfrd`) cannot be read outside MATLAB: the error lists them, with a hint on export. Arrays of
+    version 7.3 stay in the file, others are read at once. Raises `DesignError` for an invalid or truncated file, and for the errors of
+    `read_arrays`.
 
     >>> import scipy.io, tempfile
     >>> from flexstage.experiment.records.options import Arrays
@@ -92,10 +93,10 @@ def _letter(code: float) -> str:
 
 
 def write_mat(path: str | os.PathLike[str], what: Record | Responses) -> None:
-    """Write a MAT file of version 5: `samples` (n, channels), `rate`, `start`, `names`, `units` and `roles`; or the same for responses.
+    """Write a MAT file of version 5: a record's `samples` (n, channels), `rate`, `start`, `names`, `units`, `roles`; or responses.
 
-    Assembled in memory, at most two gigabytes. Numbers are exact to the bit. Raises `DesignError` for a larger record, and if the file
-    cannot be written.
+    The file is assembled in memory, with at most two gigabytes. Numbers keep all bits. Raises `DesignError` for a larger record, and if
+    the file cannot be written.
 
     >>> import scipy.io, tempfile
     >>> from flexstage.experiment.records.record import Channel, in_memory
@@ -123,4 +124,4 @@ def _cells(texts: tuple[str, ...]) -> Array:
 
 
 MAT = Format((".mat",), is_mat, read_mat, write_mat)
-"""MAT file, written as version 5: to the bit, up to 2 GB."""
+"""MAT format, written as version 5: numbers keep all bits, up to 2 GB."""

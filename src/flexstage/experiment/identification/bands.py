@@ -1,4 +1,4 @@
-"""Frequency bands of the pole search, of joint fits, and their lines."""
+"""Frequency bands: of the pole search, and of the joint fits of modes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MOST = 12
 
 @dataclass(frozen=True)
 class Extent:
-    """Limits of a band in Hz, and the indices of its candidates."""
+    """Frequency band of a fit: its limits `low` and `high` in Hz, and the indices of the candidate modes in it."""
 
     low: float
     high: float
@@ -25,7 +25,7 @@ class Extent:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Band from `low` to `high` in Hz of one search, and its part `first` to `last` from which poles are kept."""
+    """Band of one pole search, `low` to `high` in Hz; only poles from `first` to `last` are kept."""
 
     low: float
     high: float
@@ -46,10 +46,11 @@ def sweeps(low: float, high: float) -> list[Sweep]:
 
 
 def extents(poles: Array, low: float, high: float, *, resolution: Array | float = 0.0, together: float = TOGETHER) -> list[Extent]:
-    """Divide poles (k,) in Hz, ascending, into bands: those with gaps below `together` times their half-widths form one.
+    """Divide poles (k,) in Hz, ascending, into bands for joint fits.
 
-    Half-widths are at least the lines' `resolution` in Hz. A band extends 24 half-widths beyond its outer poles, within `low` and `high`,
-    and ends between groups in proportion to half-widths.
+    Two successive poles share a band if they are closer than `together` times the sum of their half-widths. A half-width is -Re(pole), at
+    least the lines' `resolution` in Hz. A band extends 24 half-widths beyond its outer poles, within `low` and `high`. It ends before the
+    next group, at a limit that divides the gap in proportion to the half-widths.
 
     >>> found = extents(np.array([-1 + 100j, -1 + 101j, -1 + 200j]), 1.0, 300.0)
     >>> [(round(band.low), round(band.high), band.members) for band in found]

@@ -19,7 +19,7 @@ _STABLE_FREQUENCY, _STABLE_DAMPING, _STABLE_PARTICIPATION = 0.002, 0.05, 0.98
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """Recurring pole: its value in Hz (rad/s over 2 pi), its participation (m,) and its number of orders."""
+    """Candidate for a mode: a pole in Hz (rad/s over 2 pi) that recurs at a number of `orders`, and its participation (m,)."""
 
     pole: complex
     participation: Array
@@ -30,8 +30,8 @@ class Candidate:
 class Stabilisation:
     """Stabilisation diagram: for every pole its order, frequency in Hz, damping ratio and stability relative to the order below.
 
-    `stable` is 0 for a new pole, 1 with stable frequency (0.2 %), 2 with stable damping too (5 %), 3 with stable participation too (MAC of
-    0.98).
+    `stable` is 0 for a new pole, 1 for a stable frequency (0.2 %), 2 for stable frequency and damping (5 %). It is 3 if also the
+    participation is stable (MAC of 0.98).
     """
 
     orders: Array
@@ -51,9 +51,9 @@ class _Track:
 def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Stabilisation, tuple[Candidate, ...]]:
     """Build the diagram of poles of increasing order, and the candidates: poles in two fifths of the orders or more.
 
-    A pole continues the nearest track of the orders below, by distance in the complex plane and by participation. Each track takes one pole
-    per order, so that close pairs remain two tracks. The participations of a repeated pair are any two in their plane, different in every
-    order: candidates come from a common order where possible.
+    A track is one pole followed over the orders. A pole continues the nearest track of the orders below, by distance in the complex plane
+    and by participation. Each track takes one pole per order, so that close pairs remain two tracks. Participations of repeated poles are
+    arbitrary in a common plane and differ between orders. Candidates are therefore taken from a common order if possible.
 
     >>> one = [Poles(order, np.array([-0.1 + 10j]), np.ones((1, 1))) for order in range(1, 6)]
     >>> diagram, candidates = stabilisation(tuple(one), 0.1)
@@ -83,7 +83,7 @@ def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Sta
 def merge(sweeps: Iterable[tuple[Candidate, ...]]) -> tuple[Candidate, ...]:
     """Merge candidates of overlapping bands by ascending frequency; of duplicates the one with more orders is kept.
 
-    Candidates of one band are never duplicates: a pole of each order belongs to only one.
+    Candidates of the same band are never duplicates.
 
     >>> twice = [(Candidate(-1 + 100j, np.array([1.0]), 3),), (Candidate(-1.1 + 100.1j, np.array([1.0]), 5),)]
     >>> [candidate.orders for candidate in merge(twice)]
@@ -98,7 +98,7 @@ def merge(sweeps: Iterable[tuple[Candidate, ...]]) -> tuple[Candidate, ...]:
 
 
 def vector_assurance(first: Array, second: Array) -> float:
-    """Compute |a^H b|^2 / (a^H a b^H b) of two complex vectors.
+    """Compute the assurance (MAC) of two complex vectors a and b: |a^H b|^2 / (a^H a b^H b).
 
     >>> vector_assurance(np.array([1.0, 1.0j]), np.array([2.0, 2.0j]))
     1.0

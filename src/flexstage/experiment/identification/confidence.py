@@ -11,20 +11,20 @@ from flexstage.base.number import Array
 from flexstage.experiment.identification.likelihood import Band, Fit, Modal, fit, residual_power, scatter
 
 NORMAL_95 = 1.959964
-"""Half the width of a 95 % interval, in standard deviations."""
+"""Half the width of a 95 % interval of the normal distribution, in standard deviations."""
 _DOUBTFUL = 50.0
 _LINES = 3
 _NEAR, _NEAREST, _BY_CHANCE = (1.5, 4.0), 2.0, 1e-3
 """Neighbourhood of a mode: half-widths, minimum lines per parameter, and probability of a false alarm."""
 SAME = 0.1
-"""Power difference, relative, by which inputs are distinguishable from transients."""
+"""Relative power difference below which inputs equal transients."""
 
 
 @dataclass(frozen=True, eq=False)
 class Deviations:
-    """Standard deviations of modes: `frequencies` (k,) in Hz, `damping` (k,) of the ratios.
+    """Standard deviations of modes: `frequencies` (k,) in Hz, `damping` (k,) of the damping ratios.
 
-    `shapes` (p, k) apply to each part, real and imaginary, of shapes with largest component 1.
+    `shapes` (p, k) are the deviations of the real part and of the imaginary part of shapes with largest component 1.
     """
 
     frequencies: Array
@@ -32,7 +32,7 @@ class Deviations:
     shapes: Array
 
     def widen(self, factors: Array) -> Deviations:
-        """All deviations of each mode times its factor.
+        """Multiply all deviations of each mode by the mode's factor (k,).
 
         >>> Deviations(np.ones(1), np.ones(1), np.ones((2, 1))).widen(np.array([3.0])).shapes.tolist()
         [[3.0], [3.0]]
@@ -43,9 +43,9 @@ class Deviations:
 def misfits(band: Band, modal: Modal) -> Array:
     """Compute the residual of the fit near each mode (k,) relative to the band's noise; 1 if not significant.
 
-    Pure noise leaves the same residual everywhere, less the mode's degrees of freedom; outputs with coherent noise count once. A
-    probability below 1/1000 is systematic: a mode that is not linear, viscous and isolated. Tested are 1.5 half-widths, where a varying or
-    otherwise excited mode has the largest residual, and 4.
+    With noise only, the residual is equal everywhere, except for the degrees of freedom of the mode. Outputs with coherent noise count
+    once. A residual with a probability below 1/1000 is significant: the mode is not linear, viscous or isolated. Two neighbourhoods are
+    tested, 1.5 and 4 half-widths. In the first, a mode that varies or has unrecorded excitation has the largest residual.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit, noise
@@ -87,12 +87,13 @@ def _shared_noise(power: Array, lines: float) -> Array:
 
 
 def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None) -> Deviations:
-    """Compute standard deviations of a fit by the Cramer-Rao bound, the inverse of Fisher information; variances times `inflation`.
+    """Compute standard deviations of a fit by the Cramer-Rao bound: the covariance is I^-1, the inverse of the Fisher information.
 
-    With the gradient's covariance `scatter`, S, they follow from I^-1 S I^-1, valid also for noise correlated between outputs (White 1982).
+    `inflation` multiplies the variances. With the gradient's covariance `scatter`, S, the covariance is I^-1 S I^-1, valid also for noise
+    correlated between outputs (White 1982).
 
-    Parameters are complex and analytic: the covariance of real and of imaginary parts is half the inverse. The scale common to a shape and
-    its participation is undetermined; it is removed by fixing the largest participation.
+    Parameters are complex and analytic: the covariance of real and of imaginary parts is half the inverse. The common scale factor of a
+    shape and its participation is arbitrary. It is eliminated by fixing the largest participation.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit
@@ -115,11 +116,11 @@ def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None)
 
 
 def significance(band: Band, found: Fit, limit: float) -> Array:
-    """Compute the test statistic (k,) of each mode, chi-squared with `freedoms` degrees if the mode is absent.
+    """Compute the test statistic (k,) for the presence of each mode: chi-squared with `freedoms` degrees of freedom if the mode is absent.
 
-    Wald's statistic, 2 phi^H C^-1 phi of the mode's shape. Below fifty times `limit` it is replaced by twice the decrease of the
-    log-likelihood when the mode is removed and the others are fitted again (Wilks 1938), times the correction of Wald's statistic for noise
-    correlated between outputs (White 1982).
+    It is Wald's statistic 2 phi^H C^-1 phi of the mode's shape phi. If Wald's statistic is below fifty times `limit`, the likelihood ratio
+    replaces it (Wilks 1938): twice the decrease of the log-likelihood when the mode is removed and the others are fitted again. A factor
+    of at most 1 corrects the ratio for noise correlated between outputs (White 1982).
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -143,12 +144,11 @@ def significance(band: Band, found: Fit, limit: float) -> Array:
 
 
 def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
-    """Compute the test statistic (k,) of each mode's excitation, relative to the level that noise reaches once in `once_in`.
+    """Compute the test statistic (k,) of each mode's excitation, relative to the level that noise reaches with probability `once_in`.
 
-    Wald's statistic of its participation in the inputs, with the largest component of its shape fixed, and the transients' participation.
-    If the inputs equal transients near the mode, as for an impact at the start of a record, the transients count as inputs. Modes that are
-    significant only jointly fail: each can replace the other. So do both modes of a pair; responses without transients are therefore not
-    tested: infinite.
+    It is Wald's statistic of the mode's participation in the inputs. The largest component of its shape and the participations of
+    transients are fixed. If the inputs equal transients near the mode, as for an impact at the start of a record, the transients count as
+    inputs. Two modes that can replace each other both fail the test. Responses without transients are not tested: the result is infinite.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit
@@ -190,7 +190,7 @@ def _is_blow(band: Band, pole: complex, inputs: int) -> bool:
 
 
 def freedoms(modal: Modal) -> int:
-    """Count the real parameters of a mode: pole, shape and participation, less a common factor.
+    """Count the real parameters of one mode: pole, shape and participation, without their common scale factor.
 
     >>> freedoms(Modal(np.zeros(1), np.zeros((1, 6)), np.zeros((6, 1))))
     24

@@ -1,4 +1,4 @@
-"""Identification data from any source: responses for candidates, and lines for the fit of modes."""
+"""Identification data from any source: frequency responses for candidate modes, and transform lines for the fit of modes."""
 
 from __future__ import annotations
 
@@ -35,13 +35,14 @@ _ROUNDING = 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Identification data: responses for candidates, and lines for the fit.
+    """Identification data: frequency responses for candidate modes, and transform lines for the fit.
 
-    `responses` are in the channels' own units, with weights (f, p) of outputs. `lines()` returns the lines of all blocks, their inputs and
+    `responses` are in the channels' own units, with weights (f, p) of outputs. `lines()` returns the lines of all blocks, with inputs and
     outputs divided by `input_scale` (m,) and `output_scale` (p,). `density` (f, p) is the unscaled noise per line. `band` is the range of
-    the data, in Hz; `inflation` the factor on variances for dependent neighbouring lines; `coherence` the multiple coherence (f, p), if
-    known; `resolution` the line spacing in Hz. `rounding` (p,) is the scaled variance per line by sample rounding. `tones` are those in
-    outputs, the steady ones removed. `stored`: an analyser made the responses; `unstated`: its window is unknown.
+    the data in Hz, `resolution` the line spacing in Hz. `inflation` multiplies variances because neighbouring lines are correlated.
+    `coherence` (f, p) is the multiple coherence, if known. `rounding` (p,) is the scaled variance per line caused by rounding of samples.
+    `tones` are all tones found in the outputs; the steady ones are removed. `stored` is true for an analyser's responses, `unstated` if the
+    analyser's window is unknown.
     """
 
     where: str
@@ -65,18 +66,18 @@ class Evidence:
     unstated: bool = False
 
     def apart(self, frequencies: Array) -> Array:
-        """Spacing of lines in Hz near `frequencies` in Hz: `resolution`, or the local value for uneven lines."""
+        """Return the spacing of lines in Hz near `frequencies` in Hz: `resolution`, or the local spacing of uneven lines."""
         lines = self.responses.frequencies
         if not self.stored or is_even(lines):
             return np.full(np.shape(frequencies), self.resolution)
         return np.interp(frequencies, 0.5 * (lines[1:] + lines[:-1]), np.diff(lines))
 
     def shape(self, cells: Cells) -> Array:
-        """Relative noise variance over cells, (p, c): from stored coherence, else uniform."""
+        """Return the relative noise variance (p, c) of every output over cells: from stored coherence, else uniform."""
         return np.ones((len(self.output_scale), len(cells.low))) if self.shaped is None else self.shaped(cells)
 
     def variance(self, low: float, high: float) -> Array:
-        """First estimate of the noise variance (p,) per line of the outputs, divided by their scales: the median over the band."""
+        """Estimate the noise variance (p,) per line of the scaled outputs: the median over `low` to `high` in Hz."""
         inside = (self.responses.frequencies >= low) & (self.responses.frequencies <= high)
         chosen = self.density[inside] if np.any(inside) else self.density
         floor = 1e-10 * np.max(self.density, axis=0)
@@ -86,7 +87,7 @@ class Evidence:
 def evidence(what: Record | Responses | Sequence[Record], segments: Segments | None, known: Sequence[Spectra] = ()) -> Evidence:
     """Extract the identification data of a record, of several records of one stage, or of an analyser's responses.
 
-    Uses `known` spectra of the records, one each, if their segments match and no tone is removed.
+    `known` are spectra of the records, one for each. They are used if their segments match and no tone was removed from the record.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> round(evidence(one_mode_record(), None).band[1], 2)
@@ -188,9 +189,10 @@ def _scale_lines(lines: Lines, input_scale: Array, output_scale: Array) -> Lines
 
 
 def choose_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Segments:
-    """Choose segments: long ones resolve sharp resonances, many average noise; the number `wanted`, and three for each input.
+    """Choose segments of records for spectra: about `wanted` of them, and at least three for each input.
 
-    A single sweep has no averages: it excites each frequency once. Its segment is the whole record, without a window.
+    Long segments resolve sharp resonances; many segments average the noise. A single sweep excites each frequency only once, so averages
+    are impossible. Its segment is the whole record, without a window.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> choose_segments([one_mode_record(seconds=48.0)]).seconds

@@ -4,7 +4,7 @@ from enum import Enum
 
 
 class Excitation(Enum):
-    """Excitation of the stage."""
+    """Type of excitation of the stage."""
 
     RECORDED = "recorded"
     """Recorded inputs."""

@@ -1,4 +1,4 @@
-"""Modes of one group of candidates: joint fit, removal of insignificant modes, addition of further significant ones."""
+"""Modes of one group of candidates: joint fit, removal of insignificant modes, addition of further significant modes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.experiment.identification.likelihood import Band, Fit, Modal, bac
 from flexstage.experiment.spectral.lines import Cells
 
 ONCE_IN = 1e-9
-"""Trials per false mode caused by noise."""
+"""Probability of a false mode caused by noise."""
 _SURE, _EVIDENT = 1.0 / 3.0, 3.0
 _ROUNDS = 2
 _NOTICED, _DOUBTED, _SLIGHT = 2.0, 1e-4, 1.1
@@ -27,7 +27,7 @@ _MOST_MODES = 24
 
 @dataclass(frozen=True, eq=False)
 class RejectedResonance:
-    """Rejected resonance: its `pole` in Hz, `shape` (p,), and the probability (`chance`) of noise of that strength."""
+    """Rejected resonance: its `pole` in Hz, its `shape` (p,), and the probability `chance` that noise causes a resonance this strong."""
 
     pole: complex
     shape: Array
@@ -36,7 +36,7 @@ class RejectedResonance:
 
 @dataclass(frozen=True, eq=False)
 class ModeSearch:
-    """Search parameters: modes in `group`, damped at most `highest_damping`; rejected ones are added to `lost`."""
+    """Search parameters: the band `group`, the maximum damping ratio, and the list `lost`, to which rejected resonances are added."""
 
     group: Extent
     highest_damping: float
@@ -45,9 +45,9 @@ class ModeSearch:
 
 @dataclass(frozen=True, eq=False)
 class BandModes:
-    """Identified modes of one band, that of `group`, with deviations, noise-only deviations, and significance.
+    """Identified modes of the band of one `group`, with their standard deviations caused by noise, and their significance.
 
-    `misfit` is the residual near each relative to noise, `widening` the resulting factor on its deviations.
+    `misfit` (k,) is the residual near each mode relative to noise, `widening` (k,) the resulting inflation factor of its deviations.
     """
 
     group: Extent
@@ -75,7 +75,8 @@ class BandModes:
 def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: ModeSearch) -> BandModes | None:
     """Fit the modes of one group of candidates, remove insignificant ones, and fit again with the residual noise.
 
-    `cells` belong to the group's band; candidates next to the group represent the outside. `None` without a mode.
+    `cells` belong to the group's band. Candidates outside the group represent the modes outside the band. Returns `None` if no mode is
+    significant.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import POLE, one_mode_record
@@ -130,9 +131,10 @@ def _hidden_mode_factor(band: Band, found: Fit) -> Array:
 
 
 def widen_by_parts(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], found: BandModes) -> BandModes:
-    """Increase the deviations to include the scatter between parts of the record, if the residual exceeds noise.
+    """Increase the inflation factors to include the scatter of modes between parts of the record, if the residual exceeds noise.
 
-    `cells` belong to the same band, computed from the parts' transforms. A mode that depends on amplitude or time differs between parts.
+    `cells` belong to the same band, but are computed from transforms of the parts. A mode that depends on amplitude or time differs
+    between parts.
     """
     modal = found.modal
     band = _band(known, cells, candidates, found.group)

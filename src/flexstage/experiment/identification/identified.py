@@ -30,9 +30,9 @@ INFLATION = (
 
 @dataclass(frozen=True)
 class IdentifiedMode:
-    """Identified mode, with its number from 1 and 95 % intervals; `shape` by output and `participation` by input are complex.
+    """Identified mode: number from 1, 95 % intervals, complex `shape` by output and complex `participation` by input.
 
-    `widening`, `complexity` and `significance`: see `Identified`.
+    See `Identified` for `widening`, `complexity` and `significance`.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -61,13 +61,13 @@ class IdentifiedMode:
 class Identified(InNotebook):
     """Modes identified from records or responses, by ascending frequency, each with its standard deviation.
 
-    `frequencies` (k,) [Hz] are natural frequencies |pole|/(2 pi), `damping` (k,) ratios; `shapes` (p, k) complex, of the outputs, largest
-    component 1; `participation` (k, m) complex, of the inputs: H = sum of shape participation / (j w - pole) + conjugate. `deviation` of
-    shapes applies to real and imaginary part. `widening` (k,) is the inflation factor of deviations for a residual above noise near the
-    mode, else 1. `significance` (k,) is the mode's chi-squared statistic, relative to the level that noise reaches once in 1e9. `close`
-    lists modes closer than their half-widths: compare those by subspace. `noise` (p,) is the outputs' noise density, in the outputs' unit
-    squared per Hz. `warnings` list limits of the data; `peaks` are not confirmed as modes. `delay` [s] is the common delay of all outputs
-    removed before the fit (0: none): H is as above times e^{-j w delay}.
+    `frequencies` (k,) [Hz] are natural frequencies |pole|/(2 pi), `damping` (k,) damping ratios. `shapes` (p, k) are complex, by output,
+    with largest component 1; `participation` (k, m) is complex, by input. H is the sum of shape participation / (j w - pole) + conjugate.
+    Deviations of shapes apply to the real and to the imaginary part. `widening` (k,) is the inflation factor of deviations, above 1 if
+    the residual near the mode exceeds noise. `significance` (k,) is the mode's chi-squared statistic, relative to the level that noise
+    reaches once in 1e9. `close` lists modes closer than their half-widths: compare them by subspace. `noise` (p,) is the noise density of
+    the outputs, in the output's unit squared per Hz. `warnings` list limits of the data. `peaks` are peaks not confirmed as modes.
+    `delay` [s] is the common delay of all outputs, removed before the fit (0: none). With a delay, H is multiplied by e^{-j w delay}.
     """
 
     frequencies: Array
@@ -95,7 +95,7 @@ class Identified(InNotebook):
 
     @property
     def modes(self) -> Annotated[tuple[IdentifiedMode, ...], VIEW]:
-        """List of modes, ascending."""
+        """List of modes by ascending frequency."""
         columns: tuple[Iterable[Any], ...] = (
             range(1, len(self.frequencies) + 1),
             self.frequencies.tolist(),
@@ -112,7 +112,7 @@ class Identified(InNotebook):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes: the band, the delay and the close modes."""
+        """Notes on the band, the delay and the close modes."""
         band = f"between {self.band[0]:.4g} and {self.band[1]:.4g} Hz."
         if not self.modes:
             return (f"No mode was found {band}",)
@@ -127,7 +127,7 @@ class Identified(InNotebook):
 
     @property
     def close_modes(self) -> Annotated[tuple[tuple[int, ...], ...], VIEW]:
-        """Numbers of modes closer than their half-widths: compare those by subspace."""
+        """Numbers (from 1) of modes closer than their half-widths, group by group: compare them by subspace."""
         return tuple(tuple(index + 1 for index in group) for group in self.close)
 
     @property
@@ -148,7 +148,7 @@ class Identified(InNotebook):
 
     @property
     def real_shapes(self) -> Array:
-        """Real parts of shapes (p, k) rotated to be as real as possible, for comparison with an undamped model."""
+        """Real parts of the shapes (p, k), each rotated in phase to be as real as possible, for comparison with an undamped model."""
         turn = np.exp(-0.5j * np.angle(np.sum(self.shapes**2, axis=0)))
         turned = np.real(self.shapes * turn)
         largest = np.take_along_axis(turned, np.argmax(np.abs(turned), axis=0)[None, :], axis=0) if turned.size else turned[:1]

@@ -40,8 +40,8 @@ _LEAST_PARTS, _MOST_PARTS = 3, 8
 class Search(CheckedFields):
     """Search parameters: frequencies in `band` (Hz; default: the whole range of the record), damping up to `highest_damping`.
 
-    `segments` belong to the spectra for candidates (default: by the record's length). `excitation` is the stage's excitation: without
-    recorded inputs modes are identified from outputs only, by `identification`.
+    `segments` are the segments of the spectra for candidate modes (default: by the record's length). `excitation` is the stage's
+    excitation: without recorded inputs, `identification` identifies modes from outputs only.
     """
 
     band: tuple[float, float] | None = None
@@ -54,15 +54,19 @@ class Search(CheckedFields):
 def identify(what: Record | Responses | Sequence[Record], search: Search = Search(), known: Sequence[Spectra] = ()) -> Identified:
     """Identify natural frequencies, damping, shapes and participations, with 95 % intervals and significance.
 
-    `what` is a record, or several of the same stage (six with one actuator each form one test), or responses of an analyser. `known`
-    spectra of the records, one each, are not computed again. Candidates are the stable poles of pLSCF on H1. Each group of near ones is
-    then fitted by maximum likelihood to the transform of the whole record, with its transient, without window and leakage. Inputs are
-    assumed exact, outputs' noise of slowly varying density; intervals are valid for noise correlated between outputs too (Pintelon &
-    Schoukens 2012, ch. 9 and 10). If the residual near a mode exceeds noise (probability 1/1000), they are inflated to the residual or to
-    the scatter between independent parts of the data (sub-bands, inputs, records, time intervals), whichever is larger (`jackknife`); see
-    `widening`. A mode is kept if its removal costs more likelihood than noise at 1e-9, three times that for damping known worse than to a
-    third. The recorded inputs must also excite it (an F-test at 1e-9). If inputs leave 2 % of a mode's motion unexplained, a force is
-    unrecorded: all modes are then fitted together. Tones absent from the inputs are removed from the outputs before.
+    `what` is a record, several records of one stage (for example six with one driven actuator each), or an analyser's responses. `known`
+    are spectra of the records, one for each, which are then not computed again. Tones absent from the inputs are removed from the outputs.
+
+    Candidates are the stable poles of pLSCF on H1. Each group of close candidates is then fitted by maximum likelihood to the transform of
+    the whole record, with its transient, without window and leakage. Inputs are assumed exact, and the noise density of outputs to vary
+    slowly with frequency. Intervals are also valid for noise correlated between outputs (Pintelon & Schoukens 2012, ch. 9 and 10).
+
+    If the residual near a mode exceeds noise (probability 1/1000), its intervals are inflated to the larger of two values: the residual,
+    or the scatter between independent parts of the data (`jackknife`). Parts are sub-bands, inputs, records and time intervals.
+
+    A mode must be significant: noise must reach its chi-squared statistic at most once in 1e9. The limit is three times higher if the
+    standard deviation of the damping exceeds a third of the damping. The recorded inputs must also excite the mode (an F-test at 1e-9). If
+    the inputs leave more than 2 % of a mode's motion unexplained, a force was not recorded: all modes are then fitted together.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> found = identify(one_mode_record())
@@ -289,7 +293,7 @@ def _restore_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> 
 
 
 def close_groups(poles: Array) -> tuple[tuple[int, ...], ...]:
-    """Group modes closer to the next than the mean of their half-widths."""
+    """Group successive modes, with `poles` (k,), that are closer than the mean of their half-widths; returns the indices of each group."""
     groups: list[list[int]] = []
     for index in range(len(poles)):
         before = groups[-1][-1] if groups else None

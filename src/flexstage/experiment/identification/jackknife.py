@@ -16,13 +16,13 @@ _OCTAVES = 6
 def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
     """Compute deviations (k,) of poles in Hz, of real and of imaginary part, by omitting one group of cells at a time.
 
-    sigma^2 = (G - 1)/G sum |d_g|^2 / 2, with d_g the pole's change without group g by a Newton step, -(I - I_g)^-1 s_g, where I_g and s_g
-    are the group's share of information and gradient (Tukey 1958; CR3 of Bell & McCaffrey 2002). It requires only independent errors of
-    different groups, with any correlation within a group. For few groups sigma is multiplied by Student's t over the normal's 1.96, with 2
-    (sum |d|^2)^2 / sum |d|^4 degrees of freedom (Satterthwaite 1946), at most 2 (G - 1), so that 1.96 sigma is half of a 95 % interval. A
-    common error of all groups is not detected.
+    `groups` (c,) are the group numbers of the cells, from 0 to G - 1. The variance is sigma^2 = (G - 1)/G sum |d_g|^2 / 2. The change d_g
+    of the pole without group g is a Newton step, -(I - I_g)^-1 s_g. I_g and s_g are the contributions of the group to information and
+    gradient (Tukey 1958; CR3 of Bell & McCaffrey 2002).
 
-    `groups` (c,) are the group numbers of the cells, from 0.
+    Errors of different groups must be independent; errors within a group may be correlated. An error common to all groups is not detected.
+    For few groups, sigma is multiplied by the quantile of Student's t over 1.96, so that 1.96 sigma is half of a 95 % interval. The
+    degrees of freedom are 2 (sum |d|^2)^2 / sum |d|^4 (Satterthwaite 1946), at most 2 (G - 1).
 
     >>> from flexstage.experiment.identification.confidence import deviations
     >>> from flexstage.experiment.example import one_mode_band
@@ -49,9 +49,10 @@ def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
 
 
 def sub_bands(band: Band, pole: complex) -> Array:
-    """Define groups (c,) of cells: those within a half-width of a pole, and on each side each further octave of distance.
+    """Divide the cells into groups (c,) by distance from a pole, for `jackknife`.
 
-    The residual of a wrong model varies over the half-width near a resonance, and over the distance further away.
+    One group is within a half-width of the pole. On each side, every further octave of distance is a group. The residual of a wrong model
+    varies over a half-width near the resonance, and over the distance from the resonance further away.
 
     >>> from flexstage.experiment.example import POLE, one_mode_band
     >>> sub_bands(one_mode_band()[0], POLE).tolist()

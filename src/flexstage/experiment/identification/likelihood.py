@@ -22,9 +22,9 @@ _DIGITS = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Modal:
-    """Modes of a band: H = sum of shape participation / (j f - pole), plus terms of modes outside.
+    """Modes of a band: H = sum of shape participation / (j f - pole), plus terms of modes outside the band.
 
-    `poles` (k,) in Hz (rad/s over 2 pi), `participation` (k, m+b) of the inputs and of the blocks' transients, `shapes` (p, k).
+    `poles` (k,) are in Hz (rad/s over 2 pi). `participation` (k, m+b) is by input and by transient of each block; `shapes` (p, k).
     """
 
     poles: Array
@@ -32,18 +32,19 @@ class Modal:
     shapes: Array
 
     def without(self, index: int) -> Modal:
-        """Copy without one mode."""
+        """Return a copy without the mode of this index."""
         kept = [each for each in range(len(self.poles)) if each != index]
         return Modal(self.poles[kept], self.participation[kept], self.shapes[:, kept])
 
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Data of one band: its cells, and the noise variance of every output per line in every cell (p, c).
+    """Data of one band: its cells, and the noise `variance` (p, c) of every output per line in every cell.
 
-    `background` (c, b, 8) are the basis functions of modes outside, as Legendre coefficients in every cell. `smear` describes the smearing
-    of lines by windows, if any. `shape` (p, c) is the known relative noise over frequency, `rounding` (p,) the variance per line by
-    rounding. `inputs` is the number of drive columns that are inputs (default: all), followed by transients.
+    `background` (c, b, 8) are the basis functions of modes outside the band, as Legendre coefficients in every cell. `smear` describes the
+    smearing of lines by windows, if any. `shape` (p, c) is the known relative noise variance over frequency. `rounding` (p,) is the
+    variance per line caused by rounding of samples. The first `inputs` columns of the drive are inputs, the others transients (default:
+    all are inputs).
     """
 
     cells: Cells
@@ -59,7 +60,7 @@ class Band:
 class Fit:
     """Modes fitted to a band, with the negative log-likelihood (`cost`: chi-squared per complex number) and Fisher information.
 
-    `information` is complex and of the parameters (poles; participation row by row; shapes output by output).
+    `information` (q, q) is complex. Its parameters are, in this order: poles, participations mode by mode, shapes output by output.
     """
 
     modal: Modal
@@ -93,8 +94,8 @@ class _Sums:
 def fit(band: Band, start: Modal, enough: float = np.inf) -> Fit:
     """Maximise the likelihood of the modes by the Levenberg-Marquardt method from `start`.
 
-    The residual is analytic in all parameters, so that complex least squares apply: noise is circular and independent between lines and
-    outputs. Stops early if the cost exceeds `enough` and is predicted to stay there.
+    The noise is assumed circular and independent between lines and outputs. The residual is analytic in all parameters, so complex least
+    squares apply. The iteration stops early if the cost exceeds `enough` and is predicted to remain above it.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> found = fit(*one_mode_band())
@@ -179,7 +180,9 @@ def residual_power(band: Band, modal: Modal) -> Array:
 
 
 def explained_share(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
-    """Compute, block by block, the cell indices and the factors (p, c, 8, n) of Z in them by modes and background.
+    """Compute the outputs explained by modes and background, as factors (p, c, 8, n) of Z (see `Cells`), block by block.
+
+    Yields the indices of the block's cells and the factors in these cells.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> [len(chosen) for chosen, _ in explained_share(*one_mode_band())] == [len(one_mode_band()[0].cells.low)]
@@ -193,7 +196,7 @@ def explained_share(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
 
 
 def noise(band: Band, modal: Modal) -> Array:
-    """Estimate the noise variance per line of every output in every cell (p, c) from the residual: means over 100 lines or more.
+    """Estimate the noise variance (p, c) per line of every output in every cell: the mean of the residual over 100 lines or more.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -209,8 +212,9 @@ def noise(band: Band, modal: Modal) -> Array:
 def silence(cells: Cells, rounding: Array | float) -> Array:
     """Compute the lower bound of the noise variance (p, c) per line.
 
-    Cells store responses to six digits. That error e is equal at all N lines and does not average out. A variance of N e^2 times the power
-    prevents false modes and too narrow intervals. `rounding` (p,) is the variance by sample rounding of an output without other noise.
+    Cells represent responses to six digits. This relative error e is equal at all N lines, so averaging does not reduce it. The lower
+    bound of N e^2 times the power prevents false modes and too narrow intervals. `rounding` (p,) is the variance caused by rounding of an
+    output's samples, without other noise.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> cells = one_mode_band()[0].cells
@@ -221,11 +225,11 @@ def silence(cells: Cells, rounding: Array | float) -> Array:
 
 
 def scatter(band: Band, modal: Modal) -> Array:
-    """Estimate the gradient's covariance, with the noise correlation of the output residuals, for deviations under such noise.
+    """Estimate the covariance (q, q) of the likelihood's gradient for noise correlated between outputs.
 
-    The middle of the sandwich estimator (White 1982); for noise independent between outputs it tends to the information. Noise is constant
-    over 25 lines, not over 100: the residual of an unrecorded force follows the resonances. `silence` is the lower bound. For the
-    parameters of `Fit.information`.
+    It is the middle matrix of the sandwich estimator (White 1982), for the parameters of `Fit.information`. For noise independent between
+    outputs it tends to the information. The noise is the residual averaged over 25 lines, not over 100, because the residual of an
+    unrecorded force follows the resonances. `silence` is its lower bound.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> found = fit(*one_mode_band())
@@ -319,9 +323,9 @@ def _pool_cells(power: Array, cells: Cells, least: int = _NOISE_LINES) -> Array:
 
 
 def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
-    """Construct an orthonormal basis (c, b, 8) of polynomials up to `degree` and of the tails 1/(j f - p) of the poles `outside` (Hz).
+    """Construct an orthonormal basis (c, b, 8) of polynomials up to `degree` and of the terms 1/(j f - p) of the poles `outside` [Hz].
 
-    Directions below 1e-6, the precision of cells, are omitted.
+    Basis functions smaller than 1e-6, the precision of cells, are omitted.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> background(one_mode_band()[0].cells, np.zeros(0), 1).shape[1:]
@@ -340,7 +344,7 @@ def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
 
 
 def resonances(band: Band, poles: Array) -> Array:
-    """1/(j f - p) in every cell, as Legendre coefficients (c, k, 8).
+    """Compute 1/(j f - p) in every cell for poles p (k,) in Hz, as Legendre coefficients (c, k, 8).
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()

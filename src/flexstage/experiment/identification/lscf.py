@@ -34,10 +34,10 @@ class Poles:
 def lscf(frequencies: Array, responses: Array, weights: Array, orders: range) -> tuple[Poles, ...]:
     """Estimate the poles of every order from responses H (f, p, m) at `frequencies` in Hz, with weights (f, p) of the outputs.
 
-    Right matrix fraction H = B(z) A(z)^-1 with common denominator, complex coefficients and z = exp(s T), the band mapped to half a circle
-    (Peeters, Van der Auweraer, Guillaume & Leuridan, Shock Vib. 11 (2004) 395). Poles are unwrapped about the band's centre. A pole's
-    participation is the left null vector of A: near it A^-1 is v w^H / (z - z_r), and the rows of H follow w^H. Returns only stable poles
-    within the band.
+    The model is the right matrix fraction H = B(z) A(z)^-1 with complex coefficients and z = exp(s T). The band is mapped to half of the
+    unit circle (Peeters, Van der Auweraer, Guillaume & Leuridan, Shock Vib. 11 (2004) 395). Poles are unwrapped about the band's centre.
+    The participation of a pole z_r is the left null vector w of A: near z_r, A^-1 is v w^H / (z - z_r), so that every row of H is a
+    multiple of w^H. Returns only stable poles within the band.
 
     >>> lines = np.linspace(8.0, 12.0, 81)
     >>> one = 1.0 / (2j * np.pi * lines - (-1.0 + 2j * np.pi * 10.0))

@@ -21,7 +21,9 @@ TIME_SCALES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min":
 
 
 def round_nominal(value: float, uncertainty: float) -> float:
-    """Find the roundest number consistent with a rounded value: fewest digits, or fewest digits of the inverse.
+    """Find the number with the fewest digits, or with the fewest digits of its inverse, that agrees with a rounded value.
+
+    `uncertainty` is the relative uncertainty of the value.
 
     A step printed as 4.88281e-04 s means 2048 Hz, not 2048.002.
 
@@ -39,7 +41,7 @@ def round_nominal(value: float, uncertainty: float) -> float:
 
 
 def printed_uncertainty(text: str) -> float:
-    """Relative uncertainty of a printed number: half a unit of its last digit.
+    """Compute the relative uncertainty of a printed number: half a unit of its last digit.
 
     >>> printed_uncertainty("5.0e-04"), printed_uncertainty("0.25")
     (0.01, 0.02)
@@ -52,7 +54,7 @@ def printed_uncertainty(text: str) -> float:
 
 @dataclass(frozen=True)
 class Clock:
-    """Clock of times: rate in Hz, first time in s, intervals (start, stop) of samples without a gap, and their start times."""
+    """Sampling clock: rate in Hz, first time in s, intervals (start, stop) of samples without gaps, start times of the intervals in s."""
 
     rate: float
     start: float
@@ -61,15 +63,15 @@ class Clock:
 
     @property
     def longest(self) -> tuple[int, int]:
-        """Longest interval without a gap."""
+        """Longest interval (start, stop) of samples without a gap."""
         return max(self.stretches, key=lambda stretch: stretch[1] - stretch[0])
 
 
 def read_clock(times: Array, where: str) -> Clock:
-    """Determine the clock of times (n,) in s. Raises `DesignError` for too few, non-finite, repeated or uneven times.
+    """Determine the sampling clock from times (n,) in s. Raises `DesignError` for too few, non-finite, repeated or uneven times.
 
-    A step is a gap if it differs by more than half from the median. The rate follows from the other steps, rounded within the precision of
-    the times.
+    A time step is a gap if it differs from the median step by more than half. The rate follows from the other steps, rounded within the
+    precision of the times.
 
     >>> read_clock(np.array([0.0, 0.1, 0.2, 0.7, 0.8]), "a.csv").stretches
     ((0, 3), (3, 5))
@@ -87,9 +89,9 @@ def read_clock(times: Array, where: str) -> Clock:
 
 
 def determine_clock(samples: Samples, options: Options, where: str, *, scale: float = 1.0, stated: float | None = None) -> Clock:
-    """Determine the clock of the first of some samples, times in units of `scale` [s]; raises `DesignError` with its faults.
+    """Determine the sampling clock from the first column of samples, times in units of `scale` [s]; raises `DesignError` with its faults.
 
-    A rate specified in the file takes precedence if both agree within a thousandth.
+    A rate `stated` in the file [Hz] replaces the rate of the times; both must agree within a thousandth.
 
     >>> from flexstage.experiment.records.record import InMemory
     >>> times = InMemory(np.array([[0.0], [0.1], [0.2], [0.7], [0.8]]))
@@ -111,7 +113,7 @@ def determine_clock(samples: Samples, options: Options, where: str, *, scale: fl
 
 
 def clocked_record(channels: Iterable[Channel], samples: Samples, clock: Clock, options: Options, *, name: str, where: str) -> Record:
-    """Build the record of samples over the longest interval of a clock, with the selected channels.
+    """Build a record of the selected channels over the longest interval of a clock without gaps.
 
     >>> from flexstage.experiment.records.record import Channel, InMemory
     >>> clock = Clock(1.0, 0.0, ((0, 1), (1, 3)), (0.0, 7.0))

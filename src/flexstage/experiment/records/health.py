@@ -40,7 +40,7 @@ _UNWINDOWED = (
 class RecordRequirements(CheckedFields):
     """Record requirements: `resolution` in Hz with a number of `averages`, the `highest` mode in Hz, channels of the stage as (name, unit).
 
-    `unrecorded`: the excitation was not recorded, so that inputs are absent.
+    With `unrecorded`, the excitation was not recorded, and the record has no inputs.
     """
 
     resolution: float | None = None
@@ -53,7 +53,7 @@ class RecordRequirements(CheckedFields):
 
 @dataclass(frozen=True)
 class Fault:
-    """Fault of a record: the tolerance that accepts it (None: none does), the channel, and the message."""
+    """Fault of a record: the tolerance that accepts it (`None`: it cannot be accepted), the channel, and the message."""
 
     kind: FaultTolerance | None
     channel: str
@@ -70,11 +70,11 @@ class Examination(InNotebook):
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """Findings for all faults."""
+        """Error messages of all faults."""
         return tuple(fault.finding for fault in self.faults)
 
     def channels(self, kinds: Iterable[FaultTolerance]) -> frozenset[str]:
-        """Channels with faults of those kinds."""
+        """Return the names of channels with faults of these kinds."""
         known = frozenset(kinds)
         return frozenset(fault.channel for fault in self.faults if fault.kind in known and fault.channel)
 
@@ -110,10 +110,10 @@ def examine(record: Record, requirements: RecordRequirements = _NEEDS) -> Examin
 def usable_record(
     record: Record, accept_faults: frozenset[FaultTolerance] = frozenset(), requirements: RecordRequirements = _NEEDS
 ) -> Record:
-    """Return the usable record: unchanged without faults, else without the parts that `allow` accepts to omit.
+    """Return the usable record: unchanged without faults, else without the faulty parts that `accept_faults` allows to omit.
 
-    Dead, dependent and unfitting channels are removed; of a record with gaps the longest whole interval remains. Raises `DesignError` with
-    every fault that is not accepted.
+    Dead channels, dependent inputs, and channels without a role or absent from the stage are removed. Of a record with non-finite samples
+    the longest finite interval remains. Raises `DesignError` with every fault that is not accepted.
 
     >>> from flexstage.experiment.records.record import in_memory
     >>> noise = np.random.default_rng(1).normal(size=(4096, 3)) * [1.0, 0.0, 1.0]
@@ -137,7 +137,7 @@ def usable_record(
 
 
 def responses_findings(responses: Responses, requirements: RecordRequirements = _NEEDS) -> list[Fault]:
-    """Find faults of stored responses: units, names, frequencies not increasing or below the highest mode, a coherence above one.
+    """Find faults of stored responses: units, names, frequencies that decrease or end below the highest mode, a coherence above one.
 
     >>> one = Responses(np.array([1.0, 2.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.ones((2, 1, 1), complex))
     >>> [fault.finding.what for fault in responses_findings(one, RecordRequirements(highest=5.0))]

@@ -13,18 +13,19 @@ from flexstage.experiment.progress import report
 from flexstage.experiment.records.record import Record, Role
 
 BLOCK = 1 << 19
-"""Numbers per block, of all channels together."""
+"""Samples per block, of all channels together."""
 _SEGMENT = 1024
 _KEPT = 2048
 
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """Statistics of the samples of one channel up to a block.
+    """Statistics of the samples of one channel, accumulated block by block.
 
-    `broken` of `count` samples are not finite, the first is number `first_broken`. From sample `still_from` the value stays `still_at` for
-    `still` samples, the longest such interval. `lows` and `highs` are enough extremes to distinguish clipping from a tail. `step` is the
-    smallest nonzero step, `pairs` are the lowest and the highest value of two successive samples.
+    `broken` of `count` samples are not finite; `first_broken` is the index of the first. The longest interval of constant value has
+    `still` samples of value `still_at` from sample `still_from`. `lows` and `highs` are the lowest and highest samples, enough to
+    distinguish clipping from a tail of the distribution. `step` is the smallest nonzero step. `pairs` are the lowest and the highest value
+    that two successive samples share.
     """
 
     count: int = 0
@@ -43,7 +44,7 @@ class Numbers:
     _run: Annotated[int, INNER] = 0
 
     def add(self, values: Array) -> Numbers:
-        """Combine with the statistics of another block of samples."""
+        """Return the statistics with a further block of samples (n,) included."""
         finite = np.isfinite(values)
         held = values[finite]
         first = self.count + int(np.argmin(finite)) if self.first_broken < 0 and len(held) < len(values) else self.first_broken
@@ -99,13 +100,13 @@ class Numbers:
 
     @property
     def levels(self) -> Annotated[float, VIEW]:
-        """Range over the smallest step."""
+        """Range of the values in smallest steps."""
         return (self.high - self.low) / self.step if np.isfinite(self.step) else 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class RecordNumbers:
-    """Statistics of all channels; the longest interval (start, stop) of finite numbers; unscaled mean cross-spectra of the inputs."""
+    """Statistics of all channels, longest interval `stretch` (start, stop) of finite samples, unscaled mean cross-spectra of the inputs."""
 
     channels: tuple[Numbers, ...]
     stretch: tuple[int, int]
@@ -157,7 +158,7 @@ def _least(values: Array) -> Array:
 
 
 def count_ends(values: Array) -> tuple[int, int]:
-    """Count how many of the highest values equal the highest one, and how many the next.
+    """Count the values equal to the highest value, and the values equal to the second highest.
 
     >>> count_ends(np.array([1.0, 3.0, 3.0, 2.0]))
     (2, 1)
@@ -167,9 +168,10 @@ def count_ends(values: Array) -> tuple[int, int]:
 
 
 def explained_share(spectra: Array) -> Array:
-    """Compute the share of each input's power explained by the others, (inputs,): 1 - sum of 1/(G^-1)_ii over sum of G_ii.
+    """Compute the share (m,) of each input's power explained by the other inputs, from cross-spectra G (f, m, m).
 
-    Power-weighted multiple coherence (Bendat and Piersol, Random Data, 4th edition, section 7.3); includes delays within a segment.
+    It is the power-weighted multiple coherence 1 - sum of 1/(G^-1)_ii over sum of G_ii (Bendat and Piersol, Random Data, 4th edition,
+    section 7.3). The other inputs may be delayed within a segment.
 
     >>> explained_share(np.array([[[1.0, 0.8], [0.8, 1.0]]])).round(2).tolist()
     [0.64, 0.64]

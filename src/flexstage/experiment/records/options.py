@@ -27,14 +27,14 @@ OUTPUT_NAMES = (
 
 
 class Kind(Enum):
-    """Requested kind of data from a file with both."""
+    """Requested kind of data, for a file with both records and responses."""
 
     RECORD = "record"
     RESPONSES = "responses"
 
 
 class FaultTolerance(Enum):
-    """Accepted fault of a record, and the resulting use of its data: by default no fault is accepted."""
+    """Fault of a record that a user accepts, and the resulting use of the data; by default no fault is accepted."""
 
     TRUNCATED = "truncated"
     """Use the available part of a truncated file."""
@@ -65,8 +65,8 @@ class Arrays(CheckedFields):
     """Assignment of arrays of a MAT or HDF5 file, or of columns of a CSV file: names or patterns.
 
     A record has `samples`, and `time` [s], `rate` [Hz] or `step` [s]; `names` and `units` are lists of texts, one per channel. Responses
-    have `frequencies` [Hz], complex `responses`, and `coherence`. Defaults are the names in files written here. For a CSV file only `time`
-    and `frequencies` apply: the other columns are channels.
+    have `frequencies` [Hz], complex `responses`, and optional `coherence`. Default names are those in files written by flexstage. For a CSV
+    file only `time` and `frequencies` apply: the other columns are channels.
     """
 
     samples: tuple[str, ...] = ("samples",)
@@ -80,7 +80,7 @@ class Arrays(CheckedFields):
     coherence: tuple[str, ...] = ("coherence",)
 
     def stated(self) -> tuple[tuple[str, str], ...]:
-        """Pairs of a meaning and a name different from the default.
+        """Return pairs of a meaning and an assigned name, if different from the default.
 
         >>> Arrays(samples=("u", "y"), time=("t",)).stated()
         (('samples', 'u'), ('samples', 'y'), ('time', 't'))
@@ -91,11 +91,11 @@ class Arrays(CheckedFields):
 
 @dataclass(frozen=True)
 class Options(CheckedFields):
-    """User options for a file.
+    """User options for reading a file.
 
-    `inputs` and `outputs` are names or patterns (`u*`, `S?`); if only one is specified, all other channels have the other role. `only`
-    selects the channels used. `rate` in Hz overrides the file's times. `units` are pairs of a name or pattern and a unit. `arrays` assigns
-    the file's arrays. `allow` are the accepted faults.
+    `inputs` and `outputs` are names or patterns (`u*`, `S?`) of channels. If only one of them is specified, all other channels have the
+    other role. `only` selects the channels used. `rate` in Hz replaces the times in the file. `units` are pairs of a name or pattern and a
+    unit. `arrays` assigns the file's arrays. `accept_faults` are the accepted faults.
     """
 
     inputs: tuple[str, ...] = ()

@@ -1,7 +1,7 @@
 """Records: sampled channels of a test, and frequency responses of an analyser.
 
-Samples are read in blocks from any source, so that a record may exceed the memory. Numbers stay in the channels' units, bit-identical to
-the file.
+Samples are read in blocks from any source, so that a record may be larger than the memory. Numbers are in the channels' units and
+bit-identical to those in the file.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class InMemory:
 
 @dataclass(frozen=True, eq=False)
 class ComputedSamples:
-    """Samples read by a function: `read(start, stop)` returns those of a block (stop excluded), as floats (n, channels)."""
+    """Samples from a function: `read(start, stop)` returns samples `start` to `stop` (excluded), as floats (n, channels)."""
 
     length: int
     read: Callable[[int, int], Array]
@@ -126,7 +126,7 @@ class Record(InNotebook, CheckedFields):
 
     @property
     def kind(self) -> Annotated[str, VIEW]:
-        """`record`, in contrast to `responses`."""
+        """Kind of data: `record`, in contrast to `responses`."""
         return "record"
 
     @property
@@ -160,7 +160,7 @@ class Record(InNotebook, CheckedFields):
         return self.samples.read(0, self.length)
 
     def columns(self, names: Iterable[str]) -> tuple[int, ...]:
-        """Values of the named channels; raises `DesignError` for every unknown name."""
+        """Return the column indices of the named channels; raises `DesignError` for every unknown name."""
         chosen, known = tuple(names), self.names
         where = self.where
         require(Finding(f"{where}: {name}", "unknown channel", suggest_nearest(name, known)) for name in set(chosen) - set(known))
@@ -248,7 +248,7 @@ class Responses(InNotebook, CheckedFields):
 
     @property
     def kind(self) -> Annotated[str, VIEW]:
-        """`responses`, in contrast to `record`."""
+        """Kind of data: `responses`, in contrast to `record`."""
         return "responses"
 
     @property
@@ -258,19 +258,19 @@ class Responses(InNotebook, CheckedFields):
 
     @property
     def band(self) -> Annotated[tuple[float, float], FREQUENCY]:
-        """Lowest and highest frequency."""
+        """Lowest and highest frequency in Hz."""
         return float(self.frequencies[0]), float(self.frequencies[-1])
 
     @property
     def units(self) -> tuple[tuple[str, ...], ...]:
-        """Unit of every entry, outputs x inputs; empty if one of both is missing."""
+        """Unit of every entry by output and input; empty if the output's or the input's unit is missing."""
         columns = [channel.unit for channel in self.inputs]
         ratios = ratio_units(tuple(channel.unit for channel in self.outputs), tuple(columns))
         stated = ((row, [channel.unit and unit for unit in columns]) for row, channel in zip(ratios, self.outputs, strict=True))
         return tuple(tuple(ratio if known else "" for ratio, known in zip(row, both, strict=True)) for row, both in stated)
 
     def select(self, rows: Sequence[int], columns: Sequence[int]) -> Responses:
-        """Return the responses between the outputs and inputs of these indices."""
+        """Return the responses of the outputs with indices `rows` to the inputs with indices `columns`."""
         chosen = np.ix_(range(len(self.frequencies)), rows, columns)
         return replace(
             self,
@@ -281,14 +281,14 @@ class Responses(InNotebook, CheckedFields):
         )
 
     def at(self, output: str, input: str) -> Array:  # noqa: A002 the field's word
-        """Single entry over frequency, complex (f,)."""
+        """Return the response of one output to one input over frequency, complex (f,)."""
         row = [channel.name for channel in self.outputs].index(output)
         column = [channel.name for channel in self.inputs].index(input)
         return self.values[:, row, column]
 
 
 def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
-    """Wrap a record to report the number of samples read with each block, for progress bars.
+    """Wrap a record to report the number of samples read so far with each block, for progress bars.
 
     >>> told = []
     >>> long = report_reading(in_memory([Channel("S1")], 1.0, np.zeros((5, 1))), told.append)
@@ -332,7 +332,7 @@ def rising_problem(frequencies: Array) -> str | None:
 
 
 def name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
-    """Findings for channel names: no channels, empty names, duplicates.
+    """Find faults of channel names: no channels, empty names, duplicates.
 
     >>> [finding.what for finding in name_findings("a.csv", (Channel("S1"), Channel("S1")))]
     ['2 channels have this name']

@@ -1,4 +1,4 @@
-"""Units of recorded channels: spellings of other programs, unusable units, and records in SI."""
+"""Units of recorded channels: spellings of other programs, unusable units, and conversion of records to SI."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def same_dimension(unit: str, other: str) -> bool:
 
 
 def in_si(record: Record) -> Record:
-    """Convert a record to SI, scaled when read; channels with a missing or unknown unit are unchanged.
+    """Convert a record to SI; samples are scaled when they are read. Channels with a missing or unknown unit are unchanged.
 
     >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> metres = in_si(in_memory([Channel("S1", "um"), Channel("u1")], 1.0, np.array([[2.0, 3.0]])))

@@ -76,7 +76,7 @@ def density_figure(found: Identified) -> Any:
 
 
 def focus(found: Identified) -> tuple[float, float]:
-    """Choose the frequency range of figures [Hz]: from below the lowest mode to well above the highest one, within the searched band.
+    """Choose the frequency range of figures [Hz]: from below the lowest mode to well above the highest mode, within the searched band.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -142,7 +142,7 @@ def _decades(axes: Any) -> None:
 
 
 def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[float, float]) -> Any:
-    """Plot H1, H2 and the paper's T_ij = G_ij/G_ii of each output for its dominant input, as a matplotlib Figure.
+    """Plot H1 (`first`) and `others`, such as H2, of each output for its dominant input over `band` [Hz], as a matplotlib Figure.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> from flexstage.experiment.spectral.transfer import h1, h2
@@ -166,7 +166,7 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
 def coherence_figure(found: Identified, multiple: Array | None, lines: Array | None = None) -> Any:
     """Plot the multiple coherence of the first outputs, and the ordinary coherence with every input, as a matplotlib Figure.
 
-    `multiple` (f, p) is absent for an analyser's ordinary coherence; its `lines` [Hz] are by default those of the identified responses.
+    `multiple` (f, p) is absent for an analyser's responses. Its frequencies `lines` [Hz] are by default those of the identified responses.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify

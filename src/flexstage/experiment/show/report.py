@@ -30,7 +30,7 @@ from flexstage.show.viewer.data import StageData, stage_data
 
 
 def identify_report(seen: Identification, mechanism: Mechanism | None = None, shapes: StageShapes | None = None) -> str:
-    """Write the modes of a test as an HTML page: tables, responses with fit, coherence, stabilisation; with a stage, its shapes.
+    """Write the modes of a test as an HTML page: tables, responses with fit, coherence, stabilisation, and shapes on a stage if specified.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.pipeline import identification
@@ -46,7 +46,7 @@ def identify_report(seen: Identification, mechanism: Mechanism | None = None, sh
 
 
 def compare_report(found: Compared, seen: Identification, mechanism: Mechanism, shapes: StageShapes) -> str:
-    """Write model, finite elements and test as an HTML page, followed by the test's data."""
+    """Write the comparison of model, finite elements and test as an HTML page, followed by the test's data."""
     data = _with_measured(stage_data(mechanism, model=read(mechanism, found.model)), seen, shapes)
     head = [stage_section(data), compare_section(found), pair_section(found, data)]
     sections = [*head, *_sections(seen, _measured(seen, shapes, data))]

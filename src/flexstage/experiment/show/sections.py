@@ -62,7 +62,7 @@ def found_section(seen: Identification) -> Section | None:
 
 
 def response_data_section(seen: Identification) -> Section | None:
-    """Section of responses with fit and data, and estimators side by side; densities without recorded inputs."""
+    """Section of responses with fit and data, and of the estimators side by side; without recorded inputs, of amplitude densities."""
     found = seen.found
     if not found.inputs:
         picture = to_svg(density_figure(found), "measured-densities", "Amplitude density of outputs over frequency, and the modes found")
@@ -136,7 +136,7 @@ def measured_motions(found: Identified, shapes: StageShapes, bones: Skeleton) ->
 
 
 def pair_section(found: Compared, data: StageData) -> Section | None:
-    """Section of model and measured modes that play together; `None` without a pair that can be drawn."""
+    """Section of paired model and measured modes, animated side by side; `None` without a pair that can be drawn."""
     theory, known = platform_modes(data), {each.name for each in data.motions}
     partners = [
         (f"mode {theory[mode.number - 1].name}", f"mode measured {mode.experiment.number}")

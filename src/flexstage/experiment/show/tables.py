@@ -44,7 +44,7 @@ def _channels(channels: Sequence[Channel]) -> str:
 
 
 def identified_table(found: Identified) -> Table:
-    """Tabulate frequencies and damping ratios with 95 % intervals, and close modes, for which only the subspace is known.
+    """Tabulate frequencies and damping ratios with 95 % intervals, with notes on close modes, for which only the subspace is known.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify

@@ -21,7 +21,7 @@ BATCH = 2_000_000
 
 
 class Window(Enum):
-    """Window of a segment before its transform."""
+    """Window by which a segment is multiplied before its transform."""
 
     HANN = "hann"
     HAMMING = "hamming"
@@ -41,7 +41,7 @@ class Window(Enum):
 
 @dataclass(frozen=True)
 class Segments(CheckedFields):
-    """Segmentation of a record: `seconds` of each segment (its inverse is the resolution in Hz), relative `overlap`, and window."""
+    """Segmentation of a record: length of a segment in `seconds` (the inverse is the resolution in Hz), relative `overlap`, and window."""
 
     seconds: Annotated[float, INNER]
     overlap: float = 0.5
@@ -52,9 +52,9 @@ class Segments(CheckedFields):
 class Spectra:
     """One-sided spectral densities at `frequencies` (f,) in Hz: `xx` (f, m, m), `yx` (f, p, m) and `yy` (f, p, p).
 
-    yx = E[Y X^H] and so on: entry (i, j) is row i times the conjugate of column j; the paper's G_ij = E[X_i* Y_j] (Eq. 29) is yx[j, i]. An
-    entry's unit is the product of its channels' units, per Hz. `averages` is the number of segments, equivalent to `independent` ones
-    without overlap.
+    `yx` is E[Y X^H]: entry (i, j) is output i times the conjugate of input j. `xx` and `yy` are defined in the same way. The paper's
+    G_ij = E[X_i* Y_j] (Eq. 29) is yx[j, i]. The unit of an entry is the product of the units of its two channels, per Hz. `averages` is the
+    number of segments; `independent` is the equivalent number of segments without overlap.
     """
 
     frequencies: Array
@@ -69,18 +69,18 @@ class Spectra:
 
     @property
     def resolution(self) -> Annotated[float, FREQUENCY]:
-        """Spacing of the lines."""
+        """Spacing of the frequency lines in Hz."""
         return float(self.frequencies[1])
 
     def driven(self, names: Container[str]) -> Spectra:
-        """Spectra without unnamed and inactive inputs."""
+        """Return the spectra with only those inputs that are listed in `names` and have power."""
         power = np.sum(np.real(np.diagonal(self.xx, axis1=1, axis2=2)), axis=0)
         kept = np.array([index for index, each in enumerate(self.inputs) if each.name in names and power[index] > 0.0], dtype=int)
         inputs = tuple(self.inputs[index] for index in kept)
         return replace(self, inputs=inputs, xx=self.xx[:, kept[:, None], kept], yx=self.yx[:, :, kept])
 
     def band(self, low: float, high: float) -> Spectra:
-        """Lines from `low` to `high` in Hz, both included."""
+        """Return the spectra at the lines from `low` to `high` in Hz, both included."""
         kept = (self.frequencies >= low) & (self.frequencies <= high)
         return replace(self, **{name: getattr(self, name)[kept] for name in ("frequencies", "xx", "yx", "yy")})
 
@@ -89,9 +89,9 @@ class Spectra:
 def spectra(record: Record, segments: Segments) -> Spectra:
     """Estimate the spectra of a record's inputs and outputs by Welch's method: averages of windowed, overlapping segments without mean.
 
-    Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70. Memory is independent of the record's length. Raises `DesignError` for a record
-    without outputs, or shorter than a segment. The window smears the estimate over about two lines: choose segments for several lines
-    within the sharpest resonance.
+    Reference: Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70. The memory does not depend on the record's length. The window smears
+    the estimate over about two lines: choose segments so long that several lines are within the sharpest resonance. Raises `DesignError`
+    for a record without outputs, or shorter than a segment.
 
     >>> from flexstage.experiment.records.record import Role, in_memory
     >>> noise = np.random.default_rng(0).standard_normal((64_000, 1))
@@ -136,7 +136,9 @@ def example_spectra() -> Spectra:
 
 
 def independent_averages(averages: int, window: Array, hop: int) -> float:
-    """Compute the equivalent number of non-overlapping segments for `averages` windowed ones every `hop` samples (Welch 1967, Eq. 11).
+    """Compute the number of non-overlapping segments equivalent to `averages` overlapping ones (Welch 1967, Eq. 11).
+
+    Successive segments, with the same `window`, start `hop` samples apart.
 
     >>> independent_averages(10, np.ones(8), 8)
     10.0
@@ -184,9 +186,9 @@ def _accumulate(record: Record, size: int, segments: Segments) -> tuple[Array, i
 
 
 def pool(parts: Sequence[Spectra]) -> Spectra:
-    """Combine spectra of several records, weighted by their averages; a missing input counts as inactive.
+    """Combine spectra of several records, weighted by their averages; an input missing in a record counts as zero there.
 
-    Inputs are in order of their first occurrence. All records must have equal lines and outputs.
+    Inputs are in order of their first occurrence. All records must have equal frequency lines and outputs.
 
     >>> pool([example_spectra(), example_spectra()]).averages
     14

@@ -1,4 +1,4 @@
-"""Noise of measured responses that grows with the response, from the scatter of neighbouring lines."""
+"""Growth of the noise of measured responses with their magnitude, from the scatter of neighbouring frequency lines."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ _RATIOS = np.geomspace(1e-6, 1e6, 121)
 
 
 def noise_growth(frequencies: Array, responses: Array) -> Array:
-    """Estimate the factor g (p,) of noise variance a (1 + g |H|^2) for every output of responses (f, p, m); zero if not significant.
+    """Estimate the factor g (p,) of the noise variance a (1 + g |H|^2) for every output of responses (f, p, m); zero if not significant.
 
-    Shaker steps, analyser ranges and files of few digits cause errors proportional to the response. The variance at each line is the
-    residual of nine lines after a rational function of order two over one, with a common denominator (McKelvey & Guerin 2012). g is the
-    maximum-likelihood value (variances of six complex degrees of freedom). It needs no modal model: a missing mode cannot appear as noise.
+    Shaker steps, analyser ranges and files of few digits cause errors proportional to the response. To estimate the variance at a line, a
+    rational function is fitted to nine lines: order two over one, with a common denominator (McKelvey & Guerin 2012). The residual has six
+    complex degrees of freedom. g is the maximum-likelihood value for these variances. The method needs no modal model, so a mode missing
+    in the model is not mistaken for noise.
 
     >>> lines, draw = np.linspace(9.0, 11.0, 400), np.random.default_rng(0).standard_normal((2, 400, 1, 1))
     >>> one, noise = 1.0 / (1j * (lines - 10.0) + 0.1)[:, None, None], 0.003 * (draw[0] + 1j * draw[1])

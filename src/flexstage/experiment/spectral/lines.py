@@ -1,9 +1,10 @@
 """Transform lines of whole records, and their sums over frequency cells: sufficient statistics for a fit of modes.
 
-A record's block of N samples, transformed without a window, satisfies Y(f) = H(f) U(f) + T(f) + V(f) line by line. T, the block's
-transient, has the poles of H (Pintelon & Schoukens, System Identification, 2nd ed., 2012, ch. 2): as a response to one more "input" that is
-1 at every line, it causes no leakage. Within a cell, narrow compared with the distance to the nearest pole, H is a polynomial of degree 7
-to six digits; sums of products of the lines with its powers are then sufficient.
+A record's block of N samples, transformed without a window, satisfies Y(f) = H(f) U(f) + T(f) + V(f) at every line, with noise V. T is
+the block's transient. It has the poles of H (Pintelon & Schoukens, System Identification, 2nd ed., 2012, ch. 2). T is fitted as the
+response to a further "input" that is 1 at every line, so that it causes no leakage. A cell is narrow compared with the distance to the
+nearest pole. In a cell, H is therefore a polynomial of degree 7, to six digits. Sums of products of lines and polynomials are sufficient
+for the fit.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ BLOCK = 12_000_000
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Lines of one block: `frequencies` (k,) in Hz, `drive` (k, n) and `outputs` (k, p); white noise has its variance per line.
+    """Transform lines of one block: `frequencies` (k,) in Hz, `drive` (k, n) and `outputs` (k, p).
 
-    The columns of `drive` are the inputs with these indices, and the transients: `columns` (n,).
+    The scale is such that white noise has the same variance at every line as in time. `columns` (n,) are the indices of the drive's
+    columns, inputs and a transient, among those of all blocks.
     """
 
     frequencies: Array
@@ -36,10 +38,11 @@ class Lines:
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Sums over cells of frequency: `low` and `high` (c,) in Hz, the block (c,) and number of lines (c,) of each.
+    """Sums over frequency cells from `low` to `high` (c,) in Hz, with the block number (c,) and the `count` of lines (c,) of each cell.
 
-    With Z = P_a(x) U_i, the Legendre polynomials a = 0..7 times the block's drive: `own` (c, 8, n, 8, n) = Z^H Z, `cross` (c, 8, n, p) =
-    Z^H Y, `power` (c, p, p) = Y^H Y. A block's drive has the columns `columns[block]` of all `width` of them.
+    Z = P_a(x) U_i is the product of Legendre polynomials, a = 0..7, and the block's drive. The sums are `own` (c, 8, n, 8, n) = Z^H Z,
+    `cross` (c, 8, n, p) = Z^H Y, and `power` (c, p, p) = Y^H Y. The drive of a block has the columns `columns[block]` among all `width`
+    columns.
     """
 
     low: Array
@@ -58,7 +61,7 @@ class Cells:
 
     @property
     def width(self) -> int:
-        """Number of inputs and transients, those of all blocks together."""
+        """Number of columns of all drives: the inputs, and the transients of all blocks."""
         return 1 + max(max(columns) for columns in self.columns)
 
     @property
@@ -67,7 +70,7 @@ class Cells:
         return 0.5 * (self.low + self.high)
 
     def select_cells(self, chosen: Array) -> Cells:
-        """Subset of the cells."""
+        """Return a subset of the cells, by index."""
         names = ("low", "high", "block", "count", "own", "cross", "power")
         return replace(self, **{name: getattr(self, name)[chosen] for name in names})
 
@@ -75,9 +78,8 @@ class Cells:
 def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int = 1) -> Iterator[Lines]:
     """Transform a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), without mean.
 
-    At least `least` blocks, or as many as memory requires.
-
-    Columns of the record's inputs: `inputs` of the drive, and from `first` the transients of its blocks.
+    The record is divided into at least `least` blocks, or as many as memory requires. `inputs` are the column indices of the record's
+    inputs in the drive. The transient of the first block has the index `first`, the next block's `first` + 1, and so on.
 
     >>> from flexstage.experiment.records.record import Channel, Role, in_memory
     >>> both = in_memory([Channel("u", "V", Role.INPUT), Channel("y", "um", Role.OUTPUT)], 8.0, np.eye(8)[:, :2])
@@ -99,7 +101,7 @@ def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int
 
 
 def block_count(record: Record, least: int = 1) -> int:
-    """Compute the number of blocks for a record's transform.
+    """Compute the number of blocks for a record's transform: at least `least`, or as many as memory requires.
 
     >>> from flexstage.experiment.records.record import Channel, in_memory
     >>> block_count(in_memory([Channel("y")], 8.0, np.ones((16, 1))))
@@ -109,7 +111,9 @@ def block_count(record: Record, least: int = 1) -> int:
 
 
 def edges(poles: Array, low: float, high: float) -> Array:
-    """Compute cell limits in Hz between `low` and `high`, a fraction of the distance to the nearest of `poles` (in Hz, complex).
+    """Compute limits of cells [Hz] from `low` to `high`.
+
+    The width of a cell is a fixed fraction of its distance to the nearest of `poles` (complex, in Hz).
 
     >>> edges(np.array([-1.0 + 10j]), 9.0, 11.0).round(2).tolist()
     [9.0, 9.57, 10.0, 10.4, 10.83, 11.0]
@@ -122,7 +126,7 @@ def edges(poles: Array, low: float, high: float) -> Array:
 
 
 def gather_cells(blocks: Iterable[Lines], bounds: Sequence[Array]) -> list[Cells]:
-    """Gather the cells of every band, with limits `bounds` in Hz, block by block.
+    """Sum lines over the cells of every band, block by block; `bounds` are the cell limits of each band in Hz.
 
     >>> lines = Lines(np.arange(8.0), np.ones((8, 1)), 2.0 * np.ones((8, 1)), (0,))
     >>> [cells] = gather_cells([lines], [np.array([2.0, 4.0, 6.0])])
@@ -156,7 +160,7 @@ def _band_sums(lines: Lines, limits: Array, number: int) -> list[tuple[Array, ..
 
 
 def legendre_coefficients(values: Array) -> Array:
-    """Compute Legendre coefficients (..., 8) of functions with values at the cells' `nodes` (..., 10).
+    """Compute Legendre coefficients (..., 8) of functions from their `values` (..., 10) at the cells' Gauss `nodes`.
 
     >>> (legendre_coefficients(nodes(np.array([1.0]), np.array([3.0]))).round(12) + 0.0).tolist()
     [[2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]]

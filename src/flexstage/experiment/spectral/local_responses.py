@@ -33,13 +33,13 @@ class LocalResponses:
 
 
 def local_responses(records: Sequence[Record], found: Identified) -> LocalResponses:
-    """Estimate the stage's responses from records, without leakage and with little smearing; `found` defines their smoothness.
+    """Estimate the stage's frequency responses from records by the local polynomial method, without leakage and with little smearing.
 
-    Y(f) = H(f) U(f) + T(f) + V(f) on the lines of a whole block, H and the transient T polynomials of second degree over at least twice as
-    many lines as coefficients: the local polynomial method (Pintelon & Schoukens, System Identification, 2nd ed., 2012, ch. 7). Windows
-    extend over a third of the distance to the nearest pole, at most eight times the minimum. Blocks are weighted by their residuals. Lines
-    with an input below 1e-4 of its median power are omitted. Tones are removed before, as in `identify`. A mode narrower than the minimum
-    window, 3 (m + 1) lines to each side, is smeared, and the smearing counts as noise.
+    At the lines of a whole block, Y(f) = H(f) U(f) + T(f) + V(f), with noise V. In a window of lines, H and the transient T are polynomials
+    of second degree (Pintelon & Schoukens, System Identification, 2nd ed., 2012, ch. 7). A window has at least twice as many lines as
+    coefficients. Windows extend over a third of the distance to the nearest pole of `found`, at most eight times the minimum. Blocks are
+    weighted by their residuals. Lines at which an input has less than 1e-4 of its median power are omitted. Tones are removed first, as in
+    `identify`. A mode narrower than the minimum window, 3 (m + 1) lines to each side, is smeared; the smearing counts as noise.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify

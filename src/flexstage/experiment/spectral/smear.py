@@ -18,17 +18,17 @@ SMEARING = (Window.BOXCAR, Window.HANN)
 
 @dataclass(frozen=True)
 class WindowLeakage:
-    """Segments of `seconds` under a window.
+    """Effect of the `window` of segments, `seconds` long, on estimated responses.
 
-    For white noise the estimate's impulse response is the true one times the window's autocorrelation r(t/T). The fit accounts for it by
-    functions 1/(j f - p) smeared in the same way.
+    With white noise as input, the impulse response of the estimate is the true one times the window's autocorrelation r(t/T). A fit
+    accounts for this effect with functions 1/(j f - p) smeared in the same way.
     """
 
     window: Window
     seconds: float
 
     def functions(self, frequencies: Array, poles: Array) -> tuple[Array, Array]:
-        """Smeared functions 1/(j f - p) (..., k) and derivatives by p, poles p in Hz (rad/s over 2 pi).
+        """Compute the smeared functions 1/(j f - p) (..., k) and their derivatives by p, for poles p (k,) in Hz (rad/s over 2 pi).
 
         >>> sharp = 1 / (1j * 12.0 - (-1 + 10j))
         >>> smeared = WindowLeakage(Window.HANN, 1000.0).functions(np.array([12.0]), np.array([-1 + 10j]))[0]

@@ -15,10 +15,10 @@ _DEPENDENT, _NOTHING = 1e-9, 1e-15
 
 @check_arguments
 def h1(spectra: Spectra) -> Responses:
-    """Estimate H1 = G_yx G_xx^-1, least squares for noise at the outputs, any number of correlated inputs (Bendat & Piersol, ch. 7).
+    """Estimate H1 = G_yx G_xx^-1, the least-squares estimate for noise at the outputs (Bendat & Piersol, ch. 7).
 
-    H_ij = output i over input j. See `ordinary_coherence` for every entry's coherence. Raises `DesignError` for dependent inputs, whose
-    effects no estimate can separate.
+    H_ij is output i over input j. Inputs may be correlated. The result contains the ordinary coherence of every entry. Raises
+    `DesignError` for linearly dependent inputs, because no estimate can separate their effects.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> h1(example_spectra()).values[3].round(9).real.tolist()
@@ -35,7 +35,7 @@ def h1(spectra: Spectra) -> Responses:
 def h2(spectra: Spectra) -> Responses:
     """Estimate H2 = G_yy G_xy^-1, for noise at the inputs; a least-squares inverse for more outputs than inputs.
 
-    Undefined for fewer outputs than inputs: raises `DesignError`. It has more variance than H1 and an upward bias by noise at the outputs.
+    H2 has more variance than H1, and noise at the outputs causes an upward bias. Raises `DesignError` for fewer outputs than inputs.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> h2(example_spectra()).values[3].round(9).real.tolist()
@@ -49,9 +49,9 @@ def h2(spectra: Spectra) -> Responses:
 
 
 def spectral_ratio(spectra: Spectra) -> Responses:
-    """Compute the paper's T_ij = G_ij / G_ii (Shin & Moon, Eq. 29), in the order output over input.
+    """Compute the spectral ratio T_ij = G_ij / G_ii of the paper (Shin & Moon, Eq. 29), arranged as output over input.
 
-    It equals H1 for a single input or uncorrelated inputs, and is not a transfer function otherwise.
+    The ratio equals H1 for a single input or uncorrelated inputs. For correlated inputs it is not a transfer function.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> spectral_ratio(example_spectra()).values[3].round(9).real.tolist()
@@ -61,7 +61,7 @@ def spectral_ratio(spectra: Spectra) -> Responses:
 
 
 def ordinary_coherence(spectra: Spectra) -> Array:
-    """Compute |G_yx|^2 / (G_xx G_yy) of every output with every input, (f, p, m), between 0 and 1.
+    """Compute the ordinary coherence |G_yx|^2 / (G_xx G_yy) of every output with every input, (f, p, m), between 0 and 1.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> ordinary_coherence(example_spectra())[3].round(9).tolist()
@@ -72,9 +72,10 @@ def ordinary_coherence(spectra: Spectra) -> Array:
 
 
 def multiple_coherence(spectra: Spectra) -> Array:
-    """Compute the share (f, p) of every output's power explained by all inputs: H1 G_xx H1^H / G_yy (Bendat & Piersol, ch. 7).
+    """Compute the multiple coherence (f, p), the share of every output's power explained by all inputs (Bendat & Piersol, ch. 7).
 
-    Pure noise gives about the number of inputs over the number of independent averages, not zero.
+    It is H1 G_xx H1^H / G_yy. For outputs of noise only, it is about the number of inputs over the number of independent averages, not
+    zero.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> multiple_coherence(example_spectra())[3].round(9).tolist()
@@ -85,7 +86,7 @@ def multiple_coherence(spectra: Spectra) -> Array:
 
 
 def noise_density(spectra: Spectra) -> Array:
-    """Estimate the output power unexplained by inputs, (f, p), corrected for the bias by the number of averages.
+    """Estimate the power density (f, p) of the outputs not explained by inputs, corrected for the bias of a finite number of averages.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> bool(noise_density(example_spectra())[3, 0] < 1e-9)

@@ -1,4 +1,4 @@
-"""Bayesian least squares: residuals in standard deviations of the data, parameters in prior standard deviations."""
+"""Bayesian least squares, with residuals in standard deviations of the data and parameters in prior standard deviations."""
 
 from __future__ import annotations
 
@@ -23,9 +23,11 @@ _NEAR = 1e-3
 
 @dataclass(frozen=True)
 class Problem(Generic[_State]):
-    """Least-squares problem: `state` at parameters from the previous state, its weighted `residuals` (n,) and `slopes` (n, P).
+    """Least-squares problem, defined by three functions.
 
-    Residuals are data minus model over the data's standard deviation, slopes the model's; parameters have a unit prior covariance.
+    `state` computes the model's state at parameters (P,), starting from the previous state. `residuals` (n,) of a state are data minus
+    model over the data's standard deviations. `slopes` (n, P) of a state are the model's derivatives by the parameters, in the same scale.
+    The prior covariance of the parameters is the identity.
     """
 
     state: Callable[[Array, _State], _State]
@@ -35,7 +37,7 @@ class Problem(Generic[_State]):
 
 @dataclass(frozen=True, eq=False)
 class Fitted(Generic[_State]):
-    """Solution: the most probable parameters (P,), the state, its residuals (n,) and slopes (n, P), and the number of steps."""
+    """Solution: most probable parameters (P,), state with its residuals (n,) and slopes (n, P), and number of steps."""
 
     parameters: Array
     state: _State
@@ -45,14 +47,14 @@ class Fitted(Generic[_State]):
 
     @property
     def cost(self) -> float:
-        """Chi-squared of data and priors, |r|^2 + |u|^2."""
+        """Chi-squared of data and priors: |r|^2 + |u|^2, with residuals r and parameters u."""
         return _cost(self.residuals, self.parameters)
 
 
 def gauss_newton(problem: Problem[_State], start: Array, state: _State) -> Fitted[_State]:
-    """Minimise |r(u)|^2 + |u|^2 by Gauss-Newton steps with step halving.
+    """Minimise |r(u)|^2 + |u|^2 over the parameters u by Gauss-Newton steps with step halving, from `start` with its `state`.
 
-    Raises `DesignError` without convergence, or if steps lead to invalid designs.
+    Raises `DesignError` if the iteration does not converge, or if steps lead to invalid designs.
 
     >>> line = Problem(lambda u, _: u, lambda u: 3.0 * (1.0 - u), lambda u: np.array([[3.0]]))
     >>> gauss_newton(line, np.zeros(1), np.zeros(1)).parameters.round(9).tolist()  # 9 / (9 + 1)

@@ -21,8 +21,9 @@ from flexstage.mechanism.mechanism import Mechanism
 class Prior(CheckedFields):
     """Priors of an update, as relative standard deviations, with default assumptions.
 
-    `prior` applies to every free number, `priors` to single ones by address. `model_error` applies to the model's frequencies, for any
-    parameters. `gain_error` applies to static gains (model, and scale of gauges and drives), `None` without gains.
+    `prior` applies to every free number, unless `priors` has a value for its address. `model_error` is the remaining error of the model's
+    frequencies with the best parameters. `gain_error` is the error of static gains: of the model, and of the scales of gauges and drives.
+    With `None`, static gains are not used.
     """
 
     prior: float = 0.1
@@ -36,9 +37,9 @@ DEFAULT = Prior()
 
 @dataclass(frozen=True, eq=False)
 class Free:
-    """Free numbers by full address: units, initial values (P,), and prior standard deviations (P,) of their logarithms.
+    """Free numbers of an update: full addresses, units, initial values (P,), and prior standard deviations (P,) of the logarithms.
 
-    `mechanism` is the description with the overrides required by these addresses.
+    `mechanism` is the description, including the overrides that these addresses require.
     """
 
     mechanism: Mechanism
@@ -48,7 +49,7 @@ class Free:
     deviations: Array
 
     def multiply(self, logarithms: Array) -> Mechanism:
-        """Multiply each number of the description by the exponential of its entry (P,)."""
+        """Return the description with each free number multiplied by exp(x), with its entry x in `logarithms` (P,)."""
         result = self.mechanism
         for name, value in zip(self.names, self.values * np.exp(logarithms), strict=True):
             result = set_value(result, name, float(value))
@@ -56,7 +57,7 @@ class Free:
 
 
 def free(mechanism: Mechanism, names: Sequence[str], known: Prior = DEFAULT) -> Free:
-    """Free the numbers at these addresses. Raises `DesignError` for every address that is unknown, ambiguous, no number, or zero.
+    """Define the numbers at these addresses as free. Raises `DesignError` for addresses that are unknown, ambiguous, no number, or zero.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> free(double_triangle(), ["lever_notch.thickness"]).names

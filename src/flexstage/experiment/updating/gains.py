@@ -32,7 +32,7 @@ _LENGTH, _ANGLE, _VOLTAGE = dimension_of("m"), dimension_of("rad"), dimension_of
 class Gains:
     """Static gains (p, m) in SI units of reading per input (free stroke, current or force), and their standard deviations by noise.
 
-    `units` (p, m) belong to the gains.
+    `units` (p, m) are the SI units of the gains.
     """
 
     outputs: tuple[str, ...]
@@ -43,20 +43,21 @@ class Gains:
 
     @property
     def scale(self) -> Array:
-        """Largest gain (m,) of each actuator."""
+        """Largest absolute gain (m,) of each actuator."""
         return np.max(np.abs(self.values), axis=0)
 
     def errors(self, share: float) -> Array:
-        """Standard deviations (p, m) of noise and of a `share` of each actuator's largest gain."""
+        """Compute the standard deviations (p, m) of two independent errors: noise, and a `share` of each actuator's largest gain."""
         return np.hypot(self.deviations, share * self.scale)
 
 
 def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identified, outputs: tuple[str, ...]) -> Gains:
     """Estimate the gains of the named outputs to the record's inputs that are actuators of the stage.
 
-    The real part of H1 up to x = f/f_1 = 0.35 is fitted by a + (b x^2 + c x^4)/(1 - x^2), least squares: the lowest mode exactly, higher
-    ones, lags and an amplifier's bandwidth by even powers; a is the gain. A drive in volts is converted by its stack's stroke and voltage
-    range. Raises `DesignError` without an actuator input, for units not convertible to the model's, or for too few lines below the modes.
+    The real part of H1 up to x = f/f_1 = 0.35 is fitted by a + (b x^2 + c x^4)/(1 - x^2), least squares; a is the gain. This function
+    represents the lowest mode f_1 exactly. Even powers approximate higher modes, lags and the amplifier's bandwidth. A drive in volts is
+    converted by the stroke and voltage range of its stack. Raises `DesignError` without an actuator input, for units not convertible to the
+    model's, or for too few lines below the modes.
     """
     known = drivable_actuators(mechanism, model)
     inputs = tuple(channel.name for channel in experiment.inputs if channel.name in known)
@@ -116,7 +117,7 @@ def is_voltage(unit: str) -> bool:
 
 
 def si_size(mechanism: Mechanism, channel: Channel) -> float:
-    """Return the SI units of the stage's gauge or actuator input per unit of a channel; NaN for other units."""
+    """Return the factor from a channel's unit to the SI unit of its gauge reading or actuator input; NaN for other units."""
     if unit_problem(channel.unit) is not None:
         return float("nan")
     unit = dimension_of(channel.unit)

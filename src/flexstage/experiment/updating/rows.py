@@ -23,10 +23,11 @@ from flexstage.models.lumped import lumped
 
 @dataclass(frozen=True)
 class ModeRow:
-    """Associated modes of the model (`modes`, ascending over the whole model, from 0), and their measured data.
+    """Row of data: one mode, or a group of repeated modes, of the model and of the test.
 
-    `frequency` [Hz] is sqrt(mean of f^2) over the `measured` modes, the square root of the mean eigenvalue: symmetric in repeated modes,
-    hence smooth in every parameter; `deviation` its relative standard deviation.
+    `modes` are the model's modes, counted from 0 over all modes of the model. `frequency` [Hz] is sqrt(mean of f^2) over the `measured`
+    modes, the square root of the mean eigenvalue. It is symmetric in repeated modes and therefore smooth in every parameter. `deviation`
+    is the relative standard deviation of the frequency.
     """
 
     name: str
@@ -38,7 +39,7 @@ class ModeRow:
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """Intermediate design: its lumped model, its modes, and the modes of each row."""
+    """Intermediate design of an update: its lumped model, the model's modes, and the mode numbers of each row."""
 
     mechanism: Mechanism
     model: LinearModel
@@ -77,7 +78,7 @@ def _mean(experiment: Identified, measured: tuple[int, ...]) -> tuple[float, flo
 
 
 def start_design(mechanism: Mechanism, rows: tuple[ModeRow, ...]) -> Design:
-    """Return the design of the pairing.
+    """Return the start design of an update, with the modes paired in `rows`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),)).frequencies.round(1).tolist()
@@ -88,9 +89,10 @@ def start_design(mechanism: Mechanism, rows: tuple[ModeRow, ...]) -> Design:
 
 
 def follow_modes(before: Design, mechanism: Mechanism) -> Design:
-    """Solve the design at other values, each row with the modes in the subspace of its previous modes.
+    """Solve the modes of a changed `mechanism`, and assign to each row the modes most similar to its modes in the design `before`.
 
-    Shapes are compared with M of the previous design, all rows at once, so that crossing modes stay with their rows.
+    Shapes are compared with the mass matrix M of the previous design, for all rows together. Modes with crossing frequencies therefore keep
+    their rows.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> here = start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
@@ -114,7 +116,7 @@ def follow_modes(before: Design, mechanism: Mechanism) -> Design:
 
 
 def frequency_slopes(design: Design, names: tuple[str, ...]) -> Array:
-    """Compute d ln f / d p (rows, P) of every row at the design, exact: sum of phi^T (dK - lambda dM) phi over 2 sum of lambda.
+    """Compute the exact derivatives d ln f / d p (rows, P): sum of phi^T (dK - lambda dM) phi over 2 sum of lambda, over each row's modes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> here = start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
@@ -133,12 +135,12 @@ def frequency_slopes(design: Design, names: tuple[str, ...]) -> Array:
 
 
 def static_gains(design: Design, gains: Gains) -> Array:
-    """Compute the model's static gains (p, m) for the measured ones."""
+    """Compute the model's static gains (p, m) for the outputs and inputs of the measured `gains`."""
     return static_gain(design.model, gains.outputs, gains.inputs).values
 
 
 def gain_slopes(design: Design, names: tuple[str, ...], gains: Gains) -> Array:
-    """Compute derivatives (p, m, P) of the model's static gains."""
+    """Compute the derivatives (p, m, P) of the model's static gains by the numbers at addresses `names`."""
     result = np.zeros((*gains.values.shape, len(names)))
     for chunk, model in _complex_steps(design, names):
         moved = slope(static_gain(model, gains.outputs, gains.inputs).values)

@@ -1,4 +1,4 @@
-"""Tables of an update: numbers before and after a test, identifiability, and agreement of the model."""
+"""Tables of an update: numbers before and after, identifiability, and agreement of model and test."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def update_tables(found: Updated) -> Iterator[Table | None]:
 
 
 def residual_table(found: Updated) -> Table | None:
-    """Tabulate data by test and by model before and after: all frequencies, and the gains of largest misfit."""
+    """Tabulate the data measured, and by the model before and after: all frequencies, and the gains with the largest misfit."""
     modes = [each for each in found.residuals if each.unit == "Hz"]
     gains = sorted((each for each in found.residuals if each.unit != "Hz"), key=lambda each: -abs(each.misfit_before))
     before, after = number(found.chi_square_before, 3), number(found.chi_square, 3)

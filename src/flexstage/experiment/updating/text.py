@@ -1,4 +1,4 @@
-"""Design file of an updated stage: the original text with new values and their provenance; comments stay."""
+"""Design file of an updated stage: the original text with new values and their provenance; comments are kept."""
 
 from __future__ import annotations
 

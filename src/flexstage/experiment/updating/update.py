@@ -48,14 +48,14 @@ _CONTRADICTING = 10.0
 
 
 class Identifiability(Enum):
-    """Identifiability of a number: the share of its prior variance that remains."""
+    """Identifiability of a number, by the share of the prior variance that remains after the test."""
 
     WELL = "identified"
-    """At most 10 %."""
+    """At most 10 % of the prior variance remains."""
     WEAKLY = "weakly identified"
-    """At most 20 %."""
+    """At most 20 % of the prior variance remains."""
     NOT = "not identifiable"
-    """More: the value depends on the prior as much as on the test."""
+    """More than 20 % remains: the value depends strongly on the prior."""
     WITHHELD = "withheld"
     """Model and test differ too much for conclusions on single numbers."""
 
@@ -67,9 +67,9 @@ _REMAINING = Heading("remaining variance", digits=2, unit="%")
 
 @dataclass(frozen=True)
 class Residual:
-    """Datum [Hz, or reading per input for gains]: measured, by model before and after, with its relative standard deviation.
+    """Datum, a frequency [Hz] or a static gain: measured, by the model before and after, with the relative standard deviation.
 
-    For a gain the deviation is relative to the largest gain of its actuator, `scale`.
+    The deviation is relative to `scale`, for a gain the largest gain of its actuator.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -99,9 +99,9 @@ class Residual:
 
 @dataclass(frozen=True)
 class UpdatedNumber:
-    """Updated number before and after, in SI; `change` is relative, deviations are of the logarithm.
+    """Updated number before and after, in SI; `change` is relative, deviations are standard deviations of the logarithm.
 
-    `prior_variance_left` is the remaining share of the prior variance; `identifiability` and `verdict` describe the identifiability.
+    `prior_variance_left` is the remaining share of the prior variance. `identifiability` is its class, `verdict` a statement on it.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -121,7 +121,7 @@ class UpdatedNumber:
 
     @property
     def change(self) -> Annotated[float, VIEW, RATIO, Heading(digits=3, unit="%")]:
-        """Value after relative to before, minus one."""
+        """Relative change: value after over value before, minus one."""
         return self.after / self.before - 1.0
 
     @property
@@ -138,7 +138,7 @@ class UpdatedNumber:
 
 @dataclass(frozen=True)
 class Combination:
-    """Combination of numbers, in prior standard deviations, with remaining prior variance 1/(1 + s^2) at a singular value s."""
+    """Linear combination of updated numbers, in prior standard deviations; 1/(1 + s^2) of its prior variance remains, s: singular value."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Identifiable combinations",
@@ -151,7 +151,7 @@ class Combination:
 
     @property
     def combination(self) -> str:
-        """Components above 0.05, for tables."""
+        """Text of the components above 0.05, for tables."""
         return ", ".join(f"{part:+.2f} {name}" for name, part in self.direction.items() if abs(part) > 0.05)
 
     @property
@@ -162,12 +162,13 @@ class Combination:
 
 @dataclass(frozen=True, eq=False)
 class Updated(InNotebook):
-    """Numbers before and after a test, SI, with the standard deviations of their logarithms (relative ones, if small).
+    """Result of an update: numbers before and after a test, in SI, with standard deviations of their logarithms.
 
-    `addresses` (P) are full; `prior` (P,) and `covariance` (P, P) are of logarithms. `singular` (P,) and the columns of `directions` (P, P)
-    are parameter combinations, in prior standard deviations, by identifiability: the remaining share of the prior variance is 1/(1 + s^2).
-    `chi_square` counts data and priors at the result, over `freedoms` data; `chi_square_before` only the data. `mechanism` is the updated
-    description. `warnings` list unreliable results.
+    Small deviations of logarithms equal relative deviations. `addresses` (P) are full addresses; `prior` (P,) and `covariance` (P, P) are
+    deviations and covariance of the logarithms. The columns of `directions` (P, P) are parameter combinations in prior standard deviations,
+    best identified first. With the combination's value s in `singular` (P,), the share 1/(1 + s^2) of its prior variance remains.
+    `chi_square` is the sum for data and priors at the result; `freedoms` is the number of data. `chi_square_before` is the sum for data
+    before the update. `mechanism` is the updated description. `warnings` list unreliable results.
     """
 
     addresses: Annotated[tuple[str, ...], INNER]
@@ -190,7 +191,7 @@ class Updated(InNotebook):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes: the assumed errors, and longer statements on identifiability."""
+        """Notes on the assumed errors, and longer statements on identifiability."""
         known = self.assumed
         gains = "" if known.gain_error is None else f", gains {100.0 * known.gain_error:.3g} %"
         errors = f"Assumed errors: frequencies of theory {100.0 * known.model_error:.3g} %{gains}; +- is one standard deviation."
@@ -216,7 +217,7 @@ class Updated(InNotebook):
 
     @property
     def changes(self) -> Array:
-        """Values after relative to before, minus one (P,)."""
+        """Relative changes (P,): values after over values before, minus one."""
         return self.after / self.before - 1.0
 
     @property
@@ -232,7 +233,7 @@ class Updated(InNotebook):
 
     @property
     def identifiability(self) -> tuple[Identifiability, ...]:
-        """Identifiability of each number; withheld if data deviate from the model by more than three deviations on average."""
+        """Identifiability of each number; withheld if data differ from the model by more than three standard deviations on average."""
         grades = Identifiability
         known = (
             grades.WELL if share <= _IDENTIFIED else grades.WEAKLY if share <= _HARDLY else grades.NOT for share in self.remaining_variance
@@ -256,7 +257,7 @@ class Updated(InNotebook):
 
     @property
     def freedoms(self) -> Annotated[int, VIEW]:
-        """Number of data."""
+        """Number of data, the degrees of freedom of chi-squared."""
         return len(self.residuals)
 
     @property
@@ -278,16 +279,18 @@ class Updated(InNotebook):
 @check_arguments
 @one_thread
 def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Prior = DEFAULT) -> Updated:
-    """Update the numbers at `names` so that the lumped model agrees best with a test, given their priors.
+    """Update the numbers at the addresses `names` so that the lumped model agrees best with a test; `known` are their priors.
 
-    Bayesian least squares in the logarithms x = ln(p/p0) (Tarantola 2005, ch. 3; Friswell & Mottershead 1995, ch. 8): minimise sum ((d -
-    g(x))/sigma)^2 + sum (x/sigma_p)^2 by Gauss-Newton, with exact derivatives by complex step. The posterior covariance at the result is
-    (J^T W J + S^-1)^-1. Data are ln f of the modes paired as in `compare`, repeated ones by their mean eigenvalue, with the identified
-    deviations and the model error; with a `gain_error` also the static gains. Intervals are valid if frequencies are about linear within
-    them.
+    The method is Bayesian least squares in the logarithms x = ln(p/p0) (Tarantola 2005, ch. 3; Friswell & Mottershead 1995, ch. 8).
+    Gauss-Newton steps, with exact derivatives by complex step, minimise sum ((d - g(x))/sigma)^2 + sum (x/sigma_p)^2. The posterior
+    covariance is (J^T W J + S^-1)^-1.
 
-    Raises `DesignError` for unknown, ambiguous and zero numbers, those without effect, fewer data than numbers, a record without the
-    stage's gauges, and without convergence.
+    The data d are ln f of the modes, paired as in `compare`; repeated modes count by their mean eigenvalue. Their sigma includes the
+    identified deviations and the model error. With a `gain_error`, static gains are also data. Intervals are valid if frequencies are
+    nearly linear in x within the intervals.
+
+    Raises `DesignError` for numbers that are unknown, ambiguous, zero or without effect, for fewer data than numbers, and for a record
+    without the stage's gauges. Raises it also if the iteration does not converge.
     """
     freed = free(mechanism, names, known)
     model = start_design(freed.mechanism, ()).model

@@ -34,11 +34,11 @@ _LINES = 4096
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """Transfer functions over the lines of a transform of three blocks of `size` samples at `finer` times the sampling rate.
+    """Transfer functions of the measuring chain, from white noise of unit variance, at the frequency lines of a transform.
 
-    From white numbers of unit variance: `strokes` (l, m) to the free strokes, `inputs` (l, m) to the recorded inputs [m], `outputs` (l, p,
-    m) to the gauges [m, rad], over the lines up to the end of the drive's band; `gauge` (f, p), over all lines, from white numbers to the
-    gauges' noise. `note` describes the damping model.
+    The transform has three blocks of `size` samples at `finer` times the sampling rate. `strokes` (l, m) lead to the free strokes, `inputs`
+    (l, m) to the recorded inputs [m], `outputs` (l, p, m) to the gauges [m, rad]. Their l lines end with the drive's band. `gauge` (f, p)
+    leads to the gauges' noise, at all lines. `note` describes the damping model.
     """
 
     size: int
@@ -72,7 +72,7 @@ class Chain:
 
 
 def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
-    """Compute the chain of a plan. Raises `DesignError` for a stage with too long a decay.
+    """Compute the measuring chain of a plan. Raises `DesignError` for a stage that decays too slowly.
 
     Structural damping has no time-domain form: each mode has its equivalent damping ratio, with a note.
 
@@ -131,7 +131,7 @@ def amplitude_shape(frequencies: Array, band: tuple[float, float]) -> Array:
     >>> (amplitude_shape(np.array([4.0, 10.0, 100.0, 112.5, 130.0]), (10.0, 100.0)) ** 2).round(6).tolist()
     [0.0, 1.0, 1.0, 0.25, 0.0]
 
-    Edges by the error function: their impulse response decays as a Gaussian, so that blocks overlap little.
+    The edges follow the error function: their impulse response decays as a Gaussian, so that blocks overlap little.
     """
     low, high = band
     upper = (frequencies - high) / (TAPER * high)

@@ -122,7 +122,7 @@ def _thrust_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterato
 
 
 def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
-    """Find peaks of six rms beyond the strokes, the amplifiers' current or the gauges' range, or below every gauge's resolution.
+    """Find signals with peaks (six times rms) beyond the strokes, the amplifiers' current or the gauges' ranges, or below all resolutions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -11,7 +11,7 @@ from flexstage.base.stream import generator
 
 
 class Stream(IntEnum):
-    """Random stream of a source kind."""
+    """Kind of noise source; each has its own random numbers."""
 
     DRIVE = 0
     GAUGE = 1

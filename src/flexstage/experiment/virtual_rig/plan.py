@@ -21,15 +21,16 @@ _DEFAULT_SHARE = 0.01
 _RATE_OVER_HIGHEST = 10.0
 _BAND_SHARE = 0.4
 TAPER = 0.25
-"""Range of the density's decay to zero, relative to the upper end of the band."""
+"""Width of the range above the band in which the density decays to zero, relative to the upper end of the band."""
 
 
 @dataclass(frozen=True, eq=False)
 class DrivenInput:
     """Input of a driven actuator: free stroke [m] of a stack, current [A] or force [N] of a force actuator.
 
-    `own` is its quantity. `low` and `high` bound peaks, `sustained` bounds the rms; infinite: no limit is stated. `full` is the range for
-    the default drive (NaN: unknown). `factors` convert the input to other quantities. `lag` [Hz] is the coil's own (infinite: none).
+    `own` is the quantity of the input. `low` and `high` limit peaks, `sustained` limits the rms (infinite: no limit). `full` is the range
+    for the default drive (NaN: unknown). `factors` convert the input to other quantities. `capacitance` is that of a stack [F].
+    `lag` [Hz] is the corner frequency of the coil (infinite: none).
     """
 
     own: InputQuantity
@@ -42,16 +43,16 @@ class DrivenInput:
     lag: float = np.inf
 
     def factor(self, quantity: InputQuantity | None) -> float:
-        """The input in a quantity per unit of the input; NaN where it is not known, 1 in its own."""
+        """Return the factor from the input to another `quantity`, in SI; 1 for the input's own quantity, NaN if unknown."""
         return 1.0 if quantity is None or quantity is self.own else self.factors.get(quantity, np.nan)
 
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """Resolved set-up, by driven actuator (m,) and by single gauge (p,) with the `units` of its reading, SI.
+    """Set-up of a virtual test with all defaults resolved, in SI, by driven actuator (m,) and by gauge (p,).
 
-    `rms` of the commanded `inputs`; `bandwidths` of amplifiers (infinite: ideal), `lags` of gauges, `walks` their drift per minute;
-    `highest` platform mode [Hz].
+    `units` (p,) are the units of gauge readings. `rms` (m,) is of the commanded `inputs`. `bandwidths` (m,) are of amplifiers (infinite:
+    ideal). `lags` (p,) are corner frequencies of gauges, `walks` (p,) their drift per minute. `highest` is the highest platform mode [Hz].
     """
 
     setup: RigSetup
@@ -78,12 +79,12 @@ class Plan:
 
     @property
     def recorded(self) -> tuple[InputQuantity, ...]:
-        """The recorded quantity of each input."""
+        """Recorded quantity of each input."""
         return tuple(self.setup.input_quantity or each.own for each in self.inputs)
 
 
 def plan_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Plan:
-    """Resolve a checked set-up.
+    """Resolve the defaults of a checked set-up.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -132,7 +133,7 @@ def drivable_actuators(mechanism: Mechanism, model: LinearModel) -> tuple[str, .
 
 
 def driven_inputs(mechanism: Mechanism, names: tuple[str, ...]) -> tuple[DrivenInput, ...]:
-    """Inputs of piezo stacks and force actuators.
+    """Describe the inputs of the named piezo stacks and force actuators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> (found,) = driven_inputs(double_triangle(), ("B4",))
@@ -144,7 +145,7 @@ def driven_inputs(mechanism: Mechanism, names: tuple[str, ...]) -> tuple[DrivenI
 
 
 def input_factor(mechanism: Mechanism, name: str, quantity: InputQuantity) -> float:
-    """A quantity per unit of an actuator's input; NaN where it is not known.
+    """Return the factor from an actuator's input to a `quantity`, in SI; NaN if unknown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(input_factor(double_triangle(), "B4", InputQuantity.VOLTAGE))

@@ -1,4 +1,4 @@
-"""Set-up of a virtual test: noise, amplifier, filter, gauges, sampling. A light module: the command line lists its choices."""
+"""Set-up of a virtual test: noise, amplifier, filter, gauges, sampling. Imports little, because the command line lists its choices."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from flexstage.parts.amplifier import Amplifier
 class NoiseDrive(CheckedFields):
     """Independent Gaussian noise drive of the actuators.
 
-    `stroke` is the rms of the commanded free stroke [m], `voltage` the rms of the command [V], `current` [A], `force` [N] or `torque` [N m]
-    the rms of a force actuator's input. Default: 1 % of each full stroke, or of the largest sustained input of a force actuator.
+    `stroke` [m] and `voltage` [V] are the rms of a stack's commanded free stroke or voltage. `current` [A], `force` [N] or `torque` [N m]
+    is the rms of a force actuator's input. Default: 1 % of each full stroke, or of the largest sustained input of a force actuator.
 
-    The density is constant within `band` (low, high) [Hz], by default 0 to 0.4 times the sampling rate, and decays to zero from `low` to
-    `low`/2 and from `high` to 1.25 `high`. `actuators` names the driven and recorded ones (default: all).
+    The density is constant within `band` (low, high) [Hz], by default 0 to 0.4 times the sampling rate. It decays to zero from `low` to
+    `low`/2 and from `high` to 1.25 `high`. `actuators` names the driven and recorded actuators (default: all).
     """
 
     stroke: Annotated[float, DISPLACEMENT, POSITIVE] | None = None
@@ -63,8 +63,8 @@ class AntiAlias(CheckedFields):
 class Sensing(CheckedFields):
     """Errors of gauges: white noise of `density` [m/Hz^0.5], steps of `resolution` [m], and `drift`.
 
-    Default density and resolution belong to each gauge in the design. `drift` is a random walk, its standard deviation after a minute
-    [m]. The values apply to displacement gauges; rotation gauges keep the design's values, without drift.
+    Default density and resolution are those of each gauge in the design. The drift is a random walk with standard deviation `drift` [m]
+    after a minute. The values apply to displacement gauges. Rotation gauges have the design's values, without drift.
     """
 
     density: Annotated[float, NOISE_DENSITY, NOT_NEGATIVE] | None = None
@@ -77,8 +77,8 @@ class RigSetup(CheckedFields):
     """Virtual test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`; gauges are recorded `delay` [s] late.
 
     A test with peaks beyond the amplifier's current is refused, because a saturated amplifier is not linear.
-    The default rate is the lowest power of two of at least ten times the highest platform mode. Equal set-ups of equal stages give
-    bit-identical records. Without `input_quantity`, each recorded input is the actuator's own: stroke, current or force.
+    The default rate is the lowest power of two that is at least ten times the highest platform mode. Equal set-ups of equal stages give
+    bit-identical records. Without `input_quantity`, each recorded input is the actuator's input quantity: stroke, current or force.
 
     >>> RigSetup(seconds=10.0).filter.order
     8

@@ -1,1 +1,1 @@
-"""Common parts of all commands: options and their values, design files, results, progress, output files, exit codes."""
+"""Common parts of all commands: options and their values, design files, results, progress bars, output files, exit codes."""

@@ -41,10 +41,10 @@ _MAPPING = "mapping: 0 strokes"
 
 @dataclass(frozen=True)
 class CommandResult:
-    """The result of a command: `body` of its document, `tables`, and `report` as HTML, each computed on request.
+    """The result of a command: `body` of its JSON document, `tables`, and `report` as HTML, each computed on request.
 
-    `mechanism` is the description (`None`: a record only), `model` the theory. `warnings` concern the result and follow those about the
-    description.
+    `mechanism` is the description (`None`: a record only), `model` the theory. `warnings` are about the result. They are listed after the
+    warnings about the description.
     """
 
     mechanism: Mechanism | None
@@ -54,9 +54,9 @@ class CommandResult:
     model: Model | None = None
     warnings: tuple[Finding, ...] = ()
     kind: str | None = None
-    """The kind of the document, if it differs from the name of the command."""
+    """Kind of the JSON document, if it differs from the name of the command."""
     failed: bool = False
-    """Whether the command ends with exit code 1: it ran, and the answer is no."""
+    """Whether the command ends with exit code 1: it completed with a negative result, such as an unmet requirement."""
 
 
 _OUTPUTS = {"json": Json, "csv": Csv, "xlsx": Xlsx, "report": Report}
@@ -65,12 +65,12 @@ _Given = ParamSpec("_Given")
 
 
 def command(*files: str) -> Callable[[Callable[_Given, CommandResult | None]], Callable[_Given, None]]:
-    """Make a command of a function that returns a `CommandResult`.
+    """Make a command from a function that returns a `CommandResult`.
 
     The command writes the requested documents, or prints the tables. A parameter of a dataclass type is replaced by the options among
-    its fields; a `Mechanism` is read from its file. `files` are the options of further output files: those that the function writes, and
-    `report`. All outputs are checked before the function is called. If one is stdout, no tables are printed, and warnings go to stderr.
-    A function without a result has written its outputs itself.
+    its fields; a `Mechanism` is read from its file. `files` names further options for output files: files that the function writes, and
+    `report`. All outputs are checked before the function is called. If an output is stdout, no tables are printed. A function that
+    returns `None` must write its outputs.
     """
 
     def decorate(function: Callable[_Given, CommandResult | None]) -> Callable[_Given, None]:
@@ -122,9 +122,9 @@ def _paths(value: Any) -> list[Path]:
 
 
 def write_result(kind: str, found: CommandResult, outputs: Mapping[str, Any], csv: Path | None) -> None:
-    """Write the requested outputs, by name `json`, `xlsx` and `report`, and `csv`; print the tables unless an output is stdout.
+    """Write the requested outputs, with the names `json`, `xlsx`, `report` and `csv`; print the tables unless an output is stdout.
 
-    `kind` belongs to the JSON document.
+    `kind` is the kind of the JSON document.
     """
     json, xlsx, report = (outputs.get(name) for name in ("json", "xlsx", "report"))
     if report is not None and found.report is not None:
@@ -144,7 +144,7 @@ def write_result(kind: str, found: CommandResult, outputs: Mapping[str, Any], cs
 
 
 def write_csv(folder: Path | None, kind: str, body: Callable[[], Any]) -> None:
-    """Write the parts of a result into a folder, if requested: `modes.csv` the single values, `modes.twists.csv` those of `twists`."""
+    """Write the parts of a result into a folder, if requested: single values as `modes.csv`, the part `twists` as `modes.twists.csv`."""
     if folder is None:
         return
     make_folder(folder)
@@ -164,7 +164,10 @@ def write_workbook(target: Path | None, body: Callable[[], Any], about: Callable
 
 
 def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
-    """Warnings about a description (`None`: a record only) and `more` about the result, and default values of this kind of result."""
+    """List as text the warnings about a description (`None`: a record only), `more` about the result, and default values it depends on.
+
+    `kind` is the kind of the result.
+    """
     found = Caveats() if mechanism is None else caveats(mechanism)
     for title, findings in (("warning", combine_warnings((*found.warnings, *more))), ("default", found.defaults_of(kind))):
         if findings:
@@ -172,7 +175,7 @@ def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ..
 
 
 def print_missing(missing: Mapping[str, str], *, forced: bool = False) -> None:
-    """Print the results not computed and their reasons to stderr, a line for each reason; `forced`: forces drive the stage."""
+    """Print the missing results and the reasons to stderr, one line for each reason; `forced` for stages driven by forces."""
     for reason in dict.fromkeys(missing.values()):
         names = ", ".join(name.replace("_", " ") for name, each in missing.items() if each == reason)
         text = reason.partition(". ")[0].rstrip(".")
@@ -180,7 +183,7 @@ def print_missing(missing: Mapping[str, str], *, forced: bool = False) -> None:
 
 
 def show(shown: Iterable[Table | str | None]) -> None:
-    """Print tables, and lines unchanged, to stdout, separated by empty lines; `None` is left out.
+    """Print tables and lines of text to stdout, separated by empty lines; `None` is left out.
 
     Tables have the width of the terminal. If the output is not a terminal, they are not folded and have no escape codes.
     """

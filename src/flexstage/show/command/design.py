@@ -1,4 +1,4 @@
-"""Design of a command: outputs checked, file read and checked, `--set` applied; its model and named points."""
+"""Design of a command: check of outputs, reading of the design file, changes by `--set`, model and named points."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from flexstage.spatial.frame import COMPONENTS
 
 @dataclass(frozen=True)
 class DesignOptions:
-    """The design file of a command, and its changed values."""
+    """Options of a command for its design file and for changed values."""
 
     design: Design
     changes: Changes = None
 
     def open(self) -> Mechanism:
-        """The changed description. Raises `DesignError` with all errors."""
+        """Read the description and apply the changes. Raises `DesignError` with all errors."""
         return open_design(self.design, self.changes)
 
 
@@ -40,17 +40,17 @@ Lumped: TypeAlias = Annotated[Mechanism, "a lumped model may include the flexibi
 
 @dataclass(frozen=True)
 class LumpedOptions(DesignOptions):
-    """The design file of a command of the lumped model."""
+    """Options of a command of the lumped model for its design file."""
 
     elastic_bodies: ElasticBodies = False
 
     def open(self) -> Mechanism:
-        """The description with its changes, and with flexible bodies if requested."""
+        """Read the description and apply the changes, with flexible bodies if requested."""
         return with_elastic_bodies(super().open(), chosen=self.elastic_bodies)
 
 
 def with_elastic_bodies(mechanism: Mechanism, *, chosen: bool) -> Mechanism:
-    """The description with flexible bodies in its lumped model, if chosen."""
+    """Return the description, with flexible bodies in its lumped model if `chosen`."""
     return replace(mechanism, elastic_bodies=True) if chosen else mechanism
 
 
@@ -64,7 +64,7 @@ def open_design(path: Path, changes: Sequence[str] | None = None, outputs: Seque
 
 
 def change(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
-    """The description after all assignments, checked; raises `DesignError` with all errors of all assignments.
+    """Apply assignments (ADDRESS=VALUE) to a description and check the result; raises `DesignError` with all errors.
 
     Prints a note to stderr for each formula that an assignment replaces.
     """
@@ -102,7 +102,10 @@ def _where(text: str, inner: str) -> str:
 
 
 def elastic_model(mechanism: Mechanism, model: Model, *, loaded: bool = False) -> LinearModel:
-    """The linear model of a stage, if `loaded` under its permanent load; refuses the ideal model."""
+    """Return the linear model of a stage; raises `DesignError` for the ideal model.
+
+    If `loaded`, the model includes the effect of a significant permanent load.
+    """
     linear = felt(mechanism, model) if loaded else read(mechanism, model)
     if linear is None:
         raise refuse("--model ideal", "rigid bodies have no stiffness, no lost motion and no modes", "Use --model lumped or mapped")
@@ -110,7 +113,7 @@ def elastic_model(mechanism: Mechanism, model: Model, *, loaded: bool = False) -
 
 
 def known_point(model: LinearModel, name: str, option: str) -> str:
-    """Return the name of a body or point whose twist the model computes; else refuse it with the nearest names."""
+    """Return the name if it is a body or point whose twist the model computes; else raise `DesignError` with the nearest names."""
     outputs = {channel.name for channel in model.outputs}
     places = {each.rpartition(".")[0] for each in outputs if each.rpartition(".")[2] in COMPONENTS}
     if name not in places:

@@ -50,7 +50,7 @@ Temperature: TypeAlias = Annotated[str | None, temperature_option("0 K")]
 
 @dataclass(frozen=True)
 class OperatingPointOptions:
-    """Operating point from the options of a command; true unless it is the undeformed configuration."""
+    """Options of a command for an operating point; true if at least one is in use, else the stage is undeformed."""
 
     at: At = None
     load: Load = None
@@ -67,7 +67,7 @@ class OperatingPointOptions:
 
     @property
     def locked(self) -> tuple[str, ...]:
-        """The fixed coordinates. Raises `DesignError` for a coordinate with a value, and for repeated coordinates."""
+        """Names of the fixed coordinates. Raises `DesignError` for a coordinate with a value, and for repeated coordinates."""
         fixed = tuple(name.strip() for name in self.fixed or ())
         require(
             Finding(f"--fixed {name}", "a fixed coordinate has no value here", f'Use --at "{name}" --fixed {name.partition("=")[0]}')
@@ -78,12 +78,12 @@ class OperatingPointOptions:
         return fixed
 
     def brought(self, model: Nonlinear) -> dict[str, float]:
-        """Prescribed coordinates in SI units."""
+        """Read the prescribed coordinates, by name in SI units."""
         return read_pairs(self.at or (), "--at", lambda name, value, where: parse(value, quantity_of(model, name), where=where))
 
     @property
     def options(self) -> str:
-        """The options in use."""
+        """Names of the options in use, separated by commas."""
         given = {"--at": self.at, "--load": self.load, "--fixed": self.fixed, "--temperature": self.temperature}
         return ", ".join(option for option, value in given.items() if value)
 
@@ -92,8 +92,8 @@ class OperatingPointOptions:
 class CommandStage:
     """The stage of a command: at an `operating_point`, or in the undeformed configuration with the `effect` of its permanent load.
 
-    `model` is the theory; `linear` is the linear model about the operating point, `links` the same with separate links, for lost motion and
-    drift.
+    `model` is the theory. `linear` is the linear model about the operating point. `links` is the same model with separate links, for lost
+    motion and drift.
     """
 
     mechanism: Mechanism
@@ -103,7 +103,7 @@ class CommandStage:
 
     @property
     def linear(self) -> LinearModel:
-        """Linear model about the operating point; undeformed, of the requested model, with a significant permanent load."""
+        """Linear model about the operating point, else of the undeformed stage, with the effect of a significant permanent load."""
         return elastic_model(self.mechanism, self.model, loaded=True) if self.operating_point is None else self.operating_point.linear
 
     @property
@@ -115,13 +115,13 @@ class CommandStage:
         return elastic_model(self.mechanism, self.model) if loaded is None else loaded
 
     def body(self, result: Any) -> Any:
-        """A result with its operating point, or with the effect of the permanent load."""
+        """Combine a result with the operating point, or with the effect of the permanent load, for a JSON document."""
         if self.operating_point is not None:
             return SideBySide((result, {"operating_point": self.operating_point}))
         return result if self.effect is None else SideBySide((result, {"loaded": self.effect}))
 
     def tables(self) -> Iterator[Table | str]:
-        """Tables of the operating point, printed before the result."""
+        """Yield the text on the permanent load or the tables of the operating point, printed before the result."""
         if self.effect is not None and self.effect.model is not None:
             yield self.effect.text
         if self.operating_point is not None:
@@ -134,7 +134,7 @@ class CommandStage:
 
 
 def command_stage(mechanism: Mechanism, place: OperatingPointOptions, model: Model = Model.LUMPED) -> CommandStage:
-    """The stage at the requested operating point. Refuses an operating point with a model without large displacements."""
+    """Return the stage at the requested operating point. Raises `DesignError` if the model has no operating points."""
     if not place:
         return CommandStage(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
     if model is not Model.LUMPED:
@@ -156,7 +156,7 @@ def _operating_point_tables(found: OperatingPoint) -> Iterator[Table]:
 
 
 def loads_of(model: Nonlinear, texts: Sequence[str], option: str = "--load") -> dict[str, float]:
-    """Loads in SI units from texts NAME=VALUE."""
+    """Read loads from texts NAME=VALUE of an `option`, by name in SI units."""
     units = {channel.name: channel.unit for channel in model.inputs}
 
     def read(name: str, value: str, where: str) -> float:
@@ -168,7 +168,7 @@ def loads_of(model: Nonlinear, texts: Sequence[str], option: str = "--load") -> 
 
 
 def quantity_of(model: Nonlinear, drive: str) -> Quantity:
-    """The quantity of a drive: that of an input, or of a coordinate."""
+    """Return the physical quantity of a drive, which is an input of the model or a coordinate."""
     units = {channel.name: channel.unit for channel in model.inputs}
     if drive in units:
         return quantity_of_unit(units[drive])

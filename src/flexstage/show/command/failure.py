@@ -1,4 +1,4 @@
-"""Exit codes and messages of failures: an error of the input in one line, a fault of flexstage without a traceback."""
+"""Exit codes and messages of failures: input errors in one line each, faults of flexstage without a traceback."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.show.command.terminal import print_note, print_warning, streams
 
 DONE, MISSED, BAD_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 70, 130
 SIGNALLED = 128
-"""Exit code of a command ended by a signal: this plus the number of the signal."""
+"""Base of exit codes of commands ended by a signal: the number of the signal is added."""
 ENDINGS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 _DISKS = {getattr(errno, name, None) for name in ("ENAMETOOLONG", "EACCES", "EPERM", "ENOTDIR", "ELOOP", "EROFS", "EIO", "ENOSPC")}
 _DEBUG = "FLEXSTAGE_DEBUG"

@@ -1,4 +1,4 @@
-"""Models of other packages by name, passed to commands by the application: no package imports another one for its model."""
+"""Models of other packages by name. The application passes them to commands, so that packages do not import one another."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:  # the table of commands loads no models
 
 
 class ModesModel(Protocol):
-    """Modal model of a stage: computed if requested, else read from the cache; `None` if there are no modes."""
+    """Function that returns the modes of a stage: computed if requested, else read from the cache, `None` if not in the cache."""
 
     def __call__(self, mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
         """The modes of a stage."""
@@ -22,11 +22,11 @@ class ModesModel(Protocol):
 
 @dataclass(frozen=True)
 class Models:
-    """A table of models: name -> function, as module:name. The module is imported at the first use of the model."""
+    """Table of models: `homes` maps the name of a model to its function, "module:function". The module is imported at first use."""
 
     homes: Mapping[str, str]
 
     def modes(self, name: str) -> ModesModel:
-        """The model of this name; `KeyError` if the application has none."""
+        """Return the model of this name; raises `KeyError` if the application does not have it."""
         module, _, function = self.homes[name].partition(":")
         return cast("ModesModel", getattr(import_module(module), function))

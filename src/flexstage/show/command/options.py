@@ -1,4 +1,4 @@
-"""Arguments and options of several commands; options that are texts or choices."""
+"""Arguments and options shared by several commands, and functions that define options."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 def text_option(name: str, metavar: str, about: str, default: str = "") -> Any:
-    """A text option; its help states a default, if any."""
+    """Define a text option; the help text `about` is extended by the default, if any."""
     return typer.Option(name, metavar=metavar, help=f"{about} Default: {default}." if default else about, show_default=False)
 
 
 def output_option(metavar: str, about: str) -> Any:
-    """The option for the output file of a command."""
+    """Define the option `--output` for the output file of a command."""
     return typer.Option("--output", "-o", metavar=metavar, help=about, show_default=False)
 
 
@@ -40,7 +40,7 @@ def word_option(
     otherwise: Mapping[str, str] = _NOTHING,
     show_default: bool = True,
 ) -> Any:
-    """A choice of a few `words` (default: all of the kind); `otherwise` maps likely wrong words to hints."""
+    """Define an option with a choice of `words` (default: all values of the `kind`); `otherwise` maps likely wrong words to hints."""
     words = words or [str(each.value) for each in kind]
     return typer.Option(
         name,

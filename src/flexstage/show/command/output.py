@@ -1,4 +1,4 @@
-"""Output files: checked before the computation, and written completely or not at all."""
+"""Output files of commands: checked before the computation, and written completely or not at all."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ _PENDING: ContextVar[_Pending | None] = ContextVar("outputs that wait", default=
 
 @contextmanager
 def pending_outputs() -> Generator[None]:
-    """Write all files inside together at the end, or none after a failure.
+    """Write all output files of the `with` block together at its end, or none of them after a failure.
 
-    A command that ends with an unmet requirement, or whose reader closed the pipe, has not failed.
+    An unmet requirement, and a pipe closed by its reader, are not failures.
     """
     pending = _Pending()
     token = _PENDING.set(pending)
@@ -66,7 +66,7 @@ def pending_outputs() -> Generator[None]:
 
 
 def announce(text: str) -> None:
-    """Print a note about a written file, after it is written."""
+    """Print a note about an output file after the file is written."""
     pending = _PENDING.get()
     if pending is None:
         print_note(text)
@@ -75,7 +75,7 @@ def announce(text: str) -> None:
 
 
 def require_writable(wanted: Sequence[tuple[str, str | Path | None]], read: Iterable[Path] = ()) -> None:
-    """Refuse outputs, pairs of an option and its path, that cannot be written or that are also `read`."""
+    """Raise `DesignError` for outputs, pairs of an option and its path, that cannot be written or are among the input files `read`."""
     require(_problems(wanted, read))
 
 
@@ -99,7 +99,7 @@ def _problems(outputs: Iterable[tuple[str, str | Path | None]], read: Iterable[P
 
 
 def check_folder(folder: Path | None) -> Path | None:
-    """The folder of `--csv`, new or existing; raises a `DesignError` if it is not writable."""
+    """Return the folder of `--csv`, new or existing; raises `DesignError` if it is not writable."""
     if folder is not None and (problem := _problem(folder, _folder_problem)) is not None:
         raise refuse("--csv", f"{folder} cannot be written into: {problem}", "Choose another folder")
     return folder
@@ -151,7 +151,7 @@ def make_folder(folder: Path) -> None:
 
 
 def write(target: str | Path, content: str | bytes, option: str) -> None:
-    """Write to a file at the end of the command, or to stdout for `-`; raises if the disk refuses."""
+    """Write to a file at the end of the command, or to stdout for `-`; raises `DesignError` if writing fails."""
     data = content.encode() if isinstance(content, str) else content
     if str(target) == STDOUT:
         print_bytes(data)

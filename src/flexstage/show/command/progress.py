@@ -1,4 +1,4 @@
-"""Progress bar of a long computation on stderr: step, fraction, remaining time. Nothing if stderr is not a terminal."""
+"""Progress bar of a long computation on stderr: step, fraction, remaining time. Without a terminal, it prints nothing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.base.text import printable
 
 
 class ProgressBar:
-    """A bar that shows the steps it is called with; `left` is the remaining time of the last step [s]."""
+    """A progress bar; `left` is the remaining time at the last step [s]."""
 
     def __init__(self, shown: Any | None) -> None:
         self._shown = shown
@@ -32,11 +32,11 @@ class ProgressBar:
         self._show(step.text, step.fraction)
 
     def share(self, text: str, share: float) -> None:
-        """Show the completed share of a computation, and the remaining time at this rate."""
+        """Show the completed share of a computation, and the remaining time estimated from it."""
         self.step(Step(text, share, seconds_left(share, time.monotonic() - self._begun)))
 
     def result(self, name: str, value: Any) -> None:
-        """Pass on a part of the result; a bar shows none."""
+        """Accept a part of the result; a bar ignores it."""
 
     def _show(self, text: str, fraction: float) -> None:
         if self._shown is not None:
@@ -69,7 +69,7 @@ def _clock(seconds: float) -> str:
 
 @contextmanager
 def progress_bar() -> Generator[ProgressBar]:
-    """A bar that is removed at the end; lines if the environment requests them (`FLEXSTAGE_PROGRESS=lines`)."""
+    """Provide a progress bar that is removed at the end, or lines if the environment requests lines (`FLEXSTAGE_PROGRESS=lines`)."""
     if os.environ.get(LINES):
         yield ProgressLines()
         return

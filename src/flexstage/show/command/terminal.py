@@ -1,4 +1,4 @@
-"""Lines on the terminal: results to stdout, everything else to stderr; control characters and write errors."""
+"""Output to the terminal: results to stdout, all other text to stderr; treatment of control characters and write errors."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def print_warning(text: object) -> None:
 
 
 def print_styled(text: str) -> None:
-    """Print a result with escape sequences of this program to stdout; control characters of users are escaped before."""
+    """Print a result with escape sequences of flexstage to stdout; control characters in users' texts must be escaped before."""
     encoding = sys.stdout.encoding or "utf-8"
     print_bytes(text.encode(encoding, "backslashreplace"))
 
@@ -48,10 +48,10 @@ def print_bytes(data: bytes) -> None:
 
 @contextmanager
 def streams() -> Generator[None]:
-    """Stdout and stderr of a command.
+    """Replace stdout and stderr during a command.
 
-    Control characters are written as escapes. A refused write to stdout (a full disk, a closed stream) is an error; a closed pipe is one
-    `BrokenPipeError`. A refused write to stderr is ignored.
+    Control characters are written as escapes. A failed write to stdout (a full disk, a closed stream) is an error; for a closed pipe the
+    error is `BrokenPipeError`. A failed write to stderr is ignored.
     """
     _fill()
     before = sys.stdout, sys.stderr

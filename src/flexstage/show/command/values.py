@@ -1,4 +1,4 @@
-"""Values in the texts of options: quantities with units, platform motions, random inputs."""
+"""Reading of option texts: quantities with units, platform motions, random inputs."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _ASD_EXAMPLE = 'Use e.g. --input-asd "ground.z=1 nm/Hz^0.5", or an acceleration,
 
 
 class Values:
-    """Reads texts and collects their errors, so that all are reported together."""
+    """Reader of option texts that collects all errors in `findings`, so that they are reported together."""
 
     def __init__(self) -> None:
         self.findings: list[Finding] = []
 
     def attempt(self, action: Callable[[], _Value]) -> _Value | None:
-        """The result of an action; `None` with its errors collected if it fails."""
+        """Return the result of an action; if it raises `DesignError`, collect the errors and return `None`."""
         try:
             return action()
         except DesignError as error:
@@ -34,17 +34,17 @@ class Values:
             return None
 
     def value(self, option: str, text: str | None, quantity: Quantity) -> float | None:
-        """The value of a text in SI units; `None` if it is absent or wrong."""
+        """Return the value of a text in SI units; `None` if the text is absent or wrong."""
         return None if text is None else self.attempt(lambda: parse(text, quantity, where=option))
 
 
 def names(texts: Sequence[str] | None) -> tuple[str, ...]:
-    """Names in texts, separated by commas."""
+    """Split texts at commas into names."""
     return tuple(name.strip() for text in texts or () for name in text.split(",") if name.strip())
 
 
 def first_that_parses(text: str, known: Mapping[_Name, Quantity]) -> tuple[_Name, float] | None:
-    """The name of the first quantity whose unit a text has, and its value in SI units; `None` if no quantity fits."""
+    """Find the first known quantity that fits the unit of a text; returns its name and the value in SI units, or `None`."""
     for name, quantity in known.items():
         try:
             return name, parse(text, quantity)
@@ -54,7 +54,7 @@ def first_that_parses(text: str, known: Mapping[_Name, Quantity]) -> tuple[_Name
 
 
 def amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
-    """Values of `--amplifier`, assigned by their units."""
+    """Read the values of `--amplifier` by name in SI units: bandwidth, resistance and current, distinguished by their units."""
     known = {"bandwidth": FREQUENCY, "resistance": RESISTANCE, "current": CURRENT}
     found: dict[str, float] = {}
     for text in texts:
@@ -67,7 +67,7 @@ def amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
 
 
 def read_pairs(texts: Sequence[str], option: str, read: Callable[[str, str, str], _Value]) -> dict[str, _Value]:
-    """Read texts NAME=VALUE of an option by `read(name, value, where)`; report all errors together.
+    """Read texts NAME=VALUE of an option with the function `read(name, value, where)`; report all errors together.
 
     >>> read_pairs(["x=5 um"], "--at", lambda name, value, where: parse(value, DISPLACEMENT, where=where))
     {'x': 5e-06}
@@ -84,7 +84,7 @@ def read_pairs(texts: Sequence[str], option: str, read: Callable[[str, str, str]
 
 
 def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]:
-    """Amounts [m, rad] by platform motion from texts AXIS=VALUE of an option; all errors are reported together."""
+    """Read platform motions [m, rad] from texts AXIS=VALUE of an option; report all errors together."""
 
     def read(name: str, value: str, where: str) -> float:
         if name not in COMPONENTS or not value:
@@ -95,7 +95,7 @@ def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]
 
 
 def band_limits(band: tuple[str, str] | None) -> tuple[float, float] | None:
-    """The frequencies [Hz] of `--band`; refused where they do not rise from above zero.
+    """Read the frequencies [Hz] of `--band`; raises `DesignError` unless 0 < low < high. Returns `None` without a band.
 
     >>> band_limits(("10 Hz", "2 kHz"))
     (10.0, 2000.0)
@@ -109,9 +109,9 @@ def band_limits(band: tuple[str, str] | None) -> tuple[float, float] | None:
 
 
 def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]:
-    """White spectra by input from texts INPUT=AMPLITUDE DENSITY of `--input-asd`, of the input or of its first or second derivative.
+    """Read white spectra by input from texts INPUT=AMPLITUDE DENSITY of `--input-asd`.
 
-    All errors are reported together.
+    The unit decides whether the density is of the input, or of its first or second derivative. All errors are reported together.
     """
     return read_pairs(densities, "--input-asd", partial(_spectrum, model))
 

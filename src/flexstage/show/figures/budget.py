@@ -21,21 +21,21 @@ _Shares = Mapping[str, Mapping[str, float]]
 
 
 def loss_figure(lost: LostMotion) -> Any:
-    """The lost motion of every actuator as a stacked bar."""
+    """Plot the lost motion of every actuator as a stacked bar of contributions, as a matplotlib Figure."""
     budgets = {name: named_budget(lost, name) for name in lost.loss.rows}
     totals = [percent(sum(shares.values()), 3) for shares in budgets.values()]
     return _bar_figure([(_percents(budgets), totals, "lost motion [% of the stroke]")])
 
 
 def energy_figure(lost: LostMotion) -> Any:
-    """Strain energy of the parts when one actuator expands without other loads."""
+    """Plot the strain energy of the parts when one actuator expands without other loads, as stacked bars in a matplotlib Figure."""
     totals = first_design(lost.energy.values, 2).sum(axis=0)
     texts = [to_typography(f"{number(1e-6 * float(total), 3)} uJ/um^2") for total in totals]
     return _bar_figure([(_percents(energy_shares(lost)), texts, "share of the strain energy [%]")])
 
 
 def error_figure(budget: ErrorBudget) -> Any:
-    """The error budget by source: translations and rotations, ideal and corrected command."""
+    """Plot the error budget by source, for translations and rotations, with ideal and corrected command, as a matplotlib Figure."""
     return _bar_figure([_errors(budget, rows, unit) for rows, unit in ((slice(0, 3), "m"), (slice(3, 6), "rad"))])
 
 

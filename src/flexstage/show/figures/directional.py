@@ -18,7 +18,7 @@ _ISOTROPIC = 1e-6
 
 
 def directional_figure(statics: Statics) -> Any:
-    """Stiffness in the plane by direction, other DOFs free and fixed, with principal axes, as a matplotlib Figure [N/um].
+    """Plot the stiffness in the plane by direction [N/um], other DOFs free and fixed, with principal axes, as a matplotlib Figure.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

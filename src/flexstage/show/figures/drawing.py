@@ -15,7 +15,7 @@ FORMATS = (".svg", ".pdf", ".png")
 
 
 def format_of(name: str) -> str:
-    """The format of a file name. Raises `DesignError` for an unknown ending.
+    """Return the format of a figure file, by the ending of its name. Raises `DesignError` for an unknown ending.
 
     >>> format_of("plan.SVG")
     '.svg'
@@ -27,7 +27,7 @@ def format_of(name: str) -> str:
 
 
 def drawing(figure: Any, ending: str) -> bytes:
-    """The figure as a file's content; equal figures have equal bytes.
+    """Return the content of a figure file in the format of an `ending`; equal figures have equal bytes.
 
     >>> from flexstage.show.figures.style import canvas
     >>> drawing(canvas(1.0, 1.0), ".svg")[:5]

@@ -1,4 +1,4 @@
-"""Writing figures: SVG with the colours and font of the page around it; PNG for everything else."""
+"""Conversion of figures: SVG with the colours and font of an HTML page; PNG for other uses."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _BETWEEN = re.compile(r">\s*(?:<defs>\s*<style.*?</defs>)?\s*(?=<|$)", re.DOTALL
 
 
 def to_svg(figure: Any, name: str, description: str) -> str:
-    """The figure as an SVG element for a page; `name` makes its identifiers unique.
+    """Convert a figure to an SVG element for an HTML page; `name` makes its identifiers unique.
 
-    Equal figures have equal texts. Colours of ink, rules and paper are the page's variables, with the style's own as default.
-    `description` is the text for screen readers.
+    Equal figures have equal texts. The colours of text, lines and background are CSS variables of the page, with the colours of the
+    style as defaults. `description` is the text for screen readers.
 
     >>> from flexstage.show.figures.style import canvas
     >>> to_svg(canvas(1.0, 1.0), "empty", "nothing")[:33]
@@ -51,7 +51,7 @@ def _tag_of_page(found: re.Match[str]) -> str:
 
 
 def to_png(figure: Any, *, dots_per_inch: int = 200) -> bytes:
-    """The figure as PNG on white.
+    """Convert a figure to PNG on a white background.
 
     >>> from flexstage.show.figures.style import canvas
     >>> to_png(canvas(1.0, 1.0))[1:4]

@@ -1,4 +1,4 @@
-"""Data for the cursor over a figure in a page: its panels and curves, next to a picture that also prints."""
+"""Data for the cursor over a figure in an HTML page: the panels and curves of the figure."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _DIGITS = 5
 
 @dataclass(frozen=True)
 class Spot:
-    """A named point of a figure: `text` at `x` and, in the panel number `panel`, `y`; `plays` is a motion of the page's viewer.
+    """A named point of a figure: its `text` appears if the cursor is close to `x` and, in panel number `panel`, to `y`.
 
-    Without a y its text appears if the cursor is close to x.
+    Without `y`, only the distance from `x` counts. `plays` names the motion of the page's viewer that the point shows.
     """
 
     x: float
@@ -31,10 +31,11 @@ class Spot:
 
 
 def reading(figure: Any, spots: Iterable[Spot] = ()) -> str:
-    """The panels of a drawn figure as JSON: their positions in points, their axes, and the curves that have a label.
+    """Describe the panels of a drawn figure as JSON: positions in points, axes, and labelled curves.
 
-    A curve without a label takes that of the curve with equal style in the same column, and is left out if there is none. A panel
-    without a name takes that of the neighbouring panel. Abscissae are listed once, as `over`; the x of a curve is its number there.
+    A curve without a label has the label of the curve with equal style in the same column; without such a curve it is left out. A panel
+    without a name has the name of a panel in the same row. Equal abscissae are listed once, in `over`; the `x` of a curve is an index
+    into `over`.
 
     >>> from flexstage.show.figures.style import canvas
     >>> figure = canvas(1.0, 1.0)

@@ -19,9 +19,9 @@ _DECADES = 1e-4
 
 
 def response_figure(response: Response, modes: Modes | None = None) -> Any:
-    """Responses of the first outputs to the input with the largest effect on each: magnitude and phase, as a matplotlib Figure.
+    """Plot magnitude and phase (Bode plot) of the first outputs, each for the input with the largest effect, as a matplotlib Figure.
 
-    Curves of the same unit share a column. The phase is that of e^{+j omega t}, unwrapped from the lowest frequency.
+    Curves of the same unit share a column. The phase is for e^{+j omega t}, unwrapped from the lowest frequency.
 
     >>> import flexstage as fs
     >>> from flexstage.analysis.dynamics.response import response

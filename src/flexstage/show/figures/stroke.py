@@ -14,11 +14,11 @@ from flexstage.show.viewer.motions import Curve
 _ACROSS = 3
 _HEIGHT = 1.45
 _LEAST_SPAN = 1e-3
-"""Smallest span relative to the largest value: smaller changes are drawn as a nearly straight line."""
+"""Smallest range of an axis relative to the largest value: smaller changes are drawn as a nearly straight line."""
 
 
 def stroke_figure(curves: Sequence[Curve], beyond: Array) -> Any:
-    """Curves over the first one, as a matplotlib Figure; points `beyond` (p,) a limit are shaded.
+    """Plot curves over the first curve, one panel each, as a matplotlib Figure; points marked in `beyond` (p,) exceed a limit: shaded.
 
     >>> curves = (Curve("platform.x", "mm", np.array([0.0, 1.0])), Curve("force", "N", np.array([0.0, 2.0])))
     >>> len(stroke_figure(curves, np.array([False, True])).axes)

@@ -16,7 +16,7 @@ GAUGE = "#9c1f42"
 ALONG, ABOUT = "#1d5fd1", "#b3261e"
 """Colours of translations along an axis and rotations about one."""
 THEME = {INK: "ink", MUTED: "muted", GRID: "rule", PAPER: "paper", DRIVE: "drive", GAUGE: "gauge", ALONG: "along", ABOUT: "about"}
-"""Colours that are variables of a page."""
+"""Colours that an HTML page replaces by its CSS variables, with the names of the variables."""
 SERIES = ("#0077bb", "#ee7733", "#009988", "#cc3311", "#33bbee", "#ee3377", "#997700", "#bbbbbb")
 """Paul Tol's vibrant scheme (personal.sron.nl/~pault), with a dark yellow added."""
 
@@ -64,9 +64,9 @@ _RC: dict[Any, Any] = {
 
 @contextmanager
 def style_context(salt: str = "flexstage") -> Generator[None]:
-    """The style, while a figure is drawn and written; matplotlib's settings are restored afterwards.
+    """Apply the style while a figure is drawn and written; matplotlib's settings are restored afterwards.
 
-    Identifiers of written SVG depend on its `salt`.
+    Identifiers in SVG files depend on `salt`.
 
     >>> with style_context():
     ...     from matplotlib import rcParams
@@ -80,7 +80,7 @@ def style_context(salt: str = "flexstage") -> Generator[None]:
 
 
 def canvas(width: float, height: float) -> Any:
-    """An empty `matplotlib.figure.Figure` of this size in inches.
+    """Create an empty `matplotlib.figure.Figure` of this size in inches.
 
     >>> canvas(2.0, 1.0).get_size_inches().tolist()
     [2.0, 1.0]
@@ -92,7 +92,7 @@ def canvas(width: float, height: float) -> Any:
 
 @dataclass(frozen=True)
 class Margins:
-    """Room around and between the panels of a figure, in inches. Fixed values: an automatic layout draws everything twice."""
+    """Margins around and between the panels of a figure, in inches. They are fixed: an automatic layout would draw everything twice."""
 
     left: float = 0.5
     right: float = 0.1
@@ -103,7 +103,7 @@ class Margins:
 
 
 def panels(figure: Any, rows: int, columns: int, margins: Margins, *, heights: Sequence[float] | None = None) -> Any:
-    """Axes (rows, columns) of a figure within margins; `heights` are relative, axes of a column share their x axis.
+    """Create axes (rows, columns) of a figure within margins; `heights` of rows are relative, axes of a column share the x axis.
 
     >>> panels(canvas(3.0, 3.0), 2, 1, Margins()).shape
     (2, 1)
@@ -132,7 +132,7 @@ def _limit_margins(margins: Margins, size: tuple[float, float], count: tuple[int
 
 
 def text_width(texts: Iterable[str], size: float = 8.0) -> float:
-    """Approximate width of the longest of some texts, in inches.
+    """Estimate the width of the longest text in inches, at a font `size` in points.
 
     >>> round(text_width(["B1", "pivot.rz"]), 2)
     0.53

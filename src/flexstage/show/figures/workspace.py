@@ -24,9 +24,9 @@ _CROSS: Mapping[str, Any] = {"color": SERIES[1], "markersize": 5, "linewidth": 1
 
 
 def workspace_figure(workspace: Workspace) -> Any | None:
-    """Reachable poses, single-axis strokes and the commanded box, projected on pairs of coordinates, as a matplotlib Figure.
+    """Plot reachable poses, single-axis strokes and the commanded box, projected on pairs of coordinates, as a matplotlib Figure.
 
-    `None` for stages with one DOF, or without known reachable poses.
+    Returns `None` for stages with one DOF, or if the reachable poses are unknown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

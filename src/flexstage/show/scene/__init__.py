@@ -1,1 +1,1 @@
-"""The stage as a solid picture: facets of bodies, links and gauges, sorted by depth, in parallel projection."""
+"""Pictures of the stage as solids: facets of bodies, links and gauges, sorted by depth, in parallel projection."""

@@ -22,7 +22,7 @@ _IN_PLANE, _OUT_OF_PLANE = [0, 1, 5], [2, 3, 4]
 
 
 def stage_picture(data: StageData, *, side: Side = Side.ISOMETRIC, width: float = FULL, names: bool = True) -> Any:
-    """The stage from one side, with the names of actuators and gauges, as a matplotlib Figure.
+    """Draw the stage from one side, with the names of actuators and gauges, as a matplotlib Figure.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import still_data
@@ -39,10 +39,10 @@ def stage_picture(data: StageData, *, side: Side = Side.ISOMETRIC, width: float 
 
 
 def mode_picture(data: StageData, motion: Motion, *, width: float = FULL) -> Any | None:
-    """The stage displaced visibly, over the undeformed platform's outline, without gauges, as a matplotlib Figure.
+    """Draw a motion of the stage, magnified, over the undeformed platform's outline, without gauges, as a matplotlib Figure.
 
-    Seen from above if the platform stays in its plane, else isometric. Arrows are the platform's motion: blue translation, red
-    rotation; `None` without a motion.
+    The view is from above if the platform moves mainly in its plane, else isometric. Arrows are the platform's motion: blue translation,
+    red rotation. Returns `None` if nothing moves.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import stage_data

@@ -1,4 +1,4 @@
-"""Shapes of parts and outlines of bodies: each a skin in its own frame."""
+"""Surfaces ("skins") of parts and of bodies' outlines, each in its own frame."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ROUND_SIDES, _ROUND_NECK_SIDES = 12, 8
 
 
 def first_value(value: Number | None, default: float = 0.0) -> float:
-    """The value of the first design as a float.
+    """Return the value of the first design of a batch as a float, for `None` the default.
 
     >>> first_value(np.array([2.0, 3.0])), first_value(None)
     (2.0, 0.0)
@@ -30,7 +30,7 @@ def first_value(value: Number | None, default: float = 0.0) -> float:
 
 
 def part_length(part: Part) -> float:
-    """Length of a part along its x axis [m]; 0 if it has none (compliance matrices, joints).
+    """Return the length of a part along its x axis [m]; 0 for parts without a shape (compliance matrices, joints).
 
     >>> from flexstage.parts.rod import Rod
     >>> part_length(Rod("steel", length=0.03, diameter=0.001))
@@ -41,7 +41,7 @@ def part_length(part: Part) -> float:
 
 
 def part_section(part: Part) -> tuple[float, float]:
-    """Extents of a part's end section along its y and z axes [m]; 0 if it has none.
+    """Return the extents of a part's end section along its y and z axes [m]; 0 for parts without a shape.
 
     >>> from flexstage.parts.rod import Rod
     >>> part_section(Rod("steel", length=0.03, diameter=0.001))
@@ -55,9 +55,9 @@ def part_section(part: Part) -> tuple[float, float]:
 
 
 def part_skin(part: Part, marker: float, *, steps: int = 1) -> DrawnSurface:
-    """The skin of a part in its link frame; a part without a shape of its own is a cube of edge `marker` [m].
+    """Build the surface of a part in its link frame; a part without a shape is drawn as a cube of edge `marker` [m].
 
-    The distance between rings is at most the part's length over `steps`.
+    The surface is divided along the part into rings, at distances of at most the part's length over `steps`.
 
     >>> from flexstage.parts.rod import Rod
     >>> len(part_skin(Rod("steel", length=0.03, diameter=0.001), 0.01).triangles)
@@ -92,7 +92,7 @@ def _more_rings(rings: Array, shares: Array, steps: int) -> tuple[Array, Array]:
 
 
 def simplification(solid: Solid) -> str:
-    """The simplification of a drawn outline; empty if it is drawn exactly.
+    """Describe the simplification with which an outline is drawn; empty if it is drawn exactly.
 
     >>> simplification(Block("steel", (0.1, 0.1, 0.01)))
     ''
@@ -101,7 +101,7 @@ def simplification(solid: Solid) -> str:
 
 
 def solid_skin(solid: Solid) -> DrawnSurface:
-    """The skin of an outline in its own frame: its centre at the origin, a cylinder's axis along x; of holes only their edges.
+    """Build the surface of an outline in its own frame: centre at the origin, axis of a cylinder along x. Only edges of holes are drawn.
 
     >>> len(solid_skin(Block("steel", (0.1, 0.1, 0.01))).triangles)
     12
@@ -115,7 +115,7 @@ def solid_skin(solid: Solid) -> DrawnSurface:
 
 
 def first_frame(frame: Frame) -> Frame:
-    """The frame of the first design.
+    """Return the frame of the first design of a batch.
 
     >>> from flexstage.spatial.frame import identity
     >>> first_frame(identity()).position.tolist()

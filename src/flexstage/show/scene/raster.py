@@ -1,4 +1,4 @@
-"""A raster of the nearest triangles and of the visible lines: a depth buffer of all pixels at once."""
+"""Rasterisation with a depth buffer: the nearest triangle at each pixel, and visible lines."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ _BIAS = 1.0
 
 
 def nearest(corners: Array, shape: tuple[int, int]) -> tuple[Array, Array]:
-    """The nearest triangle at the middle of each pixel, by number, -1 without one, and its depth.
+    """Find the nearest triangle at the middle of each pixel; returns its number (-1: none) and its depth, both of this `shape`.
 
-    `corners` (t, 3, 3) are in pixels to the right, down, and towards the viewer; a triangle without projected area is not visible.
+    `corners` (t, 3, 3) are in pixels to the right, down, and towards the viewer. A triangle without projected area is not visible.
 
     >>> far = np.array([[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0]])
     >>> nearest(np.stack([far, 0.5 * far + [0.0, 0.0, 1.0]]), (1, 5))[0].tolist()
@@ -43,7 +43,9 @@ def nearest(corners: Array, shape: tuple[int, int]) -> tuple[Array, Array]:
 
 
 def normals(corners: Array) -> Array:
-    """Outward unit normals (t, 3), to the right, up and towards the viewer, of triangles in pixels; zero without area.
+    """Compute the outward unit normals (t, 3) of triangles; zero without area.
+
+    `corners` (t, 3, 3) are in pixels to the right, down and towards the viewer; the normals point right, up and towards the viewer.
 
     >>> normals(np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]]))[0, 2]
     np.float64(1.0)
@@ -54,7 +56,7 @@ def normals(corners: Array) -> Array:
 
 
 def planes(corners: Array, values: Array) -> Array:
-    """Coefficients (t, 3) of right, down and one in the values (t, 3) at triangles' corners, linear between; 0 without area.
+    """Interpolate values (t, 3) at triangles' corners linearly; returns the coefficients (t, 3) of right, down and 1, 0 without area.
 
     >>> planes(np.array([[[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]]]), np.array([[1.0, 3.0, 5.0]])).tolist()
     [[1.0, 2.0, 1.0]]
@@ -67,7 +69,7 @@ def planes(corners: Array, values: Array) -> Array:
 
 
 def visible_lines(ends: Array, depth: Array) -> Array:
-    """The pixels (h, w) of lines between `ends` (e, 2, 3) that no triangle of this `depth` (h, w) hides.
+    """Find the pixels (h, w) of lines between `ends` (e, 2, 3) [pixels] that are not hidden by triangles with this `depth` (h, w).
 
     >>> visible_lines(np.array([[[0.5, 0.5, 1.0], [3.5, 0.5, 1.0]]]), np.array([[0.0, 9.0, 9.0, 9.0]])).tolist()
     [[True, True, False, False]]

@@ -1,4 +1,4 @@
-"""Skins: triangles and sharp edges for pictures and the viewer, and their primitives."""
+"""Surfaces ("skins") for pictures and the viewer, from triangles and sharp edges, and functions that build simple surfaces."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ class Kind(Enum):
 
 
 ROUND = slice(0)
-"""Steps between rings of a round section: no edge is sharp."""
+"""Value of `along` in `loft` for a round section: no edge along the surface is sharp."""
 
 
 @dataclass(frozen=True, eq=False)
 class DrawnSurface:
-    """A surface: `points` (n, 3) [m], `triangles` (t, 3) of them, counter-clockwise from outside, and sharp `edges` (e, 2).
+    """A surface: `points` (n, 3) [m]; `triangles` (t, 3), counter-clockwise from outside, and sharp `edges` (e, 2) by point index.
 
-    If two bodies carry it, point k follows the first by 1 - `share`[k] and the second by `share`[k].
+    If the surface is between two bodies, point k follows the first body by 1 - `share`[k] and the second body by `share`[k].
     """
 
     points: Array
@@ -40,12 +40,12 @@ class DrawnSurface:
     share: Array
 
     def placed(self, frame: Frame) -> DrawnSurface:
-        """The skin transformed from a frame into its parent frame."""
+        """Return the surface transformed from a frame into its parent frame."""
         return replace(self, points=self.points @ frame.rotation.T + frame.position)
 
 
 def join(skins: Sequence[DrawnSurface]) -> DrawnSurface:
-    """Merge skins.
+    """Merge several surfaces into one.
 
     >>> bar = line(np.zeros((2, 3)))
     >>> join([bar, bar]).edges.tolist()
@@ -68,10 +68,11 @@ def loft(
     closed: bool = True,
     shares: Array | None = None,
 ) -> DrawnSurface:
-    """The skin through rings (s, k, 3) of points, counter-clockwise seen from the last ring towards the first; end faces where `closed`.
+    """Build the surface through rings (s, k, 3) of points, counter-clockwise seen from the last ring towards the first.
 
-    The bodies' `shares` (s,) are 0 at the first ring and 1 at the last, by default evenly spaced. Sharp edges are the `ringed` rings,
-    and the edges `along` the skin at these steps between rings (`ROUND`: none).
+    If `closed`, the surface has end faces. The `shares` (s,) of the second body are by default evenly spaced from 0 at the first ring to 1
+    at the last. Sharp edges are the rings with indices `ringed`, and the edges between successive rings that `along` selects (`ROUND`:
+    none).
 
     >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     >>> box = loft(np.stack([square, square + [0, 0, 1.0]]))
@@ -93,7 +94,7 @@ def _rows(*columns: Array) -> Array:
 
 
 def fan(corners: Array) -> Array:
-    """Triangles (k - 2, 3) of a convex polygon by the numbers (k,) of its corners.
+    """Divide a convex polygon into triangles (k - 2, 3), by the indices (k,) of its corners.
 
     >>> fan(np.array([4, 5, 6, 7])).tolist()
     [[4, 5, 6], [4, 6, 7]]
@@ -102,7 +103,7 @@ def fan(corners: Array) -> Array:
 
 
 def face(points: Array, share: float) -> DrawnSurface:
-    """A convex polygon (k, 3) that follows its bodies by a share.
+    """Build the surface of a convex polygon (k, 3); all its points have the same `share` (see `DrawnSurface`).
 
     >>> len(face(np.zeros((5, 3)), 1.0).triangles)
     3
@@ -112,7 +113,7 @@ def face(points: Array, share: float) -> DrawnSurface:
 
 
 def pierce(outer: Array, inner: Array, *, along: slice = slice(0, None, 2)) -> DrawnSurface:
-    """A prism with a through hole: `outer` and `inner` rings (2, k, 3), first the bottom, then the top, points facing one another.
+    """Build a prism with a through hole from `outer` and `inner` rings (2, k, 3): bottom, then top, with corresponding points.
 
     >>> square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.0]])
     >>> both = np.stack([square, square + [0, 0, 1.0]])
@@ -123,7 +124,7 @@ def pierce(outer: Array, inner: Array, *, along: slice = slice(0, None, 2)) -> D
 
 
 def rectangle(height: float, width: float) -> Array:
-    """Corners (4, 2) of a centred rectangle, counter-clockwise.
+    """Return the corners (4, 2) of a centred rectangle, counter-clockwise.
 
     >>> rectangle(2.0, 4.0).tolist()
     [[-1.0, -2.0], [1.0, -2.0], [1.0, 2.0], [-1.0, 2.0]]
@@ -132,7 +133,7 @@ def rectangle(height: float, width: float) -> Array:
 
 
 def circle(diameter: float, sides: int = 12) -> Array:
-    """Corners (k, 2) of a circle's polygon, counter-clockwise.
+    """Return the corners (k, 2) of a regular polygon inscribed in a circle, counter-clockwise.
 
     >>> circle(2.0, 4).round(3).tolist()
     [[0.707, 0.707], [-0.707, 0.707], [-0.707, -0.707], [0.707, -0.707]]
@@ -142,7 +143,7 @@ def circle(diameter: float, sides: int = 12) -> Array:
 
 
 def extrude(stations: Array, sections: list[Array]) -> Array:
-    """Rings (s, k, 3) along x: section (k, 2) in y and z at each station.
+    """Build rings (s, k, 3) along x from a section (k, 2) in y and z at each station.
 
     >>> extrude(np.array([0.0, 1.0]), [rectangle(1.0, 1.0)] * 2).shape
     (2, 4, 3)
@@ -153,7 +154,7 @@ def extrude(stations: Array, sections: list[Array]) -> Array:
 
 
 def line(points: Array) -> DrawnSurface:
-    """A line between two points (2, 3), each following its body.
+    """Build a line between two points (2, 3); the first point follows the first body, the second the second body.
 
     >>> line(np.zeros((2, 3))).share.tolist()
     [0.0, 1.0]

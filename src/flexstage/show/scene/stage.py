@@ -1,4 +1,4 @@
-"""The scene of a stage: the skins of its bodies, links, grounds and gauges, and their labels."""
+"""The scene of a stage: surfaces of its bodies, links, ground and gauges, and labels."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _GROUNDED = (GROUND, GROUND)
 
 @dataclass(frozen=True)
 class Label:
-    """A name at a point of the stage, shown in the colour of its kind; it moves with the mean of two `bodies`."""
+    """A name at a point of the stage [m], in the colour of its kind; it moves with the mean motion of two `bodies`."""
 
     text: str
     point: tuple[float, float, float]
@@ -36,7 +36,7 @@ class Label:
 
 @dataclass(frozen=True, eq=False)
 class DrawnPiece:
-    """A skin in the stage's frame, its name (`B1/front`, `platform.plate`) and kind, and the bodies that carry it."""
+    """A surface in the stage's frame, its name (`B1/front`, `platform.plate`) and kind, and the two bodies that it follows."""
 
     name: str
     kind: Kind
@@ -48,7 +48,7 @@ class DrawnPiece:
 class Scene:
     """Pieces and labels in the stage's frame [m]; `size` is the diagonal of the box around everything.
 
-    `references` are the bodies' reference points (3,) for their rotations.
+    `references` are the reference points (3,) [m] of the bodies for their twists.
     """
 
     pieces: tuple[DrawnPiece, ...]
@@ -58,10 +58,10 @@ class Scene:
 
 
 def scene(mechanism: Mechanism, *, steps: int = 1) -> Scene:
-    """The scene of the first design of a description; hinges are divided into `steps` along their length, to show bending.
+    """Build the scene of the first design of a description; hinges are divided into `steps` along their length, to show bending.
 
-    Bodies without outlines are bars between their joints; a thin line connects a joint off its body's outline with the body. Ground is
-    drawn at each link that is fixed to it. Superelements are bars between their ports.
+    Bodies without outlines, and superelements, are bars between their joints or ports. If a joint is outside the outline of its body, a
+    thin line connects the two. Ground is drawn at each link that is fixed to it.
 
     >>> scene(Mechanism("", bodies={})).pieces
     ()

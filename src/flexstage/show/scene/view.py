@@ -41,7 +41,7 @@ _DOTS = 160.0
 
 
 class Side(Enum):
-    """View direction of the stage; the value is the direction towards the viewer and the upward direction in the picture."""
+    """Side from which the stage is seen; the value is the direction towards the viewer and the upward direction in the picture."""
 
     TOP = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
     FRONT = ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0))
@@ -51,17 +51,17 @@ class Side(Enum):
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A direction of sight: unit vectors to the right, up and towards the viewer, rows of `axes` (3, 3)."""
+    """A view direction; the rows of `axes` (3, 3) are unit vectors to the right, up and towards the viewer, in the stage's frame."""
 
     axes: Array
 
     def project(self, points: Array) -> Array:
-        """Points (..., 3) [m] in the picture (..., 2) [mm]."""
+        """Project points (..., 3) [m] to the picture (..., 2) [mm]."""
         return 1e3 * points @ self.axes[:2].T
 
 
 def view(side: Side) -> View:
-    """The view from a side.
+    """Return the view from a side.
 
     >>> view(Side.FRONT).project(np.array([0.001, 0.0, 0.002])).round(9).tolist()
     [1.0, 2.0]
@@ -74,9 +74,10 @@ def view(side: Side) -> View:
 
 
 def picture_axes(points: Array, seen: View, width: float, *, gap: float = 0.05, tallest: float = 1.1, below: float = 0.0) -> Any:
-    """Axes in mm without a frame that fill a new figure of that `width` [inch], in which points (n, 3) [m] have room.
+    """Create a figure of this `width` [inch] with axes in mm, without a frame, that contain all points (n, 3) [m] in this view.
 
-    `gap` is the margin relative to the larger extent; `tallest` the largest height over the width; `below` [inch] is left free.
+    `gap` is the margin relative to the larger extent. `tallest` limits the height over the width. `below` is free space under the axes
+    [inch].
 
     >>> picture_axes(np.zeros((1, 3)), view(Side.TOP), 2.0).viewLim.intervalx.tolist()
     [-1.0, 1.0]
@@ -90,7 +91,7 @@ def picture_axes(points: Array, seen: View, width: float, *, gap: float = 0.05, 
 
 
 def fit(axes: Any, low: Array, high: Array) -> Any:
-    """The axes without a frame, with equal scales, around a box from `low` to `high` (2,) [mm].
+    """Set axes to equal scales around a box from `low` to `high` (2,) [mm], without a frame; returns the axes.
 
     >>> fit(canvas(2.0, 1.0).add_axes((0.0, 0.0, 1.0, 1.0)), np.array([0.0, 0.0]), np.array([1.0, 1.0])).viewLim.intervalx.tolist()
     [-0.5, 1.5]
@@ -113,7 +114,9 @@ def _per_point(axes: Any) -> float:
 
 
 def pixels(axes: Any, points: Array, seen: View) -> tuple[Array, tuple[int, int]]:
-    """Points (n, 3) [m] in pixels of an image of the axes, to the right, down and towards the viewer; and its rows and columns.
+    """Convert points (n, 3) [m] to pixels of an image of the axes, to the right, down and towards the viewer.
+
+    Returns the points, and the numbers of rows and columns of the image.
 
     >>> axes = fit(canvas(1.0, 1.0).add_axes((0.0, 0.0, 1.0, 1.0)), np.array([0.0, 0.0]), np.array([1.0, 1.0]))
     >>> pixels(axes, np.array([[1e-3, 0.0, 0.0]]), view(Side.TOP))
@@ -125,13 +128,13 @@ def pixels(axes: Any, points: Array, seen: View) -> tuple[Array, tuple[int, int]
 
 
 def show_image(axes: Any, image: Array) -> None:
-    """Show an image (h, w, 4) of the size from `pixels` on all of the axes: red, green, blue, opacity up to 255."""
+    """Show an image (h, w, 4) of red, green, blue and opacity, 0 to 255, on the whole area of axes; the size is that of `pixels`."""
     extent = (*axes.get_xlim(), *axes.get_ylim())
     axes.imshow(image, extent=extent, interpolation="none", aspect="auto")
 
 
 def draw(axes: Any, data: StageData, seen: View, points: Array | None = None, kinds: Container[Kind] = tuple(Kind)) -> None:
-    """Draw the parts of these kinds as an image on axes of `fit`, with vertices at `points` (n, 3) [m] if specified.
+    """Draw the parts of these kinds as an image on axes prepared by `fit`; `points` (n, 3) [m] are positions of displaced vertices.
 
     The platform is translucent, so that parts under it are visible.
     """
@@ -176,7 +179,7 @@ def _tones(normal: Array) -> Array:
 
 
 def edges_of(data: StageData, seen: View, kind: Kind) -> Array:
-    """A line through the sharp edges of a kind's solids (3 e, 2) [mm], broken after each.
+    """Project the sharp edges of the solids of a kind to one line (3 e, 2) [mm], interrupted by NaN after each edge.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import still_data
@@ -189,7 +192,7 @@ def edges_of(data: StageData, seen: View, kind: Kind) -> Array:
 
 
 def solid_parts(data: StageData, kind: Kind) -> list[int]:
-    """The numbers of the parts of a kind with triangles.
+    """Return the numbers of the parts of a kind that are drawn with triangles.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import still_data
@@ -214,7 +217,7 @@ def write(axes: Any, labels: tuple[Label, ...], seen: View) -> None:
 
 
 def name(axes: Any, place: Array, text: str, colour: str) -> None:
-    """Write a name at a position (2,), on a lighter ground."""
+    """Write a name at a position (2,) [mm], on a light background."""
     box = {"boxstyle": "round,pad=0.18", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
     axes.text(*place, text, ha="center", va="center", fontsize=7, color=colour, fontweight="bold", bbox=box if text else None)
 
@@ -239,7 +242,7 @@ def _spread(places: Array, sizes: Array) -> Array:
 
 
 def triad(axes: Any, seen: View) -> None:
-    """The stage's axes as a small symbol in the lower left corner.
+    """Draw the stage's coordinate axes as a small symbol in the lower left corner.
 
     >>> axes = canvas(1.0, 1.0).add_subplot()
     >>> triad(axes, view(Side.TOP))
@@ -255,7 +258,7 @@ def triad(axes: Any, seen: View) -> None:
 
 
 def arrows(axes: Any, starts: Sequence[Array], reaches: Sequence[Array], colour: str, width: float) -> None:
-    """Arrows from points by these vectors; `width` of their shafts in points."""
+    """Draw arrows from the points `starts` by the vectors `reaches` [mm], with shafts of this `width` in points."""
     (x, y), (across, up) = np.transpose(starts), np.transpose(reaches)
     axes.quiver(
         x,
@@ -274,7 +277,7 @@ def arrows(axes: Any, starts: Sequence[Array], reaches: Sequence[Array], colour:
 
 
 def legend(data: StageData) -> tuple[tuple[str, str], ...]:
-    """Colours and names of the kinds a stage shows.
+    """Return pairs of a colour and a name for the kinds of parts in a stage.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import still_data

@@ -1,4 +1,4 @@
-"""Thermal drift and the error budget."""
+"""Report sections on thermal drift and the error budget."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexstage.show.tables.errors import drift_table, error_budget_tables, gauge
 
 
 def drift_section(analysis: Analysis) -> Section | None:
-    """Motion per kelvin; `None` without drift.
+    """Make the section on thermal drift, the motion per kelvin; `None` without results.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -29,7 +29,7 @@ def drift_section(analysis: Analysis) -> Section | None:
 
 
 def error_section(analysis: Analysis) -> Section | None:
-    """Every source of pose error, one line for each axis; `None` without it.
+    """Make the section on the error budget: every source of pose error by axis; `None` without results.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

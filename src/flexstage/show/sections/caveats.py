@@ -10,7 +10,7 @@ from flexstage.show.tables.caveats import warning_table
 
 
 def caveat_section(mechanism: Mechanism, more: tuple[Finding, ...] = ()) -> Section | None:
-    """Warnings about the description and `more` about the result, and default values; `None` without either.
+    """Make the section of warnings about the description, `more` about the result, and default values; `None` if there are none.
 
     >>> caveat_section(Mechanism("stage")) is None
     True

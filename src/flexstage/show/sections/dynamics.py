@@ -1,4 +1,4 @@
-"""Modes and frequency responses."""
+"""Report sections on modes and frequency responses."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SHAPES = (
 
 
 def mode_section(analysis: Analysis, data: StageData) -> Section | None:
-    """Modes with pictures of the platform's shapes; `None` for the ideal model.
+    """Make the section on modes, with pictures of the mode shapes of the platform; `None` for the ideal model.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.viewer.data import still_data
@@ -71,7 +71,7 @@ def _shares(modes: Modes, index: int) -> str:
 
 
 def response_section(analysis: Analysis) -> Section | None:
-    """Frequency responses to the strokes and to the ground; `None` without either.
+    """Make the section on frequency responses to strokes and to ground motion; `None` without results.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -1,4 +1,4 @@
-"""Kinematics, stiffness and lost motion."""
+"""Report sections on kinematics, stiffness and lost motion."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from flexstage.show.tables.units import lever_table, omitted_table
 
 
 def kinematics_section(analysis: Analysis) -> Section | None:
-    """Mobility, mappings, free internal modes and redundant constraints.
+    """Make the section on kinematics: mobility, mappings, free internal modes and redundant constraints.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -73,7 +73,7 @@ def _mappings(kinematics: Kinematics) -> list[Block]:
 
 
 def stiffness_section(analysis: Analysis) -> Section | None:
-    """Stiffness and compliance of the platform, and by direction; `None` for the ideal model.
+    """Make the section on the platform's stiffness and compliance, also by direction; `None` for the ideal model.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -107,7 +107,7 @@ def stiffness_section(analysis: Analysis) -> Section | None:
 
 
 def lost_motion_section(analysis: Analysis) -> Section | None:
-    """Transmission ratios, losses, their budget by part and the corrected mapping; `None` without any.
+    """Make the section on lost motion: transmission ratios, losses by part and corrected mapping; `None` without results.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -1,4 +1,4 @@
-"""The first page of a report: verdicts on the requirements, and a summary of the stage."""
+"""First sections of a report: verdicts on the requirements, and a summary of the stage."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.show.tables.requirements import is_met, verdict_table, verdict_te
 
 
 def headline(analysis: Analysis) -> Headline:
-    """The number of met requirements, and the smallest margin.
+    """Make the headline of a report: the number of met requirements, and the smallest margin.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -26,7 +26,7 @@ def headline(analysis: Analysis) -> Headline:
 
 
 def requirement_section(analysis: Analysis) -> Section | None:
-    """Verdicts with their values, failed ones first; `None` without requirements.
+    """Make the section of verdicts on requirements with values, failed requirements first; `None` without requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -40,7 +40,7 @@ def requirement_section(analysis: Analysis) -> Section | None:
 
 
 def change_section(analysis: Analysis, compared: Comparison | None) -> Section | None:
-    """The changed values, and the key figures before and after; `None` without changes.
+    """Make the section of changed values, with the key figures before and after; `None` without changes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -54,7 +54,7 @@ def change_section(analysis: Analysis, compared: Comparison | None) -> Section |
 
 
 def summary_section(analysis: Analysis) -> Section | None:
-    """The stage in a few lines and tables, as on the terminal.
+    """Make the section that summarises the stage in a few lines and tables, as on the terminal.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -1,4 +1,4 @@
-"""Workspace, forces, strength and clearance."""
+"""Report sections on workspace, forces, strength and clearance."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.show.tables.workspace import gauge_tables, load_tables, stroke_ta
 
 
 def workspace_section(analysis: Analysis) -> Section | None:
-    """Workspace of the platform, and use of actuators and gauges; `None` if the strokes do not determine the platform.
+    """Make the section on the platform's workspace and the use of actuators and gauges; `None` if strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -40,7 +40,7 @@ def workspace_section(analysis: Analysis) -> Section | None:
 
 
 def strength_section(analysis: Analysis) -> Section | None:
-    """Forces, stress, buckling, loads and clearance; `None` if none is known.
+    """Make the section on forces, stress, buckling, loads and clearance; `None` without results.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -1,4 +1,4 @@
-"""Sources of a report: the description with its provenance, known limits, references."""
+"""Report sections on sources: the description with its provenance, known limits, references."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _DAMPING = "E. E. Ungar, E. M. Kerwin, J. Acoustical Society of America 34, 1962
 
 
 def description_section(mechanism: Mechanism) -> Section | None:
-    """Every value with its unit and source.
+    """Make the section of all values of the description with unit and source.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> description_section(double_triangle()).title
@@ -60,7 +60,7 @@ def description_section(mechanism: Mechanism) -> Section | None:
 
 
 def limit_section(analysis: Analysis) -> Section | None:
-    """Simplifications of the model, and missing results with the reasons.
+    """Make the section on limits: simplifications of the model, and missing results with reasons.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -83,7 +83,7 @@ def _missing_table(analysis: Analysis) -> Table | None:
 
 
 def error_of_theory_table(mechanism: Mechanism) -> Table | None:
-    """Expected error of beam theory in the compliance of each part, against 3-D elasticity; `None` if unknown.
+    """Tabulate the expected error of beam theory in the compliance of each part, relative to 3-D elasticity; `None` if unknown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> error_of_theory_table(double_triangle()).texts()[0]
@@ -101,7 +101,7 @@ def error_of_theory_table(mechanism: Mechanism) -> Table | None:
 
 
 def reference_section(analysis: Analysis) -> Section | None:
-    """References of the equations.
+    """Make the section of references for the equations.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

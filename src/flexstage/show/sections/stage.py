@@ -1,4 +1,4 @@
-"""The stage in pictures: isometric, from three sides, and as a dimensioned plan."""
+"""Report sections with pictures of the stage: animated, from three sides, and as a dimensioned plan."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _SIDES = (
 
 
 def stage_section(data: StageData, *, motion: str | None = None, ghost: str = "", said: str = "") -> Section | None:
-    """The animated stage: the page's data "stage", with the data of the keys `ghost` behind it.
+    """Make the section of the animated stage, with the page's data "stage" and the data named `ghost` behind it.
 
-    It begins with a `motion`, by default its first one; `said` is the text below it.
+    The animation starts with `motion`, by default the `first_motion` of the data. `said` is the text below the stage.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.viewer.data import still_data
@@ -39,7 +39,7 @@ def stage_section(data: StageData, *, motion: str | None = None, ghost: str = ""
 
 
 def platform_modes(data: StageData) -> tuple[Motion, ...]:
-    """The motions that are modes of the platform, ascending.
+    """Return the motions that are modes of the platform, by ascending frequency.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.viewer.data import stage_data
@@ -50,7 +50,7 @@ def platform_modes(data: StageData) -> tuple[Motion, ...]:
 
 
 def joined_viewers(partners: Sequence[tuple[str, str]]) -> JoinedViewers | None:
-    """Two viewers of the stage with paired motions, beginning with the first pair; `None` without any.
+    """Make two viewers of the stage with paired motions, starting with the first pair; `None` without pairs.
 
     >>> joined_viewers([]) is None
     True
@@ -62,7 +62,7 @@ def joined_viewers(partners: Sequence[tuple[str, str]]) -> JoinedViewers | None:
 
 
 def first_motion(data: StageData) -> str:
-    """The first motion of a viewer: the lowest mode of the platform, else the first available, else none.
+    """Return the name of the first motion of a viewer: the platform's lowest mode, else the first motion, else an empty text.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.viewer.data import stage_data
@@ -74,7 +74,7 @@ def first_motion(data: StageData) -> str:
 
 
 def drawing_section(mechanism: Mechanism, data: StageData) -> Section | None:
-    """The stage from three sides, its plan, and its parts.
+    """Make the section of drawings: the stage from three sides, the dimensioned plan, and the list of parts.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.show.viewer.data import still_data

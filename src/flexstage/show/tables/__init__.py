@@ -1,1 +1,1 @@
-"""Tables of every result, one file for each result: each function takes a result and returns a `Table` (or several)."""
+"""Tables of results, one file for each kind of result: each function takes a result and returns a `Table` (or several)."""

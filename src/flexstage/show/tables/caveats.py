@@ -9,7 +9,7 @@ from flexstage.show.table import Table, row_table
 
 
 def warning_table(found: Sequence[Finding], title: str = "Warnings") -> Table | None:
-    """Warnings, or default values, each with its object and advice; `None` without any.
+    """Tabulate warnings, or default values, each with its location and advice; `None` if there are none.
 
     >>> warning_table([Finding("B4/pivot", "it is thin", "Thicken it")]).texts()
     [['where', 'what', 'advice'], ['B4/pivot', 'it is thin', 'Thicken it']]

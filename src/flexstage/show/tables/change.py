@@ -13,7 +13,7 @@ from flexstage.show.table import Cell, Column, Mark, Table, make_table
 
 
 def set_table(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> Table:
-    """Every changed value before and after, in its display unit.
+    """Tabulate changed values, old and new, in display units.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.addresses.address import assign

@@ -13,9 +13,9 @@ _NOISE = 1e-9
 
 
 def deflection_table(deflection: Deflection) -> Table:
-    """Deflection of a point by cause: own weight, each payload, each specified force.
+    """Tabulate the deflection of a point by cause: own weight, each payload, each specified force.
 
-    Rounding noise, against the largest translation or rotation, is shown as 0.
+    Values at the level of rounding noise, relative to the largest translation or rotation, are shown as 0.
 
     >>> from flexstage.analysis.linear_statics.deflection import deflection
     >>> from flexstage.cases.double_triangle import double_triangle

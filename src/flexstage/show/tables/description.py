@@ -40,7 +40,7 @@ _NUMBER_DIGITS = 6
 
 
 def composition_table(mechanism: Mechanism) -> Table | None:
-    """Numbers and kinds of the bodies, links, actuators and gauges of the stage.
+    """Tabulate the numbers and kinds of bodies, links, actuators and gauges of a stage.
 
     >>> composition_table(Mechanism("")).texts()[1]
     ['bodies', '0', '']
@@ -65,7 +65,7 @@ def _counts_text(counts: Mapping[str, int]) -> str:
 
 
 def kind_name(part: Part) -> str:
-    """The name of a part's kind.
+    """Return the name of the kind of a part.
 
     >>> from flexstage.parts.compliance_matrix import Joint
     >>> kind_name(Joint())
@@ -76,7 +76,7 @@ def kind_name(part: Part) -> str:
 
 
 def link_table(mechanism: Mechanism) -> Table | None:
-    """Every link of the design file: the bodies that it joins, its part, the number of its instances; `None` without any.
+    """Tabulate the links of the design file: joined bodies, part, number of instances; `None` without links.
 
     >>> link_table(Mechanism("")) is None
     True
@@ -97,9 +97,9 @@ _Numbers: TypeAlias = Mapping[str, tuple[Number, Quantity]]
 
 
 def value_tables(mechanism: Mechanism, most: int | None = None) -> tuple[Table, ...]:
-    """Every number of the description with unit, tag (stated, derived, assumed) and source; one table for each kind of entry.
+    """Tabulate all numbers of the description with unit, tag (stated, derived, assumed) and source; one table for each kind of entry.
 
-    With `most`, tables are limited to that number of rows, and a note counts the others.
+    With `most`, tables are limited to that number of rows, and a note states the number of further rows.
 
     >>> value_tables(Mechanism(""))[0].texts()[1]
     ['gravity', '(0, 0, -9.80665)', 'm/s^2', 'assumed', '']
@@ -124,7 +124,7 @@ def value_tables(mechanism: Mechanism, most: int | None = None) -> tuple[Table, 
 
 
 def provenance_table(mechanism: Mechanism) -> Table:
-    """Numbers of stated, derived and assumed values in the description.
+    """Tabulate how many values of the description are stated, derived and assumed.
 
     >>> provenance_table(Mechanism("")).texts()
     [['tag', 'numbers'], ['assumed', '3']]
@@ -136,7 +136,7 @@ def provenance_table(mechanism: Mechanism) -> Table:
 
 
 def source_table(mechanism: Mechanism) -> Table | None:
-    """The sources of tags, materials, parts and gauges; `None` without any.
+    """Tabulate the sources of tags, materials, parts and gauges; `None` without sources.
 
     >>> source_table(Mechanism("")) is None
     True
@@ -147,7 +147,7 @@ def source_table(mechanism: Mechanism) -> Table | None:
 
 
 def requirement_lines(mechanism: Mechanism) -> Table | None:
-    """The requirements as written in the description; `None` without any.
+    """Tabulate the requirements as written in the description; `None` without requirements.
 
     >>> requirement_lines(Mechanism("", requirements={"stroke.x": "at least 50 um"})).texts()[1]
     ['stroke.x', 'at least 50 um']

@@ -1,4 +1,4 @@
-"""Tables of errors: drift per kelvin, and the error budget by axis and source."""
+"""Tables of errors: thermal drift, and the error budget by axis and source."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NANO = ("nm", "nrad")
 
 
 def drift_table(drift: Drift) -> Table:
-    """Motion of the platform and named points per kelvin, uniform and per gradient of 1 K/m.
+    """Tabulate the thermal drift of the platform and named points: per kelvin of uniform warming, and per temperature gradient of 1 K/m.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -34,7 +34,7 @@ def drift_table(drift: Drift) -> Table:
 
 
 def ground_text(ground: Ground) -> str:
-    """Material of the ground, and its source.
+    """State the material of the ground, and its source.
 
     >>> ground_text(Ground("steel", "as specified")), ground_text(Ground("steel", "all links that stand on it are of it"))
     ('Ground made of steel', 'Ground taken as steel: all links that stand on it are of it')
@@ -45,7 +45,7 @@ def ground_text(ground: Ground) -> str:
 
 
 def error_budget_tables(budget: ErrorBudget) -> tuple[Table, ...]:
-    """Largest errors by axis and source, without and with the lost-motion gains in the command.
+    """Tabulate the largest errors by axis and source, without and with correction of lost motion in the command.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.budget import budget
@@ -83,7 +83,7 @@ def _budget_table(title: str, matrix: Matrix, sums: Array, budget: ErrorBudget) 
 
 
 def gauge_drift_table(drift: Drift) -> Table | None:
-    """Gauge readings per kelvin; `None` without gauges.
+    """Tabulate the drift of gauge readings per kelvin; `None` without gauges.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

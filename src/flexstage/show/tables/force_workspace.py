@@ -13,7 +13,7 @@ from flexstage.show.tables.lost_motion import share_rows
 
 
 def force_workspace_tables(found: ForceWorkspace) -> Iterator[Table | None]:
-    """The travel along each coordinate with its limits; the continuous inputs of every coil there."""
+    """Tabulate the travel along each coordinate with its limits, and the continuous inputs of every coil at that travel."""
     yield result_table(found)
     if found.current.columns:
         yield column_table(
@@ -22,7 +22,7 @@ def force_workspace_tables(found: ForceWorkspace) -> Iterator[Table | None]:
 
 
 def drive_force_tables(found: DriveForce | None) -> Iterator[Table | None]:
-    """Force per displacement with its excess over the ideal guide, and both by flexure.
+    """Tabulate the drive force per displacement and its excess over the ideal guide, in total and by flexure; no table without a result.
 
     >>> list(drive_force_tables(None))
     []

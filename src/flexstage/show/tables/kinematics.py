@@ -11,7 +11,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 
 def mobility_table(kinematics: Kinematics) -> Table | None:
-    """DOFs of the platform, strokes, and their numbers.
+    """Tabulate the numbers and names of the platform's DOFs and of the strokes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -64,7 +64,7 @@ def _command_text(kinematics: Kinematics) -> str:
 
 
 def force_table(kinematics: Kinematics) -> Table | None:
-    """V^T W: generalised forces of a unit input of each force actuator along the ideal motions; `None` without force actuators.
+    """Tabulate V^T W, the generalised forces of a unit input of each force actuator along ideal motions; `None` without force actuators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -82,7 +82,7 @@ def force_table(kinematics: Kinematics) -> Table | None:
 
 
 def mapping_table(kinematics: Kinematics) -> Table:
-    """R_a = da/dxi: stroke of each actuator for each motion of the platform. Refuses under-actuated stages.
+    """Tabulate R_a = da/dxi, the stroke of each actuator for each motion of the platform; raises `DesignError` if under-actuated.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -93,7 +93,7 @@ def mapping_table(kinematics: Kinematics) -> Table:
 
 
 def gauge_table(kinematics: Kinematics) -> Table:
-    """R_s = ds/dx: reading of each gauge for each motion of the platform.
+    """Tabulate R_s = ds/dx, the reading of each gauge for each motion of the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -104,7 +104,7 @@ def gauge_table(kinematics: Kinematics) -> Table:
 
 
 def jacobian_table(kinematics: Kinematics) -> Table:
-    """J = dx/da: motion of the platform for the stroke of one actuator.
+    """Tabulate the Jacobian J = dx/da, the motion of the platform per stroke of each actuator.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -115,7 +115,9 @@ def jacobian_table(kinematics: Kinematics) -> Table:
 
 
 def motion_table(kinematics: Kinematics) -> Table | None:
-    """V: the platform's ideal motions if it has fewer than six; entries outside the named coordinates are parasitic.
+    """Tabulate V, the ideal motions of a platform with fewer than six DOFs, else `None`.
+
+    Entries outside the named coordinates are parasitic motions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -132,7 +134,7 @@ def motion_table(kinematics: Kinematics) -> Table | None:
 
 
 def freedom_table(kinematics: Kinematics) -> Table:
-    """Free DOFs of each link in the ideal model; equal links in instances of a unit share a row.
+    """Tabulate the free DOFs of each link in the ideal model; equal links in instances of a unit share a row.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -19,7 +19,7 @@ _NAMED, _MOST_NAMED = 0.02, 16
 
 
 def loss_table(lost: LostMotion) -> Table:
-    """Transmission ratio and loss of every actuator, with the largest contributions of links.
+    """Tabulate the transmission ratio and the loss of every actuator, with the links that contribute most.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -57,9 +57,10 @@ def _zero_if_noise(share: float) -> float:
 
 
 def budget_table(lost: LostMotion) -> Table | None:
-    """Every actuator's loss by link: its own unit's by axis, other units' by name; each column adds up to its loss.
+    """Tabulate the contributions of links to every actuator's loss; each column adds up to the loss.
 
-    `None` for a stage about an operating point, whose model has no budget.
+    Links of the actuator's unit are listed by axis, links of other units by name. Returns `None` for a stage about an operating point,
+    because that model has no budget.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -78,7 +79,7 @@ _OWN_AND_OTHERS = "Links without a unit's name are parts of the actuator's own u
 
 
 def named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
-    """An actuator's loss by link and axis of its own unit and by link of the others, largest first.
+    """Return the contributions to an actuator's loss, largest first: by link and axis in its own unit, by link in other units.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -92,7 +93,9 @@ def named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
 
 
 def name_links(shares: Mapping[str, float], actuator: str, link: Callable[[str], str]) -> dict[str, float]:
-    """Shares by name, without the name of the actuator's own instance; those of other instances are added up by `link`.
+    """Rename shares by link for one actuator: names in its own instance lose the instance, and shares of other instances are added up.
+
+    The function `link` returns the name under which a share of another instance is added.
 
     >>> name_links({"B1/front.rz": 1.0, "B2/front.ry": 2.0, "B2/front.rz": 3.0, "guide.y": 4.0}, "B1", lambda name: name.partition(".")[0])
     {'front.rz': 1.0, 'B2/front': 5.0, 'guide.y': 4.0}
@@ -107,7 +110,7 @@ def name_links(shares: Mapping[str, float], actuator: str, link: Callable[[str],
 
 
 def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[tuple[Cell, ...]]:
-    """Rows by link, largest first, columns by actuator, negligible links summed and counted, the sum last."""
+    """Make rows of shares by link, largest first, with columns by actuator. Negligible links are one row; the last row is the `total`."""
     parts = list(dict.fromkeys(part for shares in columns.values() for part in shares))
     size = {part: max(abs(shares.get(part, 0.0)) for shares in columns.values()) for part in parts}
     ranked = sorted(parts, key=lambda part: -round(size[part], 9))
@@ -123,7 +126,7 @@ def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[t
 
 
 def foreign_links(ranked: Iterable[str], columns: Mapping[str, Mapping[str, float]]) -> list[str]:
-    """The named links of other units, from all links by size, with the shares by actuator.
+    """Select, from all links `ranked` by size, the links of other units with a significant share of a loss in `columns`.
 
     >>> foreign_links(["front.rz", "B2/front", "B2/back"], {"B1": {"front.rz": 0.02, "B2/front": 0.01, "B2/back": 0.0002}})
     ['B2/front']
@@ -148,7 +151,7 @@ def _share_cell(share: float) -> Cell:
 
 
 def gain_table(lost: LostMotion) -> Table:
-    """T = dx/da: motion of the elastic platform for the stroke of one actuator.
+    """Tabulate T = dx/da, the motion of the platform per stroke of each actuator in the elastic model.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -160,7 +163,7 @@ def gain_table(lost: LostMotion) -> Table:
 
 
 def crosstalk_table(lost: LostMotion) -> Table:
-    """R_a V^+ T: achieved share of each commanded motion (diagonal), and coupling to the others.
+    """Tabulate R_a V^+ T: the achieved share of each commanded stroke (diagonal), and coupling to other actuators.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -173,7 +176,7 @@ def crosstalk_table(lost: LostMotion) -> Table:
 
 
 def parasitic_table(lost: LostMotion) -> Table | None:
-    """The platform's motion outside its ideal ones per stroke; `None` without any.
+    """Tabulate the parasitic motion of the platform per stroke, outside its ideal motions; `None` without parasitic motion.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -191,7 +194,7 @@ def parasitic_table(lost: LostMotion) -> Table | None:
 
 
 def correction_table(lost: LostMotion) -> Table:
-    """The strokes for a required motion, corrected for elasticity, a = (R_a V^+ T)^-1 R_a xi.
+    """Tabulate the strokes for a required motion xi, corrected for elasticity: a = (R_a V^+ T)^-1 R_a xi.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -203,7 +206,7 @@ def correction_table(lost: LostMotion) -> Table:
 
 
 def energy_table(lost: LostMotion) -> Table:
-    """Strain energy by part when one actuator expands without other loads, as a share of its total.
+    """Tabulate the shares of parts in the strain energy, when one actuator expands without other loads.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -220,7 +223,7 @@ def energy_table(lost: LostMotion) -> Table:
 
 
 def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:
-    """The share of strain energy by actuator and part, of its own unit or another one.
+    """Return the shares of strain energy by expanding actuator and by part, of the actuator's unit or of another unit.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -8,13 +8,13 @@ from flexstage.show.display import percent
 from flexstage.show.table import Table, batch_note, result_table
 
 PLATFORM_MODES = f"Each platform mode completes {percent(THRESHOLD, 2)} of the compliance in one more direction of the platform."
-"""Criterion for platform modes."""
+"""Note on the criterion for platform modes."""
 
 _FURTHER = 3
 
 
 def mode_table(modes: Modes) -> Table | None:
-    """Frequencies, names, shares and planes of the platform's modes and of every mode up to three beyond the last local one.
+    """Tabulate frequencies, names, shares and planes of modes, up to the third mode above the highest platform or local mode.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -27,7 +27,7 @@ def mode_table(modes: Modes) -> Table | None:
 
 
 def listed_modes(modes: Modes) -> tuple[int, ...]:
-    """Indices of the modes that tables show.
+    """Return the indices of the modes that tables show: up to the third mode above the highest platform or local mode.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -1,4 +1,4 @@
-"""The short form of an analysis, one screen: the platform axis by axis, its modes, lost motion, the verdict and its reasons."""
+"""Summary of an analysis on one screen: the platform axis by axis, modes, lost motion, the verdict and its reasons."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _NO_REQUIREMENTS = "no requirements. Add a table [requirements] to the design fi
 
 
 def stage_text(analysis: Analysis) -> str:
-    """The analysed stage in one line: model, DOFs, actuators and gauges.
+    """Describe the analysed stage in one line: model, DOFs, actuators and gauges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -50,7 +50,7 @@ def stage_text(analysis: Analysis) -> str:
 
 
 def load_line(analysis: Analysis) -> str | None:
-    """The effect of weight, payloads and forces; `None` if unknown or without a load.
+    """Describe the effect of weight, payloads and forces; `None` if unknown or without a load.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -61,7 +61,7 @@ def load_line(analysis: Analysis) -> str | None:
 
 
 def floating_line(model: LinearModel | None) -> str | None:
-    """Motions of the platform without stiffness, and the actuators that drive them; `None` of a stage without any.
+    """Describe motions of the platform without stiffness, and the actuators that drive them; `None` without such motions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -79,7 +79,7 @@ def floating_line(model: LinearModel | None) -> str | None:
 
 
 def small_line(analysis: Analysis) -> str | None:
-    """The error of linear kinematics over the strokes; `None` without a known motion.
+    """Describe the error of linear kinematics over the strokes; `None` if unknown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -90,7 +90,7 @@ def small_line(analysis: Analysis) -> str | None:
 
 
 def count_text(count: int, thing: str) -> str:
-    """A count with its noun.
+    """Format a count with its noun in singular or plural.
 
     >>> count_text(2, "gauge")
     '2 gauges'
@@ -99,13 +99,13 @@ def count_text(count: int, thing: str) -> str:
 
 
 def overview_tables(analysis: Analysis) -> Iterator[Table | str | None]:
-    """Requirements, then the summary without the notes of its first table."""
+    """Make the tables of the requirements and of the summary, without notes under the summary's first table."""
     yield verdict_table(analysis.verdicts)
     yield from summary_tables(analysis, explained=False)
 
 
 def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | str | None]:
-    """The platform's axes and modes, lost motion, and strength; the first table `explained` by notes.
+    """Make the summary: the platform's axes and modes, lost motion, and strength; if `explained`, with notes under the first table.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -122,7 +122,7 @@ def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | s
 
 
 def axis_table(analysis: Analysis) -> Table | None:
-    """The platform axis by axis: stroke and its limit, stiffness, resolution; `None` if the model has none of them.
+    """Tabulate the platform axis by axis: stroke and its limit, stiffness, resolution; `None` if the model has none of them.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -214,7 +214,7 @@ def _platform_modes(modes: Modes) -> Table | None:
 
 
 def lowest_mode(modes: Modes) -> str | None:
-    """The lowest mode of the whole stage, and the body with the largest motion; `None` without a mode.
+    """Describe the lowest mode of the whole stage, and the body with the largest kinetic energy; `None` without modes.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -254,7 +254,7 @@ def _weakest_text(found: HingeStress) -> str:
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
-    """The verdict: the number of met requirements, the smallest margin, its cause, and further options.
+    """Format the verdict: number of met requirements, smallest margin, its cause, and, unless `whole`, options for more output.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

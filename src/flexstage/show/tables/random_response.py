@@ -11,7 +11,7 @@ from flexstage.show.table import Table, column_table, first_design
 
 
 def random_table(found: RandomResponse) -> Table:
-    """Rms value of every output over the band, and the contribution of each input to its mean square.
+    """Tabulate the rms value of every output over the band, and the contribution of each input to the mean square.
 
     >>> from flexstage.analysis.dynamics.random_response import Spectrum, random_response
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -16,7 +16,7 @@ _LEAST = 0.01
 
 
 def verdict_table(verdicts: Sequence[Verdict], *, explained: bool = False) -> Table | None:
-    """Requirements with limit, value and margin, met or not, `explained` with the meaning of each; `None` without any.
+    """Tabulate requirements with limit, value, margin and verdict, if `explained` with their meaning; `None` without requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -48,7 +48,7 @@ def is_met(verdict: Verdict) -> bool:
 
 
 def meaning(verdict: Verdict) -> str:
-    """The meaning of a requirement's key.
+    """Return the meaning of a requirement's key.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -59,7 +59,7 @@ def meaning(verdict: Verdict) -> str:
 
 
 def verdict_text(verdicts: Sequence[Verdict]) -> str:
-    """The number of met requirements, and the smallest margin or the failed ones, in one or two sentences.
+    """State the number of met requirements, and the smallest margin or the failed requirements, in one or two sentences.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -77,7 +77,7 @@ def verdict_text(verdicts: Sequence[Verdict]) -> str:
 
 
 def first_margin(verdict: Verdict) -> float:
-    """The margin of a requirement, of the first design.
+    """Return the relative margin of a requirement (first design of a batch).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -88,7 +88,7 @@ def first_margin(verdict: Verdict) -> float:
 
 
 def value_text(verdict: Verdict) -> str:
-    """The value of a requirement's measure, in display units (first design).
+    """Format the value of a requirement's measure in display units (first design of a batch).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -101,7 +101,7 @@ def value_text(verdict: Verdict) -> str:
 
 
 def quantity_text(value: float, quantity: Quantity, digits: int = DIGITS) -> str:
-    """An SI value in the display unit of its quantity, or in a smaller one below a hundredth of it.
+    """Format an SI value in the display unit of its quantity; values below a hundredth of that unit are in a smaller unit.
 
     >>> from flexstage.base.units.quantity import STIFFNESS
     >>> quantity_text(17e6, STIFFNESS), quantity_text(420.0, STIFFNESS)
@@ -115,7 +115,7 @@ def quantity_text(value: float, quantity: Quantity, digits: int = DIGITS) -> str
 
 
 def margin_text(verdict: Verdict) -> str:
-    """The margin with its sign, as per cent of the limit.
+    """Format the margin with its sign, in per cent of the limit.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -143,7 +143,7 @@ def _row(verdict: Verdict) -> tuple[Cell, ...]:
 
 
 def answer_text(verdict: Verdict) -> str:
-    """A verdict as text.
+    """Format a verdict as text, such as "met".
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge

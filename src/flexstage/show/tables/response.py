@@ -26,7 +26,7 @@ class Curve:
 
 
 def leading_curves(response: Response) -> tuple[Curve, ...]:
-    """For each output the input with the largest effect at the lowest frequency (first design).
+    """Select for each output the response to the input with the largest effect at the lowest frequency (first design of a batch).
 
     >>> import numpy as np
     >>> from flexstage.models.linear.model import Channel
@@ -49,7 +49,9 @@ def _leading_input(gains: Array) -> int:
 
 
 def response_table(response: Response) -> Table:
-    """For each output its leading input: gain at the lowest frequency, highest magnitude and its frequency; 0 for rounding noise.
+    """Tabulate the gain at the lowest frequency, the highest magnitude and its frequency, for each output and its leading input.
+
+    Values at the level of rounding noise are shown as 0.
 
     >>> import numpy as np
     >>> from flexstage.models.linear.model import Channel

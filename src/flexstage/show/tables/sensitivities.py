@@ -13,7 +13,7 @@ from flexstage.show.table import Table, column_table
 
 
 def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: int = 15) -> Table:
-    """The parameters with the largest effects on the lowest frequencies: change in per cent per per cent of the parameter.
+    """Tabulate the `top` parameters by effect on the lowest frequencies: change in per cent for 1 % change of the parameter.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.sensitivities import sensitivities
@@ -29,7 +29,9 @@ def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: in
 
 
 def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | None:
-    """The parameters with the largest effects on the losses: loss in per cent of stroke per per cent of the parameter; `None` without any.
+    """Tabulate the `top` parameters by effect on the losses: loss in per cent of stroke for 1 % change of the parameter.
+
+    Returns `None` without losses.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.sensitivities import sensitivities

@@ -19,7 +19,7 @@ _STEP = 15
 
 
 def stiffness_table(statics: Statics) -> Table:
-    """K of the platform, actuators fixed.
+    """Tabulate the stiffness matrix K of the platform, actuators fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -31,7 +31,7 @@ def stiffness_table(statics: Statics) -> Table:
 
 
 def compliance_table(statics: Statics) -> Table:
-    """C of the platform, actuators fixed.
+    """Tabulate the compliance matrix C of the platform, actuators fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -43,7 +43,7 @@ def compliance_table(statics: Statics) -> Table:
 
 
 def freedom_stiffness_table(freedoms: FreedomStiffness) -> Table:
-    """Stiffness by DOF: along the free ideal motions, then along the constrained ones.
+    """Tabulate the stiffness by DOF: along free ideal motions, then along constrained motions.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -61,7 +61,7 @@ def freedom_stiffness_table(freedoms: FreedomStiffness) -> Table:
 
 
 def mass_tables(mass: MassMatrix) -> Iterator[Table]:
-    """Mass at the point: of its body with payloads, and the condensed mass of the whole stage.
+    """Tabulate the mass at a point: mass of its body with payloads, and condensed mass of the whole stage.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -85,7 +85,7 @@ def _points(statics: Statics) -> str:
 
 
 def direction_table(statics: Statics, load: float = _LOAD) -> Table:
-    """Displacement under a force in the plane and stiffness, by direction of the force (the form of the paper's Table 1).
+    """Tabulate displacement and stiffness by direction of a force `load` [N] in the plane (as in the paper's Table 1).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -107,7 +107,7 @@ def _along(stiffness: DirectionalStiffness, angles: Array) -> Array:
 
 
 def principal_table(statics: Statics) -> Table | None:
-    """Principal stiffnesses in the plane with their directions, with the other DOFs free and fixed.
+    """Tabulate principal stiffnesses in the plane and their directions, with other DOFs free and fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -119,7 +119,7 @@ def principal_table(statics: Statics) -> Table | None:
 
 
 def centre_table(statics: Statics) -> Table:
-    """Centre of stiffness relative to the load point.
+    """Tabulate the position of the centre of stiffness relative to the load point.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -1,4 +1,4 @@
-"""Tables of isolated units and of the terms omitted by simpler theories."""
+"""Tables of isolated units and of DOFs omitted by simpler theories."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.show.table import Column, Table, result_table, text_table
 
 
 def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
-    """The springs and arms of lever units as in Eqs. 3-11 of Shin & Moon; `None` without lever units.
+    """Tabulate the springs and arms of lever units as in Eqs. 3-11 of Shin & Moon; `None` without lever units.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.linear_statics.units import units
@@ -23,7 +23,7 @@ def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
 
 
 def omitted_table(found: Omitted, *, top: int = 12) -> Table | None:
-    """Change of a gain by each DOF that a simpler theory omits; those with rounding noise only are one row.
+    """Tabulate the change of a gain by each DOF that a simpler theory omits, the `top` DOFs individually, others in one row.
 
     >>> omitted_table(Omitted("platform.z", "B1", 2.0, 1.9, {"lever.rz": -0.1, "lever.x": 1e-15})).texts()[2:4]
     [['lever.rz', '-0.1', '-5.26 %'], ['further DOFs', '+0', '0 %']]

@@ -19,7 +19,7 @@ from flexstage.spatial.frame import MOTION
 
 
 def command_text(command: Mapping[str, Number]) -> str:
-    """A box of commands as text.
+    """Format a box of commanded motions as text.
 
     >>> command_text({"x": 50e-6, "rz": 244e-6})
     'x +-50 um, rz +-244 urad'
@@ -28,14 +28,14 @@ def command_text(command: Mapping[str, Number]) -> str:
 
 
 def stroke_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Strokes along one coordinate at a time, ideal and with corrected lost motion, and those of the command, all at once."""
+    """Tabulate the platform's strokes along single coordinates, ideal and with corrected lost motion, and the use by the command."""
     yield result_table(workspace.single_axis)
     yield result_table(workspace.corrected, title="Single-axis strokes, lost motion corrected by command")
     yield None if workspace.worst_case is None else corner_table(workspace.worst_case)
 
 
 def corner_table(corner: Utilisation) -> Table | None:
-    """Actuator strokes for all commanded motions at once.
+    """Tabulate the actuator strokes if all motions are commanded at the same time.
 
     >>> import numpy as np
     >>> corner_table(Utilisation(("B1",), {"x": 5e-05}, np.array([5e-5]), np.array([7.5e-5]), "")).texts()[1]
@@ -49,14 +49,14 @@ def corner_table(corner: Utilisation) -> Table | None:
 
 
 def gauge_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Readings of the gauges at the commanded corner against their ranges, and the pose resolution."""
+    """Tabulate gauge readings at the commanded corner relative to the gauges' ranges, and the pose resolution."""
     gauges = workspace.gauges
     yield None if gauges is None else result_table(gauges, notes=[f"{command_text(gauges.command)}, all at once."])
     yield result_table(workspace.resolution)
 
 
 def strength_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Forces of platform and stacks, stress, buckling and axial forces."""
+    """Tabulate forces of platform and stacks, stress, buckling loads and axial forces."""
     yield result_table(workspace.platform_lines)
     yield result_table(workspace.stack_lines)
     yield weakest_first(workspace.stress)
@@ -67,7 +67,7 @@ def strength_tables(workspace: Workspace) -> Iterator[Table | None]:
 
 
 def weakest_first(found: HingeStress | Buckling | None) -> Table | None:
-    """The table of stress or of buckling loads, the smallest factor first (unknown ones before it); rows with equal cells are one."""
+    """Tabulate stress or buckling loads, sorted by factor: unknown factors, then the smallest; rows with equal cells are merged."""
     table = result_table(found)
     if found is None or table is None:
         return None
@@ -77,7 +77,7 @@ def weakest_first(found: HingeStress | Buckling | None) -> Table | None:
 
 
 def load_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Axial forces of the stacks under permanent load, and over all strokes."""
+    """Tabulate the axial forces of stacks under permanent load, and over all strokes."""
     if workspace.loads is not None:
         yield result_table(workspace.loads)
         yield result_table(workspace.loads.over(workspace.limits.from_zero))

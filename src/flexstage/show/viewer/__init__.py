@@ -1,1 +1,1 @@
-"""The stage as one moving mesh: data of the viewer for pages, notebooks and the studio, and its page."""
+"""Viewer of a stage as one moving mesh: its data for pages, notebooks and the studio, and its HTML page."""

@@ -1,4 +1,4 @@
-"""Animations of a stage away from its undeformed configuration: a load path, modes and buckling modes at a state."""
+"""Animations of a stage at large displacements: a load path, and modes and buckling modes about a state."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ _Label: TypeAlias = tuple[str, str, str, float | None]
 
 
 def stroke_data(mechanism: Mechanism, path: LoadPath, found: Stroke, *, text: str = "") -> StageData:
-    """A stage along a path: one motion through its points, and the first modes at its last one that is stable.
+    """Return viewer data of a stage along a load path: one motion through its points, and the first modes at its last stable point.
 
-    Flexures follow their centre lines; a part known only by its 6x6 matrix is interpolated evenly between its ends. Points without an
-    equilibrium are skipped.
+    Flexures follow their centre lines; a part known only by its 6x6 matrix is interpolated linearly between its ends. Points without an
+    equilibrium are skipped. `text` is the design file's text, for line numbers.
     """
     still = still_data(mechanism, text=text)
     motions = [_along(still, path.state, path.drive, found), *_modes_there(still, path)]
@@ -51,14 +51,14 @@ def stroke_data(mechanism: Mechanism, path: LoadPath, found: Stroke, *, text: st
 
 
 def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
-    """A stage with one instance forced into a misaligned seat: one motion, from zero to the largest misalignment."""
+    """Return viewer data of a stage with one misaligned instance: one motion, from zero to the largest misalignment."""
     still = still_data(mechanism)
     motion = _along(still, found.state, f"{found.copy} {found.axis}", found)
     return replace(still, motions=(motion,), notes=tuple(str(each) for each in found.warnings))
 
 
 def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: PostBuckling | None = None) -> StageData:
-    """Buckling modes of a stage, about its last stable state in each load case: one motion for each case, and the path `after` one."""
+    """Return viewer data of buckling: in each load case the mode about the last stable state, and the path `after` buckling."""
     still = still_data(mechanism)
     motions = [
         motion
@@ -78,7 +78,7 @@ def _buckling_motions(still: StageData, case: CaseFactor, found: Critical, numbe
 
 
 def modes_at_data(mechanism: Mechanism, there: OperatingPoint, found: Modes, said: str, *, count: int = 12) -> StageData:
-    """A stage with its modes about an operating point; `said` describes that point."""
+    """Return viewer data of a stage with its `count` lowest modes about an operating point; `said` describes the point."""
     still = still_data(mechanism)
     moved = mode_motions(there.state, found.shapes[:, :count], there.locked)
     return replace(still, motions=tuple(_about(still, there.state, moved, _labels(found.frequencies[:count], said))))
@@ -96,7 +96,7 @@ def _along(still: StageData, state: State, drive: str, found: Stroke | Misaligne
 
 
 def curves_of(along: Matrix) -> tuple[Curve, ...]:
-    """Quantities at every point, one row each, in display units: the drive first."""
+    """Convert quantities along a path (rows: points, columns: quantities) to curves in display units; the first is the drive."""
     return tuple(
         Curve(name, to_typography("" if form.unit == "1" else form.unit), values * form.factor)
         for name, values, form in quantities_of(along)
@@ -105,7 +105,7 @@ def curves_of(along: Matrix) -> tuple[Curve, ...]:
 
 
 def quantities_of(along: Matrix) -> Iterator[tuple[str, Array, DisplayUnit]]:
-    """Columns of quantities at every point: name, SI values, and the display unit."""
+    """Yield the quantities along a path: name, SI values at every point, and display unit."""
     units = (along.unit,) * len(along.columns) if isinstance(along.unit, str) else along.unit[0]
     for name, values, unit in zip(along.columns, np.moveaxis(along.values, -1, 0), units, strict=True):
         largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
@@ -114,7 +114,7 @@ def quantities_of(along: Matrix) -> Iterator[tuple[str, Array, DisplayUnit]]:
 
 
 def limits(found: Stroke | Misaligned) -> tuple[str, ...]:
-    """The exceeded limits at each point as text; empty without any."""
+    """Describe the exceeded limits at each point; an empty text if no limit is exceeded."""
     return tuple(to_typography("; ".join(_words(found, point))) for point in range(len(found.along.values)))
 
 
@@ -285,8 +285,8 @@ def _carried(still: StageData, carrier: _Carrier, bodies: Array, lines: Mapping[
 def animate(mechanism: Mechanism, path: LoadPath) -> Any:
     """Animate a stage along a load path at large displacements: notebooks show the view, `save` writes it as a page.
 
-    Curves of force, stiffness, parasitic motion and frequencies are below, with a cursor; values beyond a limit are red. Small paths are
-    magnified by the displayed factor.
+    Curves of force, stiffness, parasitic motion and frequencies are below the stage, with a cursor; values beyond a limit are red. Small
+    motions are magnified by the displayed factor.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")

@@ -1,4 +1,4 @@
-"""Bending of a link between its ends: shares of the motions of its two bodies along its length, exact in position and slope at both."""
+"""Bending of a link along its length, from the motions of its two bodies, with exact position and slope at both ends."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ _INTERVALS = 400
 
 @dataclass(frozen=True, eq=False)
 class Bend:
-    """Deflections of a straight part by the offset and the rotation of its second end, its first one fixed, along its length from 0 to 1.
+    """Shape functions of a straight part with its first end fixed, for an offset and a rotation of its second end.
 
-    `values` (n, 5) at `shares` (n,): the share (of elongation and twist), deflections for a unit offset and a unit rotation, and the
-    slopes of both. Deflection: v(s) = offset N(s) + turn L M(s), with N(1) = M'(1) = 1, all others of N, M and slopes 0 at the ends.
+    The deflection at the share s of the length L, 0 to 1, is v(s) = offset N(s) + rotation L M(s). N and M and their slopes are zero at the
+    ends, except N(1) = M'(1) = 1. The columns of `values` (n, 5) at `shares` (n,) are s (for elongation and twist), N, M, N' and M'.
     """
 
     shares: Array
     values: Array
 
     def at(self, shares: Array) -> Array:
-        """The values (k, 5) at shares (k,)."""
+        """Interpolate the values (k, 5) at shares (k,)."""
         return np.stack([np.interp(shares, self.shares, column) for column in self.values.T], axis=-1)
 
 
 def bend_of(part: Part | None) -> Bend:
-    """The bend of a part: of a beam of its sections, loaded only at its ends; without a shape, of a uniform beam.
+    """Compute the shape functions of a part, as a beam with its sections and loads only at its ends; without a shape, as a uniform beam.
 
-    Curvature is proportional to (a + b s) / I(s), I the smallest second moment of area, constant between stations; a and b follow from
-    the ends. The bend of a uniform part is a cubic Hermite polynomial. Shear is neglected.
+    Curvature is proportional to (a + b s) / I(s), with the smallest second moment of area I. The constants a and b follow from the
+    conditions at the ends. For a uniform part the functions are cubic Hermite polynomials. Shear is neglected.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> bend_of(Leaf("steel", 0.02, 0.001, 0.01)).at(np.array([0.5, 1.0])).round(4).tolist()

@@ -1,4 +1,4 @@
-"""Data of a viewer for a stage, as one value, and as JSON with base64 arrays: the same for pages, notebooks and the studio."""
+"""Data of the viewer for a stage, as an object and as JSON with base64 arrays, for pages, notebooks and the studio."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ class StageData:
     """Data of a viewer for a stage: its mesh, its parts by number, and its motions.
 
     `bodies` are in the order of twists, the ground first. `size` is the diagonal of the box around everything and `centre` (3,) its middle
-    [m]. `bones` are the bodies with their reference points. `links` are the part numbers of a motion's strain energy. `notes` state the
-    simplifications of the picture and their reasons.
+    [m]. `bones` are the bodies with their reference points. `things` are the drawn parts. `notes` list the simplifications of the picture
+    with reasons.
     """
 
     name: str
@@ -71,18 +71,18 @@ class StageData:
 
     @cached_property
     def links(self) -> tuple[int, ...]:
-        """Part numbers of hinges and actuators."""
+        """Part numbers of hinges and actuators, in the order of a motion's strain energies."""
         return tuple(number for number, thing in enumerate(self.things) if thing.kind in {Kind.HINGE, Kind.DRIVE})
 
     def reach(self, motion: Motion) -> float:
-        """Largest displacement [m] of any vertex in a motion; in large displacements, of any body's reference and any node."""
+        """Return the largest displacement [m] in a motion: of any vertex, or at large displacements of any body's reference or node."""
         if motion.course is not None:
             return motion.course.reach
         moved = self.mesh.displacement(motion.twists)
         return float(np.sqrt(np.max(np.sum(moved**2, axis=1), initial=0.0)))
 
     def document(self) -> dict[str, Any]:
-        """Plain values under the names of the page (`web/src/viewer/types.ts`)."""
+        """Convert to plain values with the names of the page's program (`web/src/viewer/types.ts`)."""
         return {
             "format": FORMAT,
             "name": self.name,
@@ -101,7 +101,7 @@ class StageData:
         }
 
     def text(self) -> str:
-        """The document as JSON: equal stages have equal bytes."""
+        """Convert the document to JSON; equal stages have equal bytes."""
         return json.dumps(self.document(), separators=(",", ":"), allow_nan=False)
 
     def _label(self, label: Label) -> dict[str, Any]:
@@ -109,7 +109,7 @@ class StageData:
         return {"text": label.text, "kind": label.kind.value, "point": list(label.point), "bodies": bodies}
 
     def motion_document(self, motion: Motion) -> dict[str, Any]:
-        """The plain values of a motion of this stage, as in the document."""
+        """Convert a motion of this stage to plain values, as in the document."""
         said: dict[str, Any] = {"group": motion.group.value, "name": motion.name, "label": motion.label}
         if motion.frequency is not None:
             said["frequency"] = motion.frequency
@@ -139,12 +139,12 @@ def stage_data(
     count: int = _MODES,
     still: StageData | None = None,
 ) -> StageData:
-    """Compute the data of a viewer for a stage, of the first design of a batch; `still` if already known.
+    """Compute the data of a viewer for a stage (first design of a batch), with motions.
 
-    `model`, `kinematics` and its modes are computed by default (lumped, ideal, those of the platform). Missing parts are left out, with
-    the reason among the notes. `weighed` is the model of the modes if different: small motions about the loaded stage. `text` belongs to
-    the design's file, for line numbers. `count` is the number of lowest modes shown; those of the platform are always included. Raises
-    `DesignError` if the stage cannot be drawn.
+    The lumped `model`, the ideal `kinematics`, the modes `found` and the data `still` without motions are computed unless specified.
+    Motions that cannot be computed are left out, with the reason among the notes. `weighed` is another model for the modes: small motions
+    about the loaded stage. `text` is the text of the design file, for line numbers. `count` is the number of lowest modes shown; platform
+    modes are always included. Raises `DesignError` if the stage cannot be drawn.
     """
     still = still or still_data(mechanism, text=text)
     notes, motions, bones = list(still.notes), list[Motion](), still.bones
@@ -164,7 +164,7 @@ def stage_data(
 
 
 def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
-    """The same data without motions, and without a model."""
+    """Compute the data of a viewer for a stage (first design of a batch), without motions; no model is needed."""
     assembly = expand(mechanism)
     steps = max(1, min(_STEPS, _PIECES // max(1, len(assembly.links))))
     seen = scene(mechanism, steps=steps)
@@ -251,7 +251,7 @@ def _curves(curves: Iterable[Curve]) -> list[dict[str, str]]:
 
 
 def packed(values: Array | Sequence[float], form: str) -> str:
-    """Base64 of the bytes of values in a form such as `<f4`.
+    """Encode values in base64, in a numpy format such as `<f4`.
 
     >>> packed([1.0], "<f4")
     'AACAPw=='

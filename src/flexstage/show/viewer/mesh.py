@@ -19,9 +19,10 @@ from flexstage.show.viewer.bend import COLUMNS, Bend
 class Mesh:
     """Vertices, triangles and edges of a stage in its frame.
 
-    A vertex has a position in `points` (v, 3) [m], a `part` (v,), a `carrier` (v,) and a `station` (v,). A carrier is a piece between two
-    bodies: `bodies` (c, 2) by number, 0 the ground; `ends` (c, 2, 3) [m] at the bodies. Both bodies are equal for a rigid piece. A
-    station is a row of `stations` (s, 5): see `Bend`. `triangles` (t, 3) are counter-clockwise from outside, `edges` (e, 2) sharp.
+    `points` (v, 3) [m] are the positions of vertices; `part`, `carrier` and `station` (v,) are indices by vertex. A carrier is a piece
+    between two bodies, with their numbers `bodies` (c, 2), 0 for the ground, and its `ends` (c, 2, 3) [m] at the bodies. For a rigid piece
+    both bodies are equal. The rows of `stations` (s, 5) are values of a `Bend`. `triangles` (t, 3) are counter-clockwise from outside;
+    `edges` (e, 2) are sharp edges.
     """
 
     points: Array
@@ -48,10 +49,10 @@ class Mesh:
         return span / np.where(length > 0.0, length, 1.0), length
 
     def displacement(self, twists: Array) -> Array:
-        """Displacement (v, 3) of the vertices by the bodies' twists at the origin (b, 6), small rotations.
+        """Compute the displacement (v, 3) of the vertices for small twists (b, 6) of the bodies at the origin.
 
-        A point p of a body moves by t + w x p. A link moves with its first body, plus the deflection of its bend for the relative motion of
-        the second body. The viewer's shader does the same.
+        For a twist (t, w), a point p of a body moves by t + w x p. A link moves with its first body, and bends (see `Bend`) by the relative
+        motion of the second body. The viewer's shader computes the same.
         """
         first, second = (twists[self.bodies[self.carrier, side]] for side in (0, 1))
         rigid = first[:, :3] + np.cross(first[:, 3:], self.points)
@@ -69,7 +70,9 @@ class Mesh:
 def mesh_of(
     pieces: Sequence[DrawnPiece], bodies: Mapping[str, int], parts: Mapping[str, int], bends: Mapping[str, Bend], straight: Bend
 ) -> Mesh:
-    """The mesh of pieces, with the numbers of bodies and parts by name; `bends` belong to parts other than `straight`.
+    """Build the mesh of drawn pieces, with the numbers of bodies and parts by name.
+
+    `bends` are the shape functions by piece; `straight` is used for all other pieces.
 
     >>> mesh_of((), {}, {}, {}, Bend(np.zeros(1), np.zeros((1, 5)))).points.shape
     (0, 3)
@@ -116,7 +119,7 @@ def _stations(piece: DrawnPiece, bend: Bend) -> Array:
 
 
 def body_names(names: Iterable[str]) -> tuple[str, ...]:
-    """The ground, number 0, and the bodies in order.
+    """Return the names of the ground, number 0, and of the bodies in order.
 
     >>> body_names(["platform"])
     ('ground', 'platform')

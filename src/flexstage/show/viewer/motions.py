@@ -24,7 +24,7 @@ from flexstage.show.display import format_value, number, to_typography
 from flexstage.spatial.frame import COMPONENTS, FORCES
 
 PLATFORM_MODE = "a mode of the platform"
-"""Remark of a platform mode."""
+"""First words of the remark on a platform mode."""
 _UNIT_STROKES = {"m": 1e-6, "N": 1.0, "A": 1.0}
 _UNIT_MOTION = 1e-6
 _WARMER = ("1 K warmer", "1 K/m along x", "1 K/m along y", "1 K/m along z")
@@ -53,16 +53,17 @@ class Curve:
 
     @property
     def span(self) -> str:
-        """From the first value to the last."""
+        """Text of the range from the first value to the last."""
         first, last = (to_typography(number(float(value), 4)) for value in (self.values[0], self.values[-1]))
         return f"{first} … {last} {self.unit}".strip()
 
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """Motion of a stage over time, small motions: `basis` (n, b, 6) the twists of all bodies by unit coordinate, at the stage's origin.
+    """Small motion of a stage over time, as the sum of `weights` times `basis`.
 
-    `weights` (f, n) are the coordinates at equal steps of time; `curves` are further quantities, the time first.
+    `basis` (n, b, 6) are the twists of all bodies at the stage's origin, for a unit of each of n coordinates. `weights` (f, n) are the
+    coordinates at equal steps of time. `curves` are quantities over time; the first is the time.
     """
 
     basis: Array
@@ -72,11 +73,12 @@ class Response:
 
 @dataclass(frozen=True, eq=False)
 class PathMotion:
-    """Large displacements through the points of a path, or a small motion about one.
+    """Large displacements through the points of a path, or a small motion about one displaced state.
 
-    `poses` (f, rows, 6) are displacement and rotation vector of each body about its reference, the ground's first, then of the nodes along
-    the bending pieces. `frames` (f,) are the points of the path that they belong to. `shape` (rows, 6) is a small motion about the only
-    pose. `curves` begin with the drive. `beyond` are the part numbers beyond a limit at every point, `said` the reason.
+    `poses` (f, rows, 6) are displacements and rotation vectors: of the reference of each body, the ground first, then of the nodes along
+    bending pieces. `frames` (f,) are the numbers of the path's points with these poses. `shape` (rows, 6) is a small motion about the only
+    pose. `curves` are quantities along the path; the first is the drive. At every point, `beyond` are the numbers of parts beyond a limit,
+    `said` the exceeded limits.
     """
 
     frames: Array
@@ -95,13 +97,12 @@ class PathMotion:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A motion of all bodies: `twists` (b, 6) at the stage's origin, the ground's first.
+    """A motion of all bodies: `twists` (b, 6) at the stage's origin, the ground first.
 
-    `name` is unique in its group, `remark` adds information; `frequency` [Hz] belongs to a mode. `energy` is the strain-energy fraction by
-    link, and of other elastic parts by name; empty if unknown. `stress` is the utilisation of links by name, and `stressed` its condition:
-    at the full stroke, under that load. The amplitude is physical except for modes. Motions of large displacements, along a path or about a
-    state, have a `course` instead of twists; motions over time have a `response`, and the twists of their farthest instant.
-    `response` beside those of its farthest instant.
+    `name` is unique in its group; `remark` adds information; modes have a `frequency` [Hz]. `energy` is the strain-energy fraction by name
+    of links and other elastic parts, `None` if unknown. `stress` is the utilisation of links by name, `stressed` its condition, for example
+    at the full stroke. The amplitude is physical except for modes. Large displacements, along a path or about a state, have a `course`
+    instead of twists. Motions over time have a `response`; their twists are those at the time of the largest displacement.
     """
 
     group: Group
@@ -119,12 +120,12 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
-    """The bodies of a stage by name, without the ground, and their reference points (3,) for the models' twists."""
+    """Bodies of a stage by name, without the ground, with the reference points (3,) [m] of their twists in models."""
 
     references: Mapping[str, Array]
 
     def at_origin(self, twists: Mapping[str, Array]) -> Array:
-        """Twists (b + 1, 6) at the stage's origin, the ground's first; zero for bodies not named."""
+        """Convert twists at reference points to twists (b + 1, 6) at the stage's origin, the ground first; zero for bodies not named."""
         own = [np.real(twists[name]) if name in twists else np.zeros(6) for name in self.references]
         rows = np.array([np.zeros(6), *own])
         rows[1:, :3] += np.cross(self._points, rows[1:, 3:])
@@ -138,9 +139,9 @@ class Skeleton:
 def body_twists(
     model: LinearModel, kinematics: Kinematics | None, shape: Array, bodies: Sequence[str], inputs: Array | None = None
 ) -> dict[str, Array]:
-    """Twists (6,) of the bodies in a shape (n,) of the model's coordinates, under `inputs` (m,) if there are any (first design).
+    """Compute the twists (6,) of bodies for a shape (n,) of the model's coordinates and `inputs` (m,), if any (first design of a batch).
 
-    With a model of only the platform, the other bodies move by the ideal kinematics.
+    If the model has only the platform, the other bodies move by the ideal kinematics.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -166,7 +167,7 @@ def body_twists(
 def mode_motions(
     model: LinearModel, kinematics: Kinematics | None, found: Modes, bones: Skeleton, count: int, *, about: str = ""
 ) -> Iterator[Motion]:
-    """The lowest modes, mass-normalised, and higher platform modes; remarks end with `about`."""
+    """Yield the `count` lowest modes, mass-normalised, and all higher platform modes as motions; remarks end with `about`."""
     frequencies, shapes = first_design(found.frequencies, 1), first_design(found.shapes, 2)
     last = max((*found.platform, -1)) + 1
     for index in range(min(len(found.names), max(count, last))):
@@ -190,7 +191,7 @@ def _energy(model: LinearModel, motion: Array, inputs: Array | None = None) -> d
 
 
 class Bearing:
-    """Utilisation of links of a stage, if their sections, their limits and the model's forces in them are known."""
+    """Computation of the stress utilisation of links, if their sections and limits and the forces in the model are known."""
 
     def __init__(self, mechanism: Mechanism, model: LinearModel) -> None:
         known = {channel.name for channel in model.outputs}
@@ -199,11 +200,11 @@ class Bearing:
         self._model = model
 
     def at(self, shape: Array, inputs: Array | None = None) -> dict[str, float] | None:
-        """Utilisation by link in a shape (n,) of the model's coordinates under `inputs` (m,) only; `None` if unknown."""
+        """Compute the utilisation by link for a shape (n,) of the model's coordinates and `inputs` (m,); `None` if unknown."""
         return self.of_all(shape[:, None], None if inputs is None else inputs[:, None])[0]
 
     def of_all(self, shapes: Array, inputs: Array | None = None) -> list[dict[str, float] | None]:
-        """The same for shapes (n, k) under inputs (m, k), all at once."""
+        """Compute the utilisation by link for k shapes (n, k) and inputs (m, k)."""
         if not self._links or not shapes.shape[1]:
             return [None] * shapes.shape[1]
         rows = self._model.output_index(tuple(f"{link}.{force}" for link in self._links for force in FORCES))
@@ -215,7 +216,7 @@ class Bearing:
         return [dict(zip(self._links, each, strict=True)) for each in shares.tolist()]
 
     def most(self, actuator: str) -> float | None:
-        """The stroke [m] from zero to its farther end, if it is known."""
+        """Return the stroke limit [m] of an actuator that is farther from zero; `None` if unknown."""
         if self._limits is None or actuator not in self._limits.actuators:
             return None
         place = self._limits.actuators.index(actuator)
@@ -223,9 +224,9 @@ class Bearing:
 
 
 def stroke_motions(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None, bones: Skeleton) -> Iterator[Motion]:
-    """Motions for a micrometre of each actuator's stroke, a newton of its force or an ampere of its current; all others are fixed.
+    """Yield motions for a unit input of each actuator (1 um, 1 N or 1 A); all other actuators have zero input.
 
-    Their stress is that of the whole stroke from its middle or bias.
+    Their stress is for the full stroke from its middle or bias.
     """
     names, bearing = model.actuators, Bearing(mechanism, model)
     columns = model.input_index(names)
@@ -247,7 +248,7 @@ def stroke_motions(mechanism: Mechanism, model: LinearModel, kinematics: Kinemat
 
 
 def axis_motions(kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
-    """Ideal motions of the platform by a micrometre or a microradian along each of its coordinates, and the strokes for them."""
+    """Yield ideal motions of the platform by 1 um or 1 urad along each of its coordinates, with the required strokes."""
     bodies, strokes = first_design(kinematics.bodies, 2), first_design(kinematics.actuation, 2)
     rows = {name: place for place, name in enumerate(kinematics.body_coordinates)}
     for place, coordinate in enumerate(kinematics.coordinates):
@@ -265,9 +266,9 @@ def axis_motions(kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
 
 
 def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None, bones: Skeleton) -> Iterator[Motion]:
-    """Static deflections under own weight, payloads and specified forces, actuators fixed; causes without any are left out.
+    """Yield static deflections under own weight, payloads and specified forces, actuators fixed; loads without effect are left out.
 
-    Raises `DesignError` if a part without support would fall.
+    Raises `DesignError` if a part has no support against a load.
     """
     bearing = Bearing(mechanism, model)
     for name, load in dead_loads(mechanism, model).items():
@@ -279,9 +280,9 @@ def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics
 
 
 def drift_motions(mechanism: Mechanism, model: LinearModel, bones: Skeleton) -> Iterator[Motion]:
-    """Motions of the bodies per kelvin, or per kelvin a metre along an axis, actuators fixed; their expansion is not drawn.
+    """Yield thermal motions of the bodies for 1 K of warming, and for 1 K/m along each axis, actuators fixed.
 
-    Raises `DesignError` for unknown expansion.
+    The thermal expansion of the bodies is not drawn. Raises `DesignError` for unknown expansion coefficients.
     """
     found = drift(mechanism, model)
     for place, (name, label) in enumerate(zip(FIELDS, _WARMER, strict=True)):

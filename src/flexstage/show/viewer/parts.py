@@ -1,4 +1,4 @@
-"""Drawn entries: name, unit, address in the design, and data as text."""
+"""Description of drawn parts for the viewer: name, unit, address in the design file, and data as text."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ Fact = tuple[str, str]
 
 @dataclass(frozen=True)
 class DrawnEntry:
-    """A drawn entry: `what` it is, its `unit`, its `address` in a design file, its `line` there.
+    """A drawn part, body, gauge or ground: `what` is its kind, `unit` the instance it belongs to.
 
-    `facts` are pairs of a name and a value with its unit.
+    `address` and `line` locate it in the design file. `facts` are pairs of a name and a value with its unit of measurement.
     """
 
     name: str
@@ -39,7 +39,7 @@ class DrawnEntry:
 
 
 class Describer:
-    """Describes drawn entries by name; data of a part with several links are computed once."""
+    """Builder of the descriptions of drawn entries by name; data of a part with several links are computed once."""
 
     def __init__(self, mechanism: Mechanism, assembly: Assembly, lines: Mapping[str, int]) -> None:
         self._mechanism = mechanism
@@ -52,7 +52,7 @@ class Describer:
         self._facts: dict[int, tuple[Fact, ...]] = {}
 
     def thing(self, name: str, kind: Kind, first: int, second: int) -> DrawnEntry:
-        """The entry of that name in scene and description, and the numbers of the bodies that it joins."""
+        """Describe the drawn entry of this name; `first` and `second` are the numbers of the bodies that it joins."""
         what, address, facts = self._description(name)
         unit = name.rpartition("/")[0]
         line = line_of(address, self._lines) if address else None
@@ -95,7 +95,7 @@ class Describer:
 
 
 def part_facts(record: object) -> Iterator[Fact]:
-    """The scalar numbers of a description, under the names of their keys; positions and matrices are left out."""
+    """Yield the scalar numbers of a part or other record, with the names of their keys; positions and matrices are left out."""
     for address, value, node in node_of(type(record)).numbers(record):
         if "." not in address or address.startswith("profile."):
             form = field_unit(node.quantity)

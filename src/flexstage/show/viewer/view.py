@@ -25,8 +25,8 @@ _STYLE = (
 class View(CheckedFields):
     """An interactive stage with its motions: notebooks show it, `save` writes it as a self-contained page.
 
-    `motion` is the first one shown, `height` that of its frame in a notebook, in pixels; `picture` (HTML) replaces it
-    in print and without WebGL.
+    `motion` is the first motion shown. `height` is the height of the frame in a notebook, in pixels. `picture` (HTML) replaces the view in
+    print and without WebGL.
     """
 
     data: StageData = field(repr=False)
@@ -36,14 +36,14 @@ class View(CheckedFields):
 
     @property
     def html(self) -> str:
-        """The page: one file, nothing loaded, equal bytes for equal stages."""
+        """HTML page of the view: one file, nothing loaded, equal bytes for equal stages."""
         name = escape(self.data.name)
         head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>{name}</title>'
         body = f"<main><h1>{name}</h1>{fragment(self.data, motion=self.motion, instead=self.picture)}</main>"
         return f'<!doctype html><html lang="en"><head>{head}<style>{_STYLE}</style></head><body>{body}</body></html>\n'
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the page, completely or not at all."""
+        """Write the page to a file, completely or not at all; returns the path."""
         return write(path, self.html)
 
     def _repr_html_(self) -> str:
@@ -52,12 +52,12 @@ class View(CheckedFields):
 
 @check_arguments
 def view(mechanism: Mechanism, *, motion: str = _FIRST) -> View:
-    """Show the moving stage of a description, of the first design of a batch.
+    """Show the moving stage of a description (first design of a batch).
 
-    It begins with `motion`: "stroke B1", "axis x", "deflection own weight", or, by default, "mode 1" (undeformed without one). Modes,
-    unit strokes and deflections belong to the lumped model, motions of the platform to the ideal one. Missing parts are left out,
-    with the reason in the viewer. Motions are small ones, drawn exaggerated by the displayed factor. Raises `DesignError` if the stage
-    cannot be drawn.
+    The view starts with `motion`: "stroke B1", "axis x", "deflection own weight", or by default "mode 1" (undeformed without modes). Modes,
+    unit strokes and deflections are computed with the lumped model, motions of the platform with the ideal model. Missing motions are left
+    out, with the reason in the viewer. Small motions are magnified by the displayed factor. Raises `DesignError` if the stage cannot be
+    drawn.
 
     >>> import flexstage as fs
     >>> fs.view(fs.case("parallelogram")).html[:15]
@@ -71,7 +71,7 @@ def view(mechanism: Mechanism, *, motion: str = _FIRST) -> View:
 
 
 def view_of(mechanism: Mechanism, data: StageData, motion: str = _FIRST) -> View:
-    """The view of a stage with known data, with the stage's picture."""
+    """Return the view of a stage whose viewer data are known, with the stage's picture."""
     from flexstage.show.notebook import to_html  # loads matplotlib
 
     return View(data, motion, picture=to_html(mechanism))

@@ -1,1 +1,1 @@
-"""Solids in files for other programs: STEP, VTU, GLB."""
+"""Export of solids to files for other programs: STEP, VTU, GLB."""

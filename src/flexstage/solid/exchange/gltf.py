@@ -1,6 +1,7 @@
 """GLB files (glTF 2.0, binary): the surface of a stage, a coloured node for each body or link, motions as animated morph targets.
 
-Metres; the stage's z is glTF's y (up). Every node has one morph target for each motion; its animation is a sine over one second.
+Lengths are in metres; the stage's z axis is glTF's y axis (up). Every node has one morph target for each motion, animated by a sine with
+a period of one second.
 """
 
 from __future__ import annotations
@@ -39,7 +40,10 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """The surface of a body or link: `vertices` (v, 3) [m] in the stage's frame, `triangles` (t, 3), `shifts` (k, v, 3) by the motions."""
+    """Surface of a body or link: `vertices` (v, 3) [m] in the stage's frame, `triangles` (t, 3), displacements `shifts` (k, v, 3) [m].
+
+    The k displacements belong to the motions.
+    """
 
     vertices: Array
     triangles: Array
@@ -48,9 +52,9 @@ class Surface:
 
 
 def surfaces(placed: Sequence[Placed], motions: Sequence[Motion]) -> Mapping[str, Surface]:
-    """The surface of every elastic body and link of a stage by name; rigid bodies without outlines have none.
+    """Return the surface of every elastic body and link of a stage by name; rigid bodies without outlines have no surface.
 
-    Shifts are scaled so that the largest of each motion is 5 % of the diagonal of the box around the stage.
+    Displacements are scaled: the largest displacement of each motion is 5 % of the diagonal of the box around the stage.
 
     >>> surfaces([], [])
     {}
@@ -80,7 +84,7 @@ def _split_surface(item: Placed, vertices: Array, shifts: Array) -> dict[str, Su
 
 
 def gltf(stage: str, shown: Mapping[str, Surface], motions: Sequence[Motion]) -> bytes:
-    """The GLB file of a stage's surfaces with one animation for each motion.
+    """Write the bytes of a GLB file with the surfaces `shown` of a stage, and one animation for each motion.
 
     Bodies have different colours, links are grey. Normals are omitted, so viewers shade every triangle flat.
 

@@ -1,4 +1,4 @@
-"""Grids: a component's mesh as quadratic tetrahedra for other programs, made in a separate process."""
+"""Grids for other programs: the mesh of a component as quadratic tetrahedra, made in a separate process."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Quadratic tetrahedra: `points` (p, 3) [m], `cells` (c, 10) in VTK's order, and the number of the piece (c,) they belong to."""
+    """Grid of quadratic tetrahedra: `points` (p, 3) [m], `cells` (c, 10) in VTK's order; `owner` (c,) is the number of a cell's piece."""
 
     points: Array
     cells: Array
@@ -33,19 +33,19 @@ class Grid:
 
 @dataclass(frozen=True, eq=False)
 class Gridding(ComponentJob):
-    """A component to mesh as a grid."""
+    """Job that meshes a component as a grid, in a separate process."""
 
     fineness: Fineness
 
     def work(self, call: Call) -> Grid:
-        """The grid."""
+        """Mesh the component and return the grid."""
         from flexstage.solid.fea.meshing.mesh import mesh_component
 
         return grid(mesh_component(self.component, self.fineness, call.report, call.attempt))
 
 
 def grid(mesh: PieceMesh) -> Grid:
-    """A mesh's tetrahedra with mid-edge points on the curved geometry.
+    """Convert a mesh to a grid of quadratic tetrahedra, with mid-edge points on the curved geometry.
 
     >>> import ngsolve
     >>> from netgen import occ

@@ -1,4 +1,4 @@
-"""Reduced matrices of one solid of a stage in a file, as a part with ports for theory and other programs."""
+"""Export of the reduced matrices of one solid of a stage, as a part with ports for theory and other programs."""
 
 from __future__ import annotations
 
@@ -40,13 +40,17 @@ def export_superelement(
 ) -> Superelement:
     """Reduce one solid of a stage by finite elements, write its matrices as an NPZ file, and return the part defined by them.
 
-    The solid is that of the body or link of this `name`, with all parts of the same component (see `fea.component`). Its ports are the end
-    faces of links to other components: the ground, rigid bodies, stacks, other units. Each remains plane and is named after the link
-    (`left`, or `left-platform` if the link ends on two of them). Its frame is at the middle of the face, in the axes of the drawing:
-    those of the stage, or of the unit. Stiffness `K` and mass `M` are in SI over the ports' twists, then inner coordinates. These are the
-    `reduction.modes` lowest modes with all ports fixed, and the static response to wrenches on its bodies and to the inertia of the ports'
-    motions, which replaces the omitted modes. Raises `DesignError` as `model` does; for an unknown name; for fewer than two ports; and for
-    a stack, because the matrices have no stroke.
+    The solid contains the body or link of this `name` and all parts of the same component (see `fea.component`). Its ports are the end
+    faces of links to other components: the ground, rigid bodies, stacks, other units. A port remains plane and has the name of its link
+    (`left`, or `left-platform` if both ends of the link are ports). The frame of a port is at the middle of the face. Its axes are
+    those of the stage, or of the unit if the solid belongs to a unit.
+
+    Stiffness `K` and mass `M` are in SI units. Their coordinates are the ports' twists, then inner coordinates: the `reduction.modes`
+    lowest modes with all ports fixed, and static responses that replace the omitted modes. These are the responses to wrenches on the
+    bodies and to the inertia of the ports' motions.
+
+    Raises `DesignError` for the errors of `model`, for an unknown name, for fewer than two ports, and for a stack, because the matrices
+    have no stroke.
     """
     target = Path(path)
     if target.suffix != ".npz":

@@ -21,7 +21,7 @@ _COLOURS: tuple[Colour, ...] = (
 
 
 def palette(names: Iterable[str]) -> Mapping[str, Colour]:
-    """A colour for every distinct name, in order; repeated after ten names.
+    """Assign a colour to every distinct name, in order; colours repeat after ten names.
 
     >>> colours = palette(["steel", "stack", "steel"])
     >>> list(colours), colours["steel"] == colours["stack"]

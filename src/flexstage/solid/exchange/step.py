@@ -1,6 +1,7 @@
 """STEP files: a stage as one assembly of named solids, with materials, densities and colours (ISO 10303-21, AP214; lengths in mm).
 
-The CAD kernel writes every solid separately; here they become parts of one assembly, each a product with its address as name.
+The CAD kernel writes every solid separately. This module combines the solids as parts of one assembly; the name of each part is its
+address in the design.
 """
 
 from __future__ import annotations
@@ -86,7 +87,7 @@ _PLACE = 5
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A solid of the file [mm]: `name` is its address (`B1/front`, a body's name; `platform/steel` where a body has several materials)."""
+    """A solid of the STEP file, in mm; `name` is its address: a link (`B1/front`) or body, with the material if a body has several."""
 
     name: str
     shape: occ.TopoDS_Shape
@@ -95,7 +96,7 @@ class Part:
 
 
 def stage_parts(stage: Stage) -> tuple[Part, ...]:
-    """The solids of a stage: one for each link, one for each body (and material), the ground's outlines separately.
+    """Return the solids of a stage: one for each link, one for each body and material, one for each outline of the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [part.name for part in stage_parts(stage_pieces(parallelogram()))]
@@ -113,7 +114,7 @@ def stage_parts(stage: Stage) -> tuple[Part, ...]:
 
 
 def step(mechanism: Mechanism) -> bytes:
-    """The STEP file of a stage as described.
+    """Write the bytes of the STEP file of a stage in its undeformed configuration.
 
     Raises `DesignError` with the names of all links without a shape, and for a stage without any shape.
 
@@ -132,7 +133,7 @@ def _fuse(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
 
 
 def step_text(name: str, parts: Sequence[Part]) -> str:
-    """Parts as the text of a STEP file: one product each, all placed in an assembly of this name.
+    """Write parts as the text of a STEP file: one product each, all placed in an assembly of this name.
 
     >>> step_text("nothing", ()).splitlines()[0]
     'ISO-10303-21;'
@@ -173,7 +174,7 @@ def _renumbered(entities: Mapping[int, str], offset: int) -> Iterator[str]:
 
 
 def quote(text: str) -> str:
-    r"""A string of a STEP file: quotes doubled, other than ASCII by code.
+    r"""Quote a text for a STEP file: quotes are doubled, non-ASCII characters are written by code.
 
     >>> print(quote("d'Arc"), quote("Träger"))
     'd''Arc' 'Tr\X2\00E4\X0\ger'

@@ -1,7 +1,7 @@
 """VTU files: the meshes of all components of a stage as one unstructured grid of quadratic tetrahedra, in metres.
 
-Cells have numbers of their piece, their body or link, the material and the component; a comment at the head of the file lists the
-names of these numbers. Components do not share points at their interfaces: they are joined by coordinates, not by nodes.
+Cells have the numbers of their piece, body or link, material and component; a comment at the start of the file lists the names of these
+numbers. Components have separate points at their interfaces: they are joined by coordinates, not by nodes.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _LIMITS = Limits()
 
 @dataclass(frozen=True, eq=False)
 class StageMesh:
-    """The grids of all components in the stage's frame, and the pieces' names by number."""
+    """Mesh of a stage: grids of all components in the stage's frame, and the names of the pieces by number."""
 
     stage: Stage
     components: tuple[Component, ...]
@@ -66,7 +66,10 @@ def _place_mesh(part: Component, own: Grid, numbers: Mapping[str, int]) -> Grid:
 
 
 def vtu(mesh: StageMesh) -> bytes:
-    """The file of a stage's mesh: cell data `piece`, `body`, `material`, `component` (numbers), `young` [Pa] and `density` [kg/m^3]."""
+    """Write the bytes of the VTU file of a stage's mesh.
+
+    Cell data are the numbers `piece`, `body`, `material` and `component`, and `young` [Pa] and `density` [kg/m^3].
+    """
     pieces = [mesh.stage.pieces[name] for name in mesh.pieces]
     bodies = _number_points(piece.owner for piece in pieces)
     materials = _number_points(mesh.stage.materials[name] for name in mesh.pieces)

@@ -1,4 +1,4 @@
-"""Calibration: hinges of beam theory replaced by their 6x6 from finite elements, for FEA's accuracy in the lumped model."""
+"""Calibration: replaces hinges of beam theory by their 6x6 compliance from finite elements, for higher accuracy of the lumped model."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _LARGEST_ERROR = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Calibration(InNotebook):
-    """The computed hinges, the `parts` that replace them, and the design file's `text` with these parts."""
+    """Result of a calibration: the computed hinges, the `parts` that replace them, and the design file's `text` with these parts."""
 
     hinges: Mapping[str, SolidHinge]
     parts: Mapping[str, ComplianceMatrix]
@@ -43,7 +43,7 @@ class Calibration(InNotebook):
 
     @property
     def over_beam_theory(self) -> Annotated[Mapping[str, Array], VIEW]:
-        """By part, FEA's direct compliances over beam theory's, less one, along and about x, y, z."""
+        """Relative differences (6,) of the direct compliances by FEA and by beam theory, by part: along and about x, y, z."""
         return {
             name: np.diag(stack(self.parts[name].compliance)) / np.diag(compliance(hinge.form.part, hinge.form.material)) - 1.0
             for name, hinge in self.hinges.items()
@@ -52,10 +52,10 @@ class Calibration(InNotebook):
 
 @check_arguments
 def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
-    """Compute the 6x6 of every distinct hinge in a design file's text and insert them; comments are kept.
+    """Compute the 6x6 compliance of every distinct hinge in a design file's text and insert the results; comments are kept.
 
-    Raises `DesignError` for hinges that are calibrated already, have overrides in single instances, are members of a compound, or whose
-    6x6 FEA could not compute.
+    Raises `DesignError` for hinges that are calibrated already, have overrides in single instances or are members of a compound. Raises it
+    also if FEA cannot compute a hinge with sufficient accuracy.
     """
     mechanism = loads(text, where=where)
     require(_refuse_calibrated(mechanism))
@@ -68,10 +68,10 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
 
 
 def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, ComplianceMatrix]:
-    """The computed hinges as compliance matrices, with the mass and the intended DOFs of the drawn ones.
+    """Convert computed hinges to parts with compliance matrices, with the mass and the intended DOFs of the drawn hinges.
 
-    The 6x6 has the symmetry of the drawn hinge. A DOF whose compliance FEA cannot separate from that of the adjacent blocks
-    keeps beam theory's. Raises `DesignError` for a 6x6 with an error above 10 %.
+    The matrix has the symmetry of the drawn hinge. If FEA cannot separate the compliance of a DOF from the adjacent blocks, the value of
+    beam theory is used. Raises `DesignError` if the error of a matrix is unknown or above 10 %.
 
     >>> stand_ins({})
     {}
@@ -103,9 +103,9 @@ def _doubt(name: str, error: float | None) -> Finding:
 
 
 def substitute_parts(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:
-    """The stage with the computed hinges as compliance matrices, except instances with an override and members of compounds.
+    """Replace the hinges of a stage by their computed compliance matrices, except members of compounds.
 
-    Raises `DesignError` for overrides of a shared hinge.
+    Raises `DesignError` for a link that overrides a shared part.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> substitute_parts(double_triangle(), {}) == double_triangle()

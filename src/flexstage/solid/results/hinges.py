@@ -1,7 +1,7 @@
-"""The 6x6 of every distinct hinge of a stage, as an isolated solid with the roots it has in the stage.
+"""Compliance (6x6) of every distinct hinge of a stage, computed for the isolated solid with the roots that it has in the stage.
 
-The roots are part of a hinge: models with rigid bodies have no other compliance of a block around a hinge. A part used with different
-roots is several hinges.
+A root is the block at which an end of the hinge is attached. The roots are part of the hinge, because models with rigid bodies have no
+other compliance of the blocks. A part used with different roots is several hinges.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 _MOST_STUB = 0.9
 
 Hinges: TypeAlias = Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]]
-"""Computes hinges by name: directly, or from a cache with progress reports."""
+"""Function that computes hinges by name: directly, or from a cache with progress reports."""
 
 
 @dataclass(frozen=True, eq=False)
 class DistinctHinge:
-    """A distinct hinge: its `shared` part, its form, and the equal drawn `links`."""
+    """A distinct hinge: the name of its part, `shared` by links, its form, and the drawn `links` that are equal to it."""
 
     shared: Annotated[str, INNER]
     form: Annotated[HingeForm, INNER]
@@ -48,44 +48,44 @@ class DistinctHinge:
 
     @property
     def roots(self) -> Annotated[Roots, VIEW]:
-        """Its ends that grow on blocks."""
+        """Roots: the ends that are attached to blocks."""
         return self.form.roots
 
 
 @dataclass(frozen=True, eq=False)
 class SolidHinge(DistinctHinge, InNotebook):
-    """A distinct hinge and its 6x6 about its centre in the link frame, between the ends of its arcs."""
+    """A distinct hinge with its computed compliance about the centre, in the link frame, between the ends of its arcs."""
 
     found: Annotated[HingeSolid, INNER]
 
     @property
     def compliance(self) -> Annotated[Matrix, VIEW]:
-        """C (6, 6) with names and units."""
+        """Compliance matrix C (6, 6) with names and units."""
         return Matrix(self.found.compliance, COMPONENTS, FORCES, ratio_units(TWIST_UNITS, WRENCH_UNITS))
 
     @property
     def stiffness(self) -> Annotated[Matrix, VIEW]:
-        """K (6, 6) with names and units."""
+        """Stiffness matrix K (6, 6) with names and units."""
         return Matrix(self.found.stiffness, FORCES, COMPONENTS, ratio_units(WRENCH_UNITS, TWIST_UNITS))
 
     @property
     def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
-        """Whether each direct compliance can be separated from that of the adjacent stubs: they have at most 90 % of the whole.
+        """Whether each direct compliance is separable from the compliance of the adjacent stubs: stubs have at most 90 % of the sum.
 
-        In torsion a wide notch is stiffer than its stubs, which are subtracted as beams with restrained warping (Vlasov). This is a small
-        difference of two larger numbers, for which beams are too inaccurate.
+        The solid has stubs next to the hinge, whose compliance as beams with restrained warping (Vlasov) is subtracted. In torsion a wide
+        notch is stiffer than its stubs. The result is then a small difference of two large numbers, for which beams are too inaccurate.
         """
         whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))
         return tuple(bool(value) for value in own >= (1.0 - _MOST_STUB) * whole)
 
     @property
     def error(self) -> Annotated[float | None, RATIO]:
-        """Estimated relative error of any entry of the compliance at the hinge's end."""
+        """Estimated relative error of the compliance at the hinge's end, for any entry; null if unknown."""
         return self.found.error if np.isfinite(self.found.error) else None
 
     @property
     def errors(self) -> Annotated[Array | None, RATIO]:
-        """Estimated relative errors of the direct compliances (6,) about the centre."""
+        """Estimated relative errors (6,) of the direct compliances about the centre; null if unknown."""
         if self.error is None:
             return None
         return np.maximum(self.error, np.where(np.isfinite(self.found.changes), self.found.changes, 0.0))
@@ -97,12 +97,12 @@ class SolidHinge(DistinctHinge, InNotebook):
 
     @property
     def order(self) -> Annotated[int, VIEW]:
-        """Order of the elements of the last solve."""
+        """Polynomial order of the elements in the last solution."""
         return self.found.order
 
     @property
     def elements(self) -> Annotated[int, VIEW]:
-        """Number of elements."""
+        """Number of finite elements."""
         return self.found.elements
 
     @property
@@ -112,7 +112,10 @@ class SolidHinge(DistinctHinge, InNotebook):
 
 
 def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS) -> Hinges:
-    """Hinges computed to an accuracy with elements of at most an `order` (never less than three), each once, in parallel, by `ways`."""
+    """Return a function that computes hinges to a relative accuracy, with elements of at most this `order`, but at least three.
+
+    `ways` states cache, progress and processes. Every hinge is computed once, in parallel.
+    """
     required = accuracy_of(accuracy, order)
 
     def compute(forms: Mapping[str, HingeForm]) -> Mapping[str, HingeSolid]:
@@ -122,7 +125,7 @@ def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDA
 
 
 def accuracy_of(accuracy: float, order: int | None) -> Accuracy:
-    """Requirements of hinges for a stage's accuracy, with elements of at most an order.
+    """Return the accuracy requirements of hinges: relative error, and orders of the elements up to `order`, but at least three.
 
     >>> accuracy_of(0.01, 2).orders
     (2, 3)
@@ -131,13 +134,14 @@ def accuracy_of(accuracy: float, order: int | None) -> Accuracy:
 
 
 STANDARD_HINGES = hinges()
-"""To 1 %, with the cache of the user."""
+"""Function that computes hinges to 1 %, with the user's cache."""
 
 
 def distinct_hinges(mechanism: Mechanism) -> dict[str, DistinctHinge]:
-    """Every distinct hinge of a stage.
+    """Find every distinct hinge of a stage, by name.
 
-    Its name is that of its part; `part-link` if the part has several roots; for an instance with an override, its link's name.
+    The name is the name of the part, or `part-link` if the part is used with several roots. For an instance with an override it is the
+    name of the link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = distinct_hinges(double_triangle())
@@ -175,9 +179,9 @@ def _name(shape: Mechanism, links: list[PlacedLink], everything: list[list[Place
 
 @check_arguments
 def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, SolidHinge]:
-    """Compute the 6x6 of every distinct drawn hinge.
+    """Compute the 6x6 compliance of every distinct drawn hinge.
 
-    Raises `DesignError` if a stage has none, and for kinds without a shape.
+    Raises `DesignError` if the stage has no hinge with a shape.
 
     >>> solid_hinges(Mechanism("bare"))
     Traceback (most recent call last):
@@ -203,12 +207,12 @@ def require_hinges(found: Mapping[str, DistinctHinge]) -> None:
 
 
 def as_drawn(hinge: DistinctHinge, solved: HingeSolid) -> SolidHinge:
-    """The result of a form from `turned_forms`, transformed to the drawn orientation."""
+    """Transform the result for a form from `turned_forms` to the orientation of the drawn hinge."""
     return SolidHinge(hinge.shared, hinge.form, hinge.links, _turn_back(solved, hinge.form))
 
 
 def turned_forms(found: Mapping[str, DistinctHinge]) -> dict[str, HingeForm]:
-    """The computed forms of hinges: with a single root always at the second end.
+    """Return the forms of hinges to compute: a hinge with a single root is mirrored, if necessary, to have it at its second end.
 
     >>> turned_forms({})
     {}

@@ -1,4 +1,4 @@
-"""Modes by finite elements for a comparison: computed if requested, else from the cache if the stage is there completely."""
+"""Modes by finite elements for a comparison: computed if requested, else from the cache if it has all components of the stage."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from flexstage.solid.results.resolution import DEFAULT, HIGHEST, Resolution, con
 
 @check_arguments
 def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> FeaModes:
-    """The modes of a stage as a solid, to the required accuracy. Raises `DesignError` as the solid model does."""
+    """Compute the modes of a stage as a solid, to the required accuracy `asked`. Raises `DesignError` for the errors of `read_solid`."""
 
     def work(way: Reduction) -> FeaModes:
         model = read_solid(mechanism, way, reduce).model
@@ -36,7 +36,7 @@ def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids 
 
 
 def fea_modes_from_cache(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
-    """The modes of a stage as a solid from the cache, at the highest order with all components; `None` if there is none.
+    """Return the modes of a stage as a solid from the cache, at the highest order for which the cache has all components, or `None`.
 
     >>> from pathlib import Path
     >>> from flexstage.cases.parallelogram import parallelogram

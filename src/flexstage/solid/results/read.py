@@ -1,4 +1,4 @@
-"""Solids of studies: a stage, reduced from a cache, with progress, or directly."""
+"""Solid model of a stage: reduction of its components, directly or from a cache with progress reports."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from flexstage.solid.fea.meshing.fineness import Reduction
 from flexstage.solid.fea.solver.assemble import Placed, linear_model, place_parts
 
 Solids: TypeAlias = Callable[[Mechanism, Reduction], Parts]
-"""Reduces the components of a stage."""
+"""Function that reduces the components of a stage."""
 
 STANDARD_WAYS = Ways()
 
 
 @dataclass(frozen=True, eq=False)
 class SolidRead:
-    """A stage read as solids: its linear model, and the components with the operators of their fields."""
+    """Solid model of a stage: its linear model, and the placed components with the operators of their displacement fields."""
 
     mechanism: Mechanism
     model: LinearModel
@@ -46,7 +46,7 @@ class SolidRead:
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Unknowns of every distinct component, by the content for raised orders."""
+        """Number of unknowns of every distinct component, by the key that selects components for a raised order."""
         return {content_in_stage(item.component): item.element.freedoms for item in self._distinct}
 
     @property
@@ -55,7 +55,7 @@ class SolidRead:
 
 
 def solids(ways: Ways = STANDARD_WAYS) -> Solids:
-    """A function that checks outlines and reduces components by `ways`: from a cache, with progress.
+    """Return a function that checks outlines and reduces components; `ways` states cache, progress and processes.
 
     >>> solids()(Mechanism("nothing"), Reduction())
     ()
@@ -64,7 +64,7 @@ def solids(ways: Ways = STANDARD_WAYS) -> Solids:
 
 
 def remember(reduce: Solids) -> Solids:
-    """The same function with its results cached: of two known orders, parts of either are combined without a new computation.
+    """Return the same function with its results stored. If results of two orders are known, their parts are combined as required.
 
     >>> remember(solids())(Mechanism("nothing"), Reduction())
     ()
@@ -86,7 +86,7 @@ def remember(reduce: Solids) -> Solids:
 
 
 STANDARD_SOLIDS = solids()
-"""With the cache of the user."""
+"""Function that reduces components, with the user's cache."""
 
 STANDARD_REDUCTION, _CACHE = Reduction(), Cache()
 
@@ -100,13 +100,14 @@ def model(
     progress: Progress | None = None,
     memory: float | None = None,
 ) -> LinearModel:
-    """Read a stage as 3-D elastic solids: finite elements of each distinct component, reduced by Craig and Bampton's method and joined.
+    """Model a stage as 3-D elastic solids: finite elements of each distinct component, reduced by the Craig-Bampton method and joined.
 
-    Names of inputs and outputs equal those of `lumped`. Every component is drawn, meshed and reduced once, in a separate process, and
-    stored in the `cache` (`None`: not used). `progress` receives the step, the fraction and the seconds left; `memory` [bytes] limits the
-    planned memory (absent: the free memory of the machine). Raises `DesignError` for links without a shape, for gaps, overlaps and slivers
-    of outlines, all by name before meshing. Also for failed meshes, insufficient memory or time, and stages with rigid-body motions.
-    Warnings report problems of the cache.
+    Names of inputs and outputs equal those of `lumped`. Every distinct component is meshed and reduced once, in a separate process, and
+    stored in the `cache` (`None`: no cache). `progress` receives the step, the fraction and the seconds left. `memory` [bytes] limits the
+    planned memory (default: the free memory of the machine).
+
+    Before meshing, raises `DesignError` with the names of links without a shape, and of gaps, overlaps and slivers of outlines. Raises it
+    also for failed meshes, insufficient memory or time, and stages with rigid-body motions. Warnings report problems of the cache.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> model(parallelogram(), memory=1e6, cache=None)
@@ -118,9 +119,10 @@ def model(
 
 
 def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidRead:
-    """Read a stage as solids; calibrated hinges as the shapes they replace.
+    """Model a stage as solids; calibrated hinges have the shapes that their matrices replace.
 
-    Raises `DesignError` for parts without a shape, for gaps, overlaps and slivers of outlines, and if the stage has a rigid-body motion.
+    `reduce` is the function that reduces the components. Raises `DesignError` for parts without a shape, for gaps, overlaps and slivers of
+    outlines, and if the stage has a rigid-body motion.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.restrict import restrict
@@ -141,7 +143,7 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> So
 
 
 def coarsen(reduction: Reduction) -> Reduction:
-    """The resolution for the error estimate: the same mesh, one order less.
+    """Return the coarser resolution for the error estimate: the same mesh, with elements one order lower.
 
     >>> coarsen(Reduction()).fineness.order
     2

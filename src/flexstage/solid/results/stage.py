@@ -1,4 +1,4 @@
-"""The whole stage as a solid: directional stiffness, modes, and the highest stress of every link over the strokes."""
+"""Results of the whole stage as a solid: directional stiffness, modes, and the highest stress of every link over the strokes."""
 
 from __future__ import annotations
 
@@ -44,11 +44,12 @@ class BodyCost:
 
 @dataclass(frozen=True, eq=False)
 class SolidStage(InNotebook):
-    """A stage by the solid model.
+    """Results of a stage by the solid model.
 
-    `statics` and `modes` are as for any model. `stress` at every link and body is the highest over all corners of the strokes from zero,
-    permanent load included (`None` without strokes or with too many corners). `worst` (N,) are the coordinates at the corner of the
-    weakest link. `blocks` (k,) is the strain-energy fraction of the bodies, rigid in other models, in each mode.
+    `statics` and `modes` are as for any model. `stress` is the highest stress at every link and body over all corners of the strokes from
+    zero, permanent load included. It is `None` without strokes or with too many corners. `worst` (N,) are the model's coordinates at the
+    corner with the highest stress of the weakest link. `blocks` (k,) is the strain-energy fraction of the bodies, which are rigid in other
+    models, in each mode.
     """
 
     statics: Annotated[Statics, Called("stiffness")]
@@ -60,12 +61,12 @@ class SolidStage(InNotebook):
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """Figures with an estimated error, in SI."""
+        """Values with an estimated error, by name in SI: stiffness and platform frequencies."""
         return _figures(self.statics, self.modes)
 
     @property
     def flexible(self) -> Array:
-        """Relative change of each frequency (k,) by the elasticity of the bodies, to first order: sqrt(1 - share) - 1."""
+        """Relative change (k,) of each frequency by the elasticity of bodies, to first order: sqrt(1 - strain-energy fraction) - 1."""
         return np.sqrt(1.0 - self.blocks) - 1.0
 
     @property
@@ -76,7 +77,7 @@ class SolidStage(InNotebook):
 
     @property
     def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
-        """The links without a shape, with the kind of their part: they have the specified stiffness and mass, as in any model."""
+        """Links without a shape, with the kind of the part; they have the specified stiffness and mass, as in any model."""
         return stated_links(expand(self.read.mechanism))
 
     @property
@@ -96,7 +97,7 @@ class SolidStage(InNotebook):
 
     @property
     def provenance(self) -> Annotated[str, VIEW]:
-        """Stage and resolution."""
+        """Digest of the stage, and resolution of the model."""
         return self.read.model.provenance
 
 
@@ -106,13 +107,13 @@ def _figures(found: Statics, modes: Modes) -> dict[str, float]:
 
 
 def stage_figures(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, float]:
-    """The figures of `solid_stage` without stress. Raises as it does."""
+    """Compute only the `figures` of `solid_stage`, without stress. Raises `DesignError` for the same errors."""
     model = read_solid(mechanism, reduction, reduce).model
     return _figures(statics(model), platform_modes(mechanism, model))
 
 
 def stiffness_figures(found: Statics) -> dict[str, float]:
-    """The platform's stiffness for comparisons: principal values in plane, and along and about the other axes [SI].
+    """Return the platform's stiffness by name [SI]: principal values in the plane, and values along and about the other axes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -131,7 +132,7 @@ def stiffness_figures(found: Statics) -> dict[str, float]:
 
 @check_arguments
 def solid_stage(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> SolidStage:
-    """Read a whole stage as a solid.
+    """Model a whole stage as a solid, and compute its stiffness, modes and stress.
 
     Raises `DesignError` for parts without a shape, outlines that do not touch, and if the stage has a rigid-body motion.
 
@@ -173,7 +174,7 @@ def _corners(read: SolidRead) -> tuple[Array, dict[str, Array]] | None:
 
 
 def worst_strokes(stage: SolidStage) -> dict[str, float]:
-    """The strokes [m] by actuator at the corner of the weakest link."""
+    """Return the strokes [m] by actuator at the corner with the highest stress of the weakest link."""
     if stage.stress is None:
         return {}
     limits = stroke_limits(stage.read.mechanism).from_zero
@@ -182,7 +183,7 @@ def worst_strokes(stage: SolidStage) -> dict[str, float]:
 
 
 def block_energy(model: LinearModel, shapes: Array) -> Array:
-    """Strain-energy fraction (k,) of the elastic bodies in shapes (N, k).
+    """Compute the strain-energy fraction (k,) of the elastic bodies in shapes (N, k).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

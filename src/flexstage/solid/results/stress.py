@@ -1,4 +1,4 @@
-"""Highest von Mises stress at every link and body of a stage read as solids, against yield."""
+"""Highest von Mises stress at every link and body of a stage modelled as solids, with safety factors."""
 
 from __future__ import annotations
 
@@ -21,15 +21,16 @@ from flexstage.solid.results.read import SolidRead
 
 SHARP_CORNERS = "At sharp inner corners the true stress has no limit: there it grows with the resolution."
 SILENT = 1e3
-"""Stress [Pa] below which it counts as zero."""
+"""Stress limit [Pa]; lower stress counts as zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class LinkStress(InNotebook):
-    """Highest von Mises stress (L,) [Pa] on the skin of links and bodies over some load cases, without stacks.
+    """Highest von Mises stress (L,) [Pa] on the surface of links and bodies over some load cases, without stacks.
 
-    fatigue limit or allowable stress if less (NaN: none is specified). At sharp inner corners the
-    true stress has no limit, and the computed one grows with the resolution.
+    `case` (L,) is the number of the load case with the highest stress. `yield_stress` (L,) [Pa] is the yield stress, or the fatigue limit
+    or allowable stress if lower (NaN: unknown). At sharp inner corners the true stress is infinite, and the computed stress grows with the
+    resolution.
     """
 
     names: tuple[str, ...]
@@ -39,40 +40,40 @@ class LinkStress(InNotebook):
 
     @property
     def safety(self) -> Annotated[Array, RATIO, Along("names"), Heading(digits=4)]:
-        """Yield over highest stress (L,)."""
+        """Safety factor (L,): yield stress over highest stress."""
         return self.yield_stress / self.highest
 
     @property
     def weakest(self) -> str:
-        """The name with the smallest safety, or with the highest stress without a known yield stress."""
+        """Name of the link or body with the smallest safety factor, or with the highest stress if no yield stress is known."""
         safety = self.safety
         return self.names[int(np.argmax(self.highest) if np.isnan(safety).all() else np.nanargmin(safety))]
 
     @property
     def peak(self) -> Annotated[float, INNER, PRESSURE, Heading("stress", digits=4)]:
-        """The highest stress of the weakest [Pa]; zero below 1 kPa."""
+        """Highest stress of the weakest link or body [Pa]; zero below 1 kPa."""
         found = self.at(self.weakest)
         return found if found >= SILENT else 0.0
 
     @property
     def least_safety(self) -> Annotated[float, INNER, RATIO, Heading("safety", digits=4)]:
-        """The safety of the weakest; NaN without stress."""
+        """Safety factor of the weakest link or body; NaN without stress."""
         return float(self.safety[self.names.index(self.weakest)]) if self.peak else np.nan
 
     def largest(self, count: int) -> LinkStress:
-        """The links and bodies with the highest stress, highest first, `count` of them at most."""
+        """Select the links and bodies with the highest stress, highest first, at most `count`."""
         order = np.argsort(-self.highest, kind="stable")[:count]
         return LinkStress(tuple(self.names[index] for index in order), self.highest[order], self.case[order], self.yield_stress[order])
 
     def at(self, name: str) -> float:
-        """Highest stress of one link or body [Pa]."""
+        """Return the highest stress of one link or body [Pa]."""
         return float(self.highest[self.names.index(name)])
 
 
 def link_stress(read: SolidRead, motion: Array, strokes: Mapping[str, Array]) -> LinkStress | None:
-    """The highest stress over k load cases: coordinates (N, k) of the model, and the corresponding strokes (k,) [m] of its inputs.
+    """Compute the highest stress of links and bodies over k load cases; `None` if only stacks have a shape.
 
-    `None` if only stacks are drawn.
+    `motion` (N, k) are the model's coordinates in the load cases; `strokes` (k,) [m] by input are the corresponding strokes.
     """
     assembly = expand(read.mechanism)
     by_link = {assembly.actuators[name]: values for name, values in strokes.items()}

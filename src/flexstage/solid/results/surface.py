@@ -1,4 +1,4 @@
-"""Surfaces of a stage read as solids, displaced and with values on them, for pictures."""
+"""Displaced surfaces of a stage modelled as solids, with values at the points, for pictures."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SHOWN = 0.06
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Triangles (t, 3) between positions (v, 3) [m] in the stage's frame, with a value (v,) at each."""
+    """Surface of triangles (t, 3) between `places` (v, 3) [m] in the stage's frame, with a value (v,) at each place."""
 
     places: Array
     triangles: Array
@@ -27,7 +27,7 @@ class Surface:
 
 
 def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
-    """The stage displaced by a mode's coordinates (N,), magnified; values: displacement relative to the largest."""
+    """Return the surfaces of a stage displaced by a mode's coordinates (N,), magnified; values are relative displacements, 0 to 1."""
     factor, largest = magnification(read, shape)
     return tuple(
         Surface(vertex_places(item, shape, factor), item.element.skin.triangles, _displacement(item, shape) / largest)
@@ -36,7 +36,10 @@ def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
 
 
 def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]) -> tuple[Surface, ...]:
-    """The stage displaced by static coordinates (N,), magnified; values: von Mises stress [Pa]. `strokes` [m] belong to them."""
+    """Return the surfaces of a stage displaced by static coordinates `motion` (N,), magnified; values are von Mises stress [Pa].
+
+    `strokes` [m] are the strokes by input for this motion.
+    """
     assembly = expand(read.mechanism)
     factor, _ = magnification(read, motion)
     by_link = {assembly.actuators[name]: np.array([value]) for name, value in strokes.items()}
@@ -49,7 +52,7 @@ def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]
 
 
 def magnification(read: SolidRead, motion: Array) -> tuple[float, float]:
-    """The magnification of a motion (N,) in a picture, and its largest displacement [m]."""
+    """Compute the magnification of a motion (N,) for a picture, and the motion's largest displacement [m]."""
     places = np.concatenate([vertex_places(item, motion, 0.0) for item in read.placed])
     size = float(np.max(places.max(axis=0) - places.min(axis=0)))
     largest = max((float(np.max(_displacement(item, motion))) for item in read.placed), default=0.0) or 1.0

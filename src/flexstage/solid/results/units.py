@@ -1,4 +1,4 @@
-"""Each distinct isolated unit as a solid: output stiffness, gain and lost motion (Table 2 of Shin & Moon), stress at the command."""
+"""Results of isolated units as solids: output stiffness, gain and lost motion (Table 2 of Shin & Moon), stress at the full stroke."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ _STEPS = 5
 
 @dataclass(frozen=True, eq=False)
 class SolidUnit(UnitOutput, InNotebook):
-    """One isolated unit by the solid model.
+    """Results of one isolated unit by the linear solid model, with its output guided along the direction and not loaded.
 
-    With its output guided along the direction and not loaded: `strokes` (k,) [m] up to the full one with `outputs` (k,) [m],
-    linear. `stress` at every link at the full stroke. `motion` (N,) are the coordinates of `read` at the full stroke, for pictures.
+    `strokes` (k,) [m] are steps up to the full stroke, with `outputs` (k,) [m]. `stress` is the stress at every link at the full stroke.
+    `motion` (N,) are the coordinates of the model `read` at the full stroke, for pictures.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -68,7 +68,7 @@ class SolidUnit(UnitOutput, InNotebook):
 
     @property
     def loss(self) -> Annotated[float, RATIO, Heading(unit="%")]:
-        """Lost share of the ideal output."""
+        """Lost motion relative to the ideal output."""
         return 1.0 - self.gain / self.ideal_gain
 
     @property
@@ -78,27 +78,27 @@ class SolidUnit(UnitOutput, InNotebook):
 
     @property
     def commands(self) -> Annotated[Array, LENGTH, Heading("commanded output", unit="um")]:
-        """Ideal outputs (k,) [m] of the strokes: the commands."""
+        """Commanded outputs (k,) [m]: the ideal outputs for the strokes."""
         return self.ideal_gain * self.strokes
 
     @property
     def outputs(self) -> Annotated[Array, LENGTH, Heading("output", unit="um")]:
-        """Outputs (k,) [m] of the strokes."""
+        """Outputs (k,) [m] for the strokes."""
         return self.gain * self.strokes
 
     @property
     def lost(self) -> Annotated[Array, INNER, LENGTH, Heading("lost motion", unit="um")]:
-        """Commands less outputs (k,) [m]; zero within rounding."""
+        """Lost motion (k,) [m]: commanded outputs less outputs; differences within rounding are zero."""
         found = self.commands - self.outputs
         return np.where(np.abs(found) < NOISE * np.abs(self.commands), 0.0, found)
 
 
 @check_arguments
 def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, SolidUnit]:
-    """Read the first instance of every placed unit with exactly one actuator on its output as an isolated solid.
+    """Model every unit that drives its output by exactly one actuator as an isolated solid, by name of the unit.
 
-    Outlines of other bodies are left out; the output is the end face of the link to the platform, kept plane. Raises
-    `DesignError` if the stage has no such unit.
+    The first instance of the unit is used. Outlines of other bodies are left out. The output is the end face of the link to the platform,
+    which remains plane. Raises `DesignError` if the stage has no such unit.
 
     >>> from flexstage.cases.registry import case
     >>> solid_units(case("bridge"))
@@ -150,7 +150,7 @@ def _full_motion(read: SolidRead, copy: str, guide: Array) -> Array:
 
 
 def full_stroke(mechanism: Mechanism, copy: str) -> float:
-    """The full stroke of an instance's stack [m].
+    """Return the full stroke of the stack of an instance [m]; NaN without a stack.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(full_stroke(double_triangle(), "B4"), 9)

@@ -1,4 +1,4 @@
-"""Verification: theory compared with finite elements for hinges, units and the whole stage, with both errors and verdicts."""
+"""Verification: comparison of theory and finite elements for hinges, units and the whole stage, with errors of both and verdicts."""
 
 from __future__ import annotations
 
@@ -65,12 +65,12 @@ _SHOWN = UnitIn("shown_unit")
 
 @dataclass(frozen=True)
 class Row:
-    """One number by theory and by FEA, SI.
+    """One figure by theory and by FEA, in SI.
 
-    `theory` is the lumped model's (for hinges beam theory's), `mapped` the paper's axial springs if they apply, `calibrated` the
-    lumped model with the hinges' FEA 6x6. `fea_error` is the estimated relative error of FEA. `calibration` names the parts of FEA origin
-    in the theory. `modal_assurance` belongs to paired modes. Absent values are unknown, for a `reason`: without `theory` and
-    `fea_error` there is no verdict.
+    `theory` is the value of the lumped model, for hinges of beam theory. `mapped` is the value of the paper's model with axial springs, if
+    it applies. `calibrated` is the value of the lumped model with hinges from FEA. `fea_error` is the estimated relative error of FEA.
+    `calibration` names the parts in the theory that are from FEA. `modal_assurance` is the assurance of paired modes. Absent values are
+    unknown, for a `reason`. A verdict requires `theory` and `fea_error`.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -92,17 +92,17 @@ class Row:
 
     @property
     def shown_unit(self) -> str:
-        """Unit of tables: a loss is shown in per cent."""
+        """Unit for tables: the SI unit, or per cent for a loss."""
         return "%" if self.figure == "loss" else self.unit
 
     @property
     def difference(self) -> Annotated[float | None, RATIO, Heading("theory error", digits=3, unit="%")]:
-        """Theory over FEA less one."""
+        """Relative difference: theory over FEA, less one."""
         return None if self.theory is None else _relative(self.theory, self.fea)
 
     @property
     def calibrated_difference(self) -> Annotated[float | None, RATIO, Heading("calibrated error", digits=3, unit="%")]:
-        """Relative difference of calibrated theory and FEA."""
+        """Relative difference: calibrated theory over FEA, less one."""
         return None if self.calibrated is None else _relative(self.calibrated, self.fea)
 
     @property
@@ -112,7 +112,7 @@ class Row:
 
     @property
     def trust(self) -> Annotated[TheoryCheck | None, VIEW, Heading(absent="no verdict", mark=_GRADES.__getitem__)]:
-        """The more reliable of them; absent without a verdict."""
+        """Verdict: the model that is reliable for this figure; null without a verdict."""
         if self.calibration:
             return TheoryCheck.DEPENDENT
         if self.difference is None or self.fea_error is None:
@@ -135,7 +135,7 @@ def _relative(value: float, reference: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Verification(InNotebook):
-    """The rows of a verification, and the solid results behind them; `reasons` for missing groups."""
+    """Result of a verification: rows with the compared figures, the results of the solid model, and `reasons` for missing groups."""
 
     mechanism: Mechanism
     rows: tuple[Row, ...]
@@ -146,12 +146,12 @@ class Verification(InNotebook):
 
     @property
     def groups(self) -> dict[str, tuple[Row, ...]]:
-        """The rows by subject, in order."""
+        """Rows by group: hinges, units, stage."""
         return groups(self.rows)
 
     @property
     def headline(self) -> str:
-        """Largest differences between theory and finite elements in the widest compared group, and the number of agreeing figures."""
+        """Text on the last group, the stage: largest differences of theory and finite elements, and number of agreeing figures."""
         name, rows = list(self.groups.items())[-1]
         good = sum(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows)
         words = departures(rows)
@@ -159,17 +159,17 @@ class Verification(InNotebook):
 
     @property
     def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
-        """The links without a shape, with the kind of their part: theory and FEA both use the specified stiffness and mass."""
+        """Links without a shape, with the kind of the part; theory and FEA both use the specified stiffness and mass."""
         return stated_links(expand(with_drawn_parts(self.mechanism)))
 
     @property
     def verdicts(self) -> Annotated[Mapping[str, str], VIEW]:
-        """For every group, a verdict on the models as text."""
+        """Verdict on the models as text, by group."""
         return {name: verdict(rows) for name, rows in self.groups.items()}
 
 
 def groups(rows: Iterable[Row]) -> dict[str, tuple[Row, ...]]:
-    """Rows by subject, in order.
+    """Collect rows by group, in order of their first occurrence.
 
     >>> groups(())
     {}
@@ -190,9 +190,9 @@ def verify(
 ) -> Verification:
     """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
 
-    Theory is the description unchanged; FEA the shapes of its drawing. Hinges come first, as they are fast; `tell` is called with the
-    rows of hinges, stage and units when they are known. Without `reduce` and `compute`, the needed jobs run in
-    one queue. Raises `DesignError` if the stage cannot be read as a solid.
+    Theory uses the description unchanged; FEA uses the drawn shapes. Hinges are computed first, then the stage, then units. The function
+    `tell` is called with the rows of each group when they are known. Without `reduce` and `compute`, all jobs run in one queue. Raises
+    `DesignError` if the stage cannot be modelled as a solid.
     """
     if reduce is STANDARD_SOLIDS and compute is STANDARD_HINGES:
         with Pool() as pool:
@@ -223,7 +223,7 @@ def _ignore(_rows: tuple[Row, ...]) -> None:
 
 
 def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Converged[SolidStage]:
-    """The whole stage as a solid, to the required accuracy."""
+    """Compute the results of the whole stage as a solid, to the required accuracy `asked`."""
     again = remember(reduce)
     return converge(
         lambda way: solid_stage(mechanism, way, again),
@@ -236,10 +236,10 @@ def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
 
 @check_arguments
 def required_values(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Estimate:
-    """Compute the values of a stage's requirements by finite elements, with estimated errors. Unknown ones are left out.
+    """Compute the values of a stage's requirements by finite elements, with estimated errors. Unknown values are left out.
 
-    Strokes, stresses and frequencies follow from the reduced solid model as from the lumped one; stress concentration at fillets is that of
-    the hinges. Raises `DesignError` if the stage cannot be read as a solid.
+    Strokes, stresses and frequencies are computed from the reduced solid model in the same way as from the lumped model. Stress at fillets
+    is computed with the stress concentration factors of hinges. Raises `DesignError` if the stage cannot be modelled as a solid.
     """
     again = remember(reduce)
     found = converge(
@@ -251,9 +251,10 @@ def required_values(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: S
 def units_solid(
     mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS, *, bare: bool = False
 ) -> Converged[dict[str, SolidUnit]]:
-    """Every distinct isolated unit as a solid, to the required accuracy; the errors by `unit: figure`.
+    """Compute the results of every distinct isolated unit as a solid, to the required accuracy `asked`; errors by `unit: figure`.
 
-    Its components have modes, because the stage's may be the same, unless they are `bare`: static figures do not change.
+    Components are reduced with modes, so that the same components of the stage need no further computation. With `bare` they have no
+    modes; static figures are equal.
     """
 
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
@@ -271,7 +272,7 @@ def units_solid(
 
 
 def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:
-    """The six direct compliances of every hinge, by beam theory (or from the file) and by FEA.
+    """Yield the rows of hinges: the six direct compliances, by beam theory (or from the design file) and by FEA.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(hinge_rows(double_triangle(), {}))
@@ -294,7 +295,10 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
 
 
 def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
-    """Isolated units with the FEA 6x6 of their hinges as isolated: an output without outlines fixes the end of its hinge."""
+    """Compute isolated units with the FEA compliance of their hinges, computed for the isolated unit.
+
+    If the output has no outlines in the isolated unit, the end of the hinge at the output is fixed.
+    """
     found: dict[str, UnitResult] = {}
     for unit, (copy, direction) in driven_units(mechanism).items():
         alone = isolate(mechanism, copy)
@@ -303,7 +307,7 @@ def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDAR
 
 
 def unit_rows(mechanism: Mechanism, better: Mapping[str, UnitResult], found: Converged[dict[str, SolidUnit]]) -> Iterator[Row]:
-    """K_a, K_l, gain and loss of every isolated unit; `better` are the units with calibrated hinges.
+    """Yield the rows of isolated units: K_a, K_l, gain and loss; `better` are the units with calibrated hinges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(unit_rows(double_triangle(), {}, Converged({}, {}, 3)))
@@ -360,7 +364,10 @@ def _calibrated_parts(mechanism: Mechanism, unit: str | None) -> tuple[str, ...]
 
 
 def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Converged[SolidStage]) -> Iterator[Row]:
-    """Stiffness of the platform by direction, and its modes, paired by shape."""
+    """Yield the rows of the stage: stiffness of the platform by direction, and platform modes paired by shape.
+
+    `matched` is the stage with calibrated hinges.
+    """
     touched = _calibrated_parts(mechanism, None)
     theories = {"theory": lumped(mechanism), "calibrated": lumped(matched), "mapped": _mapped_model(mechanism)}
     known = {name: model for name, model in theories.items() if model is not None}
@@ -422,7 +429,7 @@ def _mapped_model(mechanism: Mechanism) -> LinearModel | None:
 
 
 def verdict(rows: tuple[Row, ...]) -> str:
-    """The verdict on theory from the rows of one group, as text.
+    """Format the verdict on theory from the rows of one group.
 
     >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated=100.5),))
     'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped model.'
@@ -443,7 +450,7 @@ def _reasons(rows: Iterable[Row]) -> str:
 
 
 def departures(rows: Iterable[Row]) -> str:
-    """Differences between theory and finite elements as text: the worst figure of every kind, and its cause.
+    """Describe the differences between theory and finite elements: the worst figure of every kind, and its cause.
 
     >>> row = Row("stage", "in-plane stiffness (softest), others free", "N/m", 2.14e6, 0.48e6, 0.01, calibrated=2.1e6)
     >>> departures([row, Row("stage", "mode 1", "Hz", 99.0, 100.0, 0.001)])

@@ -25,11 +25,11 @@ _RIGID = (Kind.PLATFORM, Kind.BODY, Kind.GROUND)
 
 @check_arguments
 def to_glb(mechanism: Mechanism, *, modes: int = 12) -> bytes:
-    """The stage as a GLB file (glTF 2.0): a node for each body, link and gauge, an animation for each of its lowest `modes`.
+    """Write a stage as the bytes of a GLB file (glTF 2.0): a node for each body, link and gauge, an animation for each lowest mode.
 
-    Bodies move rigidly and links bend between them, as in the lumped model (`flexstage.view` shows the same); `flexstage cad --gltf`
-    writes those of elastic solids. The largest displacement of an animation is 5 % of the stage's diagonal. Raises `DesignError` if the
-    package pygltflib is missing or the stage cannot be drawn.
+    `modes` is the number of modes. Bodies move rigidly and links bend between them, as in the lumped model and in `flexstage.view`. For
+    modes of elastic solids use `flexstage cad --gltf`. The largest displacement of an animation is 5 % of the stage's diagonal. Raises
+    `DesignError` if the package pygltflib is missing or the stage cannot be drawn.
 
     >>> import flexstage as fs
     >>> fs.solid.to_glb(fs.case("parallelogram"), modes=1)[:4]
@@ -39,7 +39,7 @@ def to_glb(mechanism: Mechanism, *, modes: int = 12) -> bytes:
 
 
 def glb_of(data: StageData, modes: int = 12) -> bytes:
-    """The same for a stage's data."""
+    """Write a GLB file as `to_glb`, from a stage's viewer data."""
     if find_spec("pygltflib") is None:
         raise refuse("GLB", "the package pygltflib is not installed", "Install it with: pip install 'flexstage[solid]'")
     from flexstage.solid.exchange.gltf import Motion as Animation

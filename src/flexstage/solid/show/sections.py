@@ -46,7 +46,7 @@ _STRESS_EXPONENT = 0.4
 
 
 def hinge_section(found: Mapping[str, SolidHinge]) -> Section | None:
-    """The 6x6 of every distinct hinge.
+    """Make the section of hinges: the 6x6 compliance of every distinct hinge; `None` without hinges.
 
     >>> hinge_section({}) is None
     True
@@ -58,7 +58,7 @@ def hinge_section(found: Mapping[str, SolidHinge]) -> Section | None:
 
 
 def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
-    """Every distinct isolated unit, with its stress at the full stroke."""
+    """Make the section of isolated units, with their stress at the full stroke."""
     blocks: list[Block | None] = [solid_unit_table(found)]
     for name, unit in found.result.items():
         stroke = float(unit.strokes[-1])
@@ -76,7 +76,7 @@ def _in_megapascals(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
 
 
 def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
-    """Stiffness, modes and stress of the whole stage."""
+    """Make the section of the whole stage: stiffness, modes and stress."""
     from flexstage.solid.results.resolution import NOT_ESTIMATED  # takes long to import
 
     stage = found.result
@@ -123,18 +123,18 @@ def _stress_picture(stage: SolidStage) -> Picture:
 
 
 def verification_headline(found: Verification) -> Headline:
-    """The headline of a verification, and whether theory is sufficient for all of the widest group."""
+    """Make the headline of a verification; it is good if theory is sufficient for all figures of the last group, the stage."""
     rows = list(found.groups.values())[-1]
     return Headline(found.headline, all(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows))
 
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """The platform's modes by finite elements as motions of a viewer, with the paired modes of theory."""
+    """Convert the platform's modes by finite elements to motions of a viewer, with remarks on their paired modes of `theory`, by index."""
     return fea_motions(still_data(mechanism).bones, Moving(stage.modes, stage.read.model), theory)
 
 
 def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """The same for any model of finite elements, on the bodies of a viewer."""
+    """Convert the platform modes of any finite-element model to motions of a viewer with the bodies `bones` (see `solid_motions`)."""
     found: list[Motion] = []
     for index in moving.modes.platform:
         twists = body_twists(moving.model, None, moving.modes.shapes[:, index], tuple(bones.references))
@@ -147,7 +147,7 @@ def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = Ma
 
 
 def paired_with_theory(mechanism: Mechanism, stage: SolidStage) -> tuple[Mapping[int, Pair], Section | None]:
-    """The modes of theory paired with those of finite elements, by index, and both side by side."""
+    """Pair modes of theory with modes by finite elements; returns the pairs by index, and a section that shows both side by side."""
     model = lumped(mechanism)
     pairs = pair_modes(Moving(stage.modes, stage.read.model), Moving(platform_modes(mechanism, model), model))
     alike = {index: pairs[index] for index in stage.modes.platform if index in pairs and pairs[index].reliable}
@@ -158,6 +158,6 @@ def paired_with_theory(mechanism: Mechanism, stage: SolidStage) -> tuple[Mapping
 
 
 def verification_section(found: Verification) -> Section | None:
-    """Theory compared with finite elements, starting with the verdicts as text."""
+    """Make the section that compares theory with finite elements, starting with the verdicts as text."""
     tables = [verification_table(rows) for rows in found.groups.values()]
     return section("Theory and finite elements", [verdict_table_of(found), *tables])

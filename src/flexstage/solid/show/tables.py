@@ -27,9 +27,7 @@ _LISTED = 12
 
 
 def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
-    """Every distinct hinge: its roots, the six direct compliances about its centre, and the estimated error.
-
-    Built manually: a column for each axis.
+    """Tabulate every distinct hinge: roots, the six direct compliances about the centre, one column each, and the estimated error.
 
     >>> hinge_table({}).texts()[0][:4]
     ['part', 'links', 'ends on', 'x [um/N]']
@@ -59,7 +57,7 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
 
 
 def hinge_matrices(found: Mapping[str, SolidHinge]) -> Iterator[Table]:
-    """The 6x6 compliance of every distinct hinge.
+    """Make a table of the 6x6 compliance of every distinct hinge.
 
     >>> list(hinge_matrices({}))
     []
@@ -76,7 +74,7 @@ def _largest_error(name: str, found: Converged[dict[str, SolidUnit]]) -> float |
 
 
 def solid_unit_table(found: Converged[dict[str, SolidUnit]]) -> Table | None:
-    """Every distinct isolated unit: K_a, K_l, gain, loss, and the highest stress at the full stroke.
+    """Tabulate the isolated units: K_a, K_l, gain, loss, and the highest stress at the full stroke.
 
     >>> from flexstage.solid.results.resolution import Converged
     >>> solid_unit_table(Converged({}, {}, 3)) is None
@@ -88,12 +86,12 @@ def solid_unit_table(found: Converged[dict[str, SolidUnit]]) -> Table | None:
 
 
 def command_table(name: str, unit: SolidUnit) -> Table:
-    """Output of a unit by command, and the loss (the form of the paper's Table 2)."""
+    """Tabulate the output of a unit by command, and the lost motion (as in the paper's Table 2)."""
     return array_table(f"Output of the {name} unit by command", unit, "strokes", "commands", "outputs", "lost")
 
 
 def stress_table(title: str, stress: LinkStress | None, listed: int = _LISTED) -> Table | None:
-    """The highest von Mises stress of links and bodies, highest first; `None` without significant stress."""
+    """Tabulate the highest von Mises stress of links and bodies, highest first; `None` without significant stress."""
     if stress is None or not np.max(stress.highest) >= SILENT:
         return None
     notes = [f"Von Mises stress on the surface, stacks left out. {SHARP_CORNERS}"]
@@ -103,7 +101,7 @@ def stress_table(title: str, stress: LinkStress | None, listed: int = _LISTED) -
 
 
 def block_table(stage: SolidStage) -> Table:
-    """The effect of the elasticity of the bodies, rigid in all other models, on each platform mode."""
+    """Tabulate the effect of the elasticity of bodies on each platform mode; bodies are rigid in all other models."""
     found = stage.modes
     names = {"platform mode": range(1, len(found.platform) + 1), "name": [found.names[index] for index in found.platform]}
     notes = ["Frequency change: to first order, relative to bodies of infinite stiffness.", *_stated_note(stage.as_stated)]
@@ -116,7 +114,7 @@ def _stated_note(stated: Mapping[str, str]) -> list[str]:
 
 
 def verification_table(rows: tuple[Row, ...]) -> Table | None:
-    """Theory compared with FEA for one group of rows, with both errors and the verdict.
+    """Tabulate theory and FEA for one group of rows, with both errors and the verdict.
 
     >>> from flexstage.solid.results.verification import Row
     >>> table = verification_table((Row("stage", "mode 1", "Hz", 101.0, 100.0, 0.001),))
@@ -131,7 +129,7 @@ def _error(error: float | None) -> str:
 
 
 def verdict_table_of(found: Verification) -> Table:
-    """For every group, the verdict on theory as text."""
+    """Tabulate the verdict on theory by group, as text."""
     rows = [(Cell(name, Mark.STRONG), text) for name, text in found.verdicts.items()]
     notes = [
         "Theory: beam theory for hinges, the lumped model for units and stage.",
@@ -144,10 +142,7 @@ def verdict_table_of(found: Verification) -> Table:
 
 
 def calibration_table(found: Calibration) -> Table:
-    """Compliance by FEA relative to beam theory.
-
-    Built manually: a column for each axis.
-    """
+    """Tabulate the relative difference of the compliance by FEA and by beam theory, one column for each axis."""
     rows = [
         (
             Cell(name, Mark.STRONG),

@@ -5,4 +5,4 @@ from flexstage.experiment.formats.table.read import is_text, read_table
 from flexstage.experiment.formats.table.write import write_table
 
 CSV = Format((".csv", ".txt"), is_text, read_table, write_table)
-"""CSV file: exact to the bit, large."""
+"""CSV format: numbers keep all bits, but files are large."""

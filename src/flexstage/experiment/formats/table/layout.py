@@ -1,7 +1,7 @@
 """Layout of a CSV file: column separator, header, and start of the numbers.
 
-A header is `time [s], u1 [V], S1 [um]`, with brackets or parentheses, or names on one line and units on the next; it may be a comment.
-Columns are separated by semicolons, tabs, commas or blanks; decimal commas are supported with other separators.
+A header is one line `time [s], u1 [V], S1 [um]`, with brackets or parentheses, or two lines: names, then units. It may be a comment.
+Columns are separated by semicolons, tabs, commas or blanks. Decimal commas are supported unless commas separate the columns.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _HEAD = 1 << 18
 _QUOTED = 60
 _LOOKED_AT = 6
 NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][-+]?\d+)?", re.ASCII)
-"""Number formats in files."""
+"""Pattern of a number in a file."""
 MISSING = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "inf", "-inf", "+inf"})
 """Fields for a missing number, in lower case."""
 _COMMENT = re.compile(r"^\s*(#|%|//|\*)+\s?")
@@ -37,7 +37,7 @@ _NAMES = ("time [s]", "u1 [V]", "S1 [um]")
 class Layout:
     """Layout of a CSV file: names and units of the columns, separator (None: blanks), decimal sign, start of the numbers (byte and line).
 
-    `comments` are the lines before them, without comment signs.
+    `comments` are the comment lines before the numbers, without comment signs.
     """
 
     names: tuple[str, ...]
@@ -50,7 +50,7 @@ class Layout:
     comments: tuple[str, ...]
 
     def fields(self, line: str) -> list[str]:
-        """Fields of a line, without surrounding blanks.
+        """Split a line into its fields, without surrounding blanks.
 
         >>> Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", ()).fields("1.0, 2.0")
         ['1.0', '2.0']
@@ -73,7 +73,7 @@ class Layout:
 
 
 def read_layout(path: Path) -> Layout:
-    r"""rDetermine the layout of a CSV file; raises `DesignError` if it is not text, or has no numbers or no header.
+    r"""Determine the layout of a CSV file; raises `DesignError` if it is not text, or has no numbers or no header.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -24,22 +24,22 @@ from flexstage.experiment.records.record import Record, Responses
 from flexstage.experiment.records.unit import same_dimension, unit_problem
 
 OWN = "flexstage "
-"""First words of the comment in files written here, followed by a JSON object of the attributes."""
+"""First word of the comment in files written by flexstage, followed by a JSON object of the attributes."""
 _PART = re.compile(r"(?:(?P<name>.+?)[ _])?(?P<part>re|im|coherence|mag|magnitude|amplitude|gain|phase)", re.IGNORECASE)
 _MAGNITUDES = ("mag", "amplitude", "gain")
 _RECTANGULAR, _POLAR = ("re", "im"), ("magnitude", "phase")
 
 
 def is_text(_start: bytes, _suffix: str) -> bool:
-    """Accept every file not claimed by another format."""
+    """Accept every file: CSV is the format of files that no other format recognises."""
     return True
 
 
 def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    r"""rRead a CSV file: responses if a column is named `frequency` (or by the user), else a record.
+    r"""Read a CSV file: responses if a column is named `frequency` or assigned as frequencies by the user, else a record.
 
-    Times are in the column `time`, or the named one. Raises `DesignError` without times and rate, for gaps between times (ignored with
-    `FaultTolerance.GAPS`), and for a truncated last line (omitted with `FaultTolerance.TRUNCATED`).
+    Times are in the column `time`, or in the assigned column. Raises `DesignError` if both times and rate are missing, for gaps between
+    times (accepted with `FaultTolerance.GAPS`), and for a truncated last line (omitted with `FaultTolerance.TRUNCATED`).
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -68,7 +68,7 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
 
 
 def read_record(samples: TableSamples, said: Mapping[str, Attribute], options: Options, time: int | None) -> tuple[Record | Responses, ...]:
-    """Build the record from all columns of a table except the times."""
+    """Build a record from a table: times from the column with index `time`, channels from all others; `said` are the file's attributes."""
     layout = samples.layout
     columns = tuple(number for number in range(len(layout.names)) if number != time)
     texts: dict[str, Attribute] = {kind: tuple(getattr(layout, kind)[number] for number in columns) for kind in ("names", "units")}
@@ -119,9 +119,10 @@ def _column(layout: Layout, names: tuple[str, ...]) -> int | None:
 
 
 def complete_rows(path: Path, layout: Layout, options: Options, announced: int | None, *, closed: bool) -> TableSamples:
-    """Read all columns of as many lines as announced; a truncated file without its last line, if accepted.
+    """Read all columns of a table, and check that it has the `announced` number of lines.
 
-    `closed`: the last line ends with a line feed in files with an announced length, to detect a truncated number.
+    A truncated file is read without its last line if the options accept it. With `closed`, the last line must end with a line feed:
+    otherwise its last number may be truncated.
     """
     whole = index_table(path, layout)
     ends = _ends_with_newline(path)

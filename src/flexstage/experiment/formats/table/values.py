@@ -1,4 +1,4 @@
-"""Numbers of a CSV file, read in any range by an index of lines."""
+"""Numbers of a CSV file: any range of lines is read with an index of line positions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LISTED = 60
 
 
 def index_table(path: Path, layout: Layout) -> TableSamples:
-    r"""rRead all columns of a table and count its lines, without trailing blank ones.
+    r"""Index the lines of a table, without trailing blank ones, for reading of all columns.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -58,7 +58,7 @@ def _end(path: Path, start: int) -> int:
 class TableSamples:
     """Columns of a CSV file as samples (n, columns); a missing field is NaN.
 
-    `offsets` are the byte offsets of every `STRIDE`th line, the lines end at `end`.
+    `offsets` are the byte offsets of every `STRIDE`th line; `end` is the byte offset of the end of the last line.
     """
 
     path: Path
@@ -69,7 +69,7 @@ class TableSamples:
     end: int
 
     def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop`, the latter excluded."""
+        """Read samples `start` to `stop` (excluded)."""
         stop = min(stop, self.length)
         if stop <= start:
             return np.zeros((0, len(self.columns)))

@@ -24,10 +24,10 @@ BLOCK = 16_384
 
 
 def write_table(path: str | os.PathLike[str], what: Record | Responses) -> None:
-    """Write a CSV file: a header with channel names and units, below comments with rate, roles and name.
+    """Write a CSV file: comments with rate, roles and name, then a header with channel names and units, then the numbers.
 
-    Numbers have as many digits as needed for an exact round trip. Raises `DesignError` for names with line breaks, names of time columns or
-    formulas, and if the file cannot be written.
+    Numbers have as many digits as needed for an exact round trip. Raises `DesignError` if the file cannot be written, and for
+    channel names with line breaks, names reserved for times, and names that a spreadsheet would run as formulas.
 
     >>> import tempfile
     >>> from pathlib import Path

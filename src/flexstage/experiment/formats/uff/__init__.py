@@ -5,4 +5,4 @@ from flexstage.experiment.formats.uff.read import is_uff, read_uff
 from flexstage.experiment.formats.uff.write import write_uff
 
 UFF = Format((".uff", ".unv", ".58", ".ufb"), is_uff, read_uff, write_uff)
-"""Universal file, written in binary: exact to the bit."""
+"""Universal file format, written in binary: numbers keep all bits."""

@@ -1,7 +1,7 @@
 """Header of a function at nodal degrees of freedom: data set 58 of universal files, records 1 to 11.
 
 Reference: Structural Dynamics Research Laboratory, University of Cincinnati, "Universal File Formats", data set number 58. Fields have
-fixed columns; other paddings are read if their fields are distinguishable.
+fixed columns; only the first abscissa and the step may also be padded differently.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Function:
-    """Header of one function: five lines of text, its type, measurement points, data form, and axes."""
+    """Header of one function: five lines of text, function type, response and reference points, data form, and axes."""
 
     texts: tuple[str, ...]
     kind: int
@@ -68,44 +68,44 @@ class Function:
 
     @property
     def is_complex(self) -> bool:
-        """Whether its values are complex."""
+        """Whether the values are complex."""
         return self.precision in (COMPLEX_SINGLE, COMPLEX_DOUBLE)
 
     @property
     def is_double(self) -> bool:
-        """Whether its values are of double precision."""
+        """Whether the values are of double precision."""
         return self.precision in (REAL_DOUBLE, COMPLEX_DOUBLE)
 
     @property
     def is_time(self) -> bool:
-        """Whether it is a time history: of that type, or of type 0 over time."""
+        """Whether the function is a time history: of function type 1, or of type 0 (general) over time."""
         return not self.is_complex and (self.kind == TIME or (self.kind == 0 and self.abscissa.kind == _TIME_AXIS))
 
     @property
     def is_response(self) -> bool:
-        """Whether it is a frequency response: of that type, or of type 0, complex and over frequency."""
+        """Whether the function is a frequency response: a response or transmissibility by type, or of type 0, complex, over frequency."""
         return self.kind in (RESPONSE, TRANSMISSIBILITY) or (self.kind == 0 and self.is_complex and self.abscissa.kind == _FREQUENCY_AXIS)
 
     @property
     def rate(self) -> float:
-        """Rate in Hz for the printed step; for a time history with even spacing."""
+        """Sampling rate in Hz of an evenly spaced time history, from its printed time step."""
         return round_nominal(1.0 / self.step, 1.01 * self.step_uncertainty + 1e-15)
 
     @property
     def role(self) -> Role:
-        """Role in a test from the type of its ordinate: forces excite, motions respond."""
+        """Role of the channel in a test, from the quantity of the ordinate: forces are inputs, motions outputs."""
         return _ROLES.get(self.ordinate.kind, Role.UNKNOWN)
 
     @property
     def output_name(self) -> str:
-        """Response name: entity, node and direction, else the label, else the first line of text."""
+        """Name of the response: entity, node and direction, else the label of the ordinate, else the first line of text."""
         name = place_name(self.response)
         label = re.sub(r"\s*[\[(][^\])]*[\])]\s*$", "", self.ordinate.label)
         return name or label or self.texts[0].split(" : ")[0].strip() or "output"
 
     @property
     def input_name(self) -> str:
-        """Excitation name: entity, node and direction."""
+        """Name of the excitation: entity, node and direction."""
         return place_name(self.reference) or "input"
 
 
@@ -181,7 +181,7 @@ def place_name(place: tuple[str, int, int]) -> str:
 
 
 def head(function: Function, size: int) -> bytes:
-    """Format the bytes of a binary data set up to its values of `size` bytes.
+    """Format the bytes of a binary data set that precede its values, which have `size` bytes in total.
 
     >>> axes = Axis(17, "time", "s"), Axis(8, "", "um"), Axis(0, "", "")
     >>> plain = Function(("S1", "", "", "", ""), 1, ("S1", 1, 0), ("", 0, 0), 4, 2, True, 0.0, 0.5, 0.0, *axes)
@@ -205,7 +205,7 @@ def head(function: Function, size: int) -> bytes:
 
 
 def count_function(text: str, number: int, count: int) -> str:
-    """Format a line of text with the number and count of functions, which the format lacks.
+    """Append "function NUMBER of COUNT" to a line of text, because the format has no field for it.
 
     >>> count_function("hann", 3, 12)
     'hann; function 3 of 12'

@@ -24,14 +24,14 @@ from flexstage.experiment.records.record import Channel, Record, Responses, Role
 
 _FLOAT = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 OWN = re.compile(rf"flexstage (?P<role>input|output|unknown); rate (?P<rate>{_FLOAT}) Hz; start (?P<start>{_FLOAT}) s")
-"""Fifth text line of functions written here: full precision of header fields; used if it rounds to them."""
+"""Fifth text line of functions written by flexstage: header fields in full precision, used if they round to the header's values."""
 OWN_RESPONSE = re.compile(rf"flexstage response; first (?P<first>{_FLOAT}) Hz; step (?P<step>{_FLOAT}) Hz; averages (?P<averages>\d+)")
 COUNTED = re.compile(r"(?P<text>.*?)(?:; )?function (?P<number>\d+) of (?P<count>\d+)")
-"""Fourth text line of functions written here: their number, which the format lacks."""
+"""Fourth text line of functions written by flexstage: the number of the function, for which the format has no field."""
 
 
 def is_uff(start: bytes, _suffix: str) -> bool:
-    r"""rRecognise the start of universal files.
+    r"""Recognise the start of universal files.
 
     >>> is_uff(b"    -1\n    58\n", ".uff"), is_uff(b"time,u1\n", ".uff")
     (True, False)
@@ -44,7 +44,7 @@ def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     """Read a universal file: its time histories, its frequency responses, or both, according to `options.kind`.
 
     Raises `DesignError` with all faults: truncated functions (used partially with `FaultTolerance.TRUNCATED`), different lengths or rates,
-    other kinds.
+    and functions that are neither time histories nor responses.
     """
     stated = options.arrays.stated()
     require(Finding(f"{path}: {meaning}={name}", "universal files have no named arrays", "Omit it") for meaning, name in stated)

@@ -1,4 +1,4 @@
-"""Functions of a universal file and the positions of their values, without reading the values."""
+"""Index of a universal file: its functions and the positions of their values, without reading the values."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ _SLACK = 96
 
 @dataclass(frozen=True, eq=False)
 class DataSet:
-    """Function of a file: its header, its values as samples of one to three columns, its line number, its missing part."""
+    """Function of a file: header, values as samples of one to three columns, line number in the file.
+
+    `problem` describes the missing part of a truncated function.
+    """
 
     function: Function
     values: Samples
@@ -32,10 +35,10 @@ class DataSet:
 
 
 def scan(path: Path) -> tuple[list[DataSet], list[Finding]]:
-    r"""rScan the functions of a file in order, with findings for unreadable ones; other data sets are skipped.
+    r"""Scan the functions of a file in order, with errors for unreadable functions; other data sets are skipped.
 
-    Values in fixed columns stay in the file; others are read at once. A truncated function has its available values, and the size of the
-    missing part.
+    Values in fixed columns stay in the file; others are read at once. A truncated function has its available values and a description of
+    the missing part.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -58,7 +61,7 @@ def scan(path: Path) -> tuple[list[DataSet], list[Finding]]:
 
 
 def decode(raw: bytes) -> str:
-    r"""rDecode header text: UTF-8, else Latin-1, common on instruments.
+    r"""Decode header text: UTF-8, else Latin-1, which is common on instruments.
 
     >>> decode("m/s²".encode()), decode(b"m/s\xb2")
     ('m/s²', 'm/s²')

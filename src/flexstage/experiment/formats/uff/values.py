@@ -1,4 +1,4 @@
-"""Values of a function in a universal file, read in any range."""
+"""Values of a function in a universal file; any range of values can be read."""
 
 from __future__ import annotations
 

@@ -33,8 +33,8 @@ _EMPTY = Axis(0, "", "")
 def write_uff(path: str | os.PathLike[str], what: Record | Responses) -> None:
     """Write a universal file, one function per channel or pair of channels, in double precision.
 
-    Numbers are exact to the bit. Data beyond the header's fields (full-precision rate, roles) are in its lines of text. Raises
-    `DesignError` for names that do not fit and if the file cannot be written.
+    Numbers keep all bits. The header's lines of text contain data without a field (full-precision rate, roles). Raises `DesignError` for
+    channel names and units that the format does not support, and if the file cannot be written.
 
     >>> import tempfile
     >>> from pathlib import Path

@@ -1,4 +1,4 @@
-"""Adequacy of a record: line spacing relative to resonance widths, searched band relative to the requested one."""
+"""Adequacy of a record: line spacing relative to resonance widths, and searched band relative to the requested band."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def width(pole: complex) -> float:
 
 
 def line_distance(known: Evidence) -> float:
-    """Spacing in Hz of the lines for candidates.
+    """Return the spacing in Hz of the frequency lines of the responses from which candidates are identified.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
@@ -60,8 +60,8 @@ def few_lines(known: Evidence, band: tuple[float, float], count: int) -> list[Fi
 def coarse_lines(known: Evidence, poles: Array) -> str | None:
     """Warn of a line spacing beyond the width of the narrowest mode, at `poles` in Hz.
 
-    Candidates are poles of responses at those lines: a mode within one line of another may be missed. With a line spacing of the half-power
-    bandwidth B = 2 zeta f a record of n averages lasts about n / B.
+    Candidates are poles of responses at frequency lines: a mode closer than one line spacing to another mode may be missed. If the line
+    spacing equals the half-power bandwidth B = 2 zeta f, a record of n averages lasts about n / B.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record

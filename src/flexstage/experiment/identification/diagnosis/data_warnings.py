@@ -18,7 +18,10 @@ _MOTIONS = ("m/s", "m/s^2", "rad/s", "rad/s^2")
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Identified modes: `poles` (k,) in Hz, the `close` ones, their share (k,) of motion from `elsewhere`, `widening` of intervals."""
+    """Identified modes: `poles` (k,) in Hz, `close` groups of indices, interval inflation factor `widening` (k,).
+
+    `elsewhere` (k,) is the share of each mode's motion that the recorded inputs do not explain.
+    """
 
     poles: Array
     close: tuple[tuple[int, ...], ...]
@@ -32,7 +35,7 @@ def _is_motion(channel: Channel) -> bool:
 
 
 def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...]:
-    """Collect warnings on identified modes: few or coarse lines, none identified, hidden repeated modes, unrecorded forces.
+    """Collect warnings: few or coarse frequency lines, no identified mode, hidden repeated modes, unrecorded forces.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import POLE, one_mode_record

@@ -1,4 +1,4 @@
-"""Test of excitation by recorded inputs: a mode's motion, line by line, against inputs and noise."""
+"""Test of excitation by recorded inputs: regression of a mode's motion on the inputs over frequency lines."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ _HALVINGS = 40
 class Drive:
     """Excitation of the modes (k,) of a band by the recorded inputs.
 
-    `chance` is the probability of the observed correlation without excitation. `elsewhere` is the unexplained share of the motion in the
-    half-power band.
+    `chance` (k,) is the probability of the observed correlation without excitation by the inputs. `elsewhere` (k,) is the share of the
+    motion in the half-power band that the inputs do not explain.
     """
 
     chance: Array
@@ -33,12 +33,12 @@ class Drive:
 def measure_drives(bands: Sequence[tuple[Band, Modal]], lines: Iterable[Lines]) -> list[Drive]:
     """Test whether the recorded inputs excite each mode, band by band.
 
-    The modal motion q is the output after subtraction of all other fitted parts, weighted by shape and noise. q (j f - p) is the modal
-    force, flat in frequency, plus output noise. It is regressed on inputs and transients over the lines within four half-widths, at least
-    three times as many as regressors. Without excitation by the inputs the explained share is F-distributed, regardless of unrecorded
-    forces or tones. The variance is a + b |j f - p|^2: b is the outputs' noise, and a, of the unrecorded force, follows from the residual;
-    the nearest lines, as many as regressors, have equal weights. Transients count as excited if the inputs equal them to a tenth of their
-    power: an impact at the start of a record.
+    The modal motion q is the output after subtraction of all other fitted parts, weighted by shape and noise. The modal force plus output
+    noise is q (j f - p), with the pole p. It is regressed on inputs and transients over the lines within four half-widths, at least three
+    times as many as regressors. Without excitation by the inputs the explained share is F-distributed, regardless of unrecorded forces or
+    tones. The variance of a line is a + b |j f - p|^2: b is the outputs' noise, and the unrecorded force a follows from the residual. The
+    lines nearest to the pole, as many as regressors, have equal weights. Transients count as inputs if the inputs equal them to a tenth
+    of their power, as for an impact at the start of a record.
 
     >>> from flexstage.experiment.example import one_mode_band, one_mode_record
     >>> from flexstage.experiment.identification.likelihood import fit

@@ -1,4 +1,4 @@
-"""Common delay of all outputs: the pure delay of a test's converters and filters, from the phase of the modal residues."""
+"""Delay of the outputs, caused by a test's converters and filters, from the phase of the modal residues."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _TURNED, _BESIDE = 0.05, 24.0
 
 @dataclass(frozen=True)
 class Delay:
-    """Delay [s] of the outputs relative to the modes, with its standard deviation."""
+    """Delay of the outputs: `value` [s] and its standard `deviation` [s]."""
 
     value: float
     deviation: float
@@ -49,12 +49,13 @@ class _Residue:
 
 
 def common_delay(found: Identified) -> Delay | None:
-    """Estimate the delay that makes the modes those of a proportionally damped stage: shapes and participations in phase or opposite.
+    """Estimate the common delay of all outputs, with the assumption of proportional damping.
 
-    A mode's residue R in H = R/(s - p) + ... is then imaginary (real for a velocity; Heylen, Lammens & Sas, Modal Analysis Theory and
-    Testing, 1997, A.1), and multiplied by e^{-p tau} with a delay: the phase falls with frequency. Lags and filters with equal phase count
-    as delay. Signs of residues are unknown: three modes determine delays up to 3 periods of the lowest, fewer up to 0.45. Among equally
-    good delays the shortest is returned. `None` if no delay makes the residues imaginary, or if it is not significant.
+    In a proportionally damped stage a mode's residue R in H = R/(s - p) + ... is imaginary (real for a velocity; Heylen, Lammens & Sas,
+    Modal Analysis Theory and Testing, 1997, A.1). A delay tau multiplies the residue by e^{-p tau}, so that the phase falls with frequency.
+    Lags and filters with the same phase count as delay. The signs of residues are unknown. Delays up to 3 periods of the lowest mode can
+    therefore be determined from three modes, and up to 0.45 periods from fewer. Among equally good delays the shortest is returned. `None`
+    if no delay makes the residues imaginary, or if the delay is not significant.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -68,12 +69,11 @@ def common_delay(found: Identified) -> Delay | None:
 
 
 def late_channels(found: Identified) -> Iterator[str]:
-    """Find single channels with more delay than the others of their side, which would make their part in the modes real.
+    """Find single channels with another delay than the other inputs or outputs, and yield a warning for each.
 
-    Each channel's residues have an individual delay, from three modes or more. It is reported if it differs by 6 deviations from the
-    others' median, and rotates the highest mode by a tenth of a turn or more, while the others agree. Residues must be less real by as much
-    at the
-    median: half turns of all modes with motion of a channel are changes of sign, not delays.
+    The delay of each channel is estimated from its residues in three modes or more. A channel is reported if its delay differs from the
+    median by 6 deviations, and rotates the highest mode by a tenth of a turn or more. Most channels must agree with the median. Half turns
+    in all modes are a wrong sign of the channel, not a delay.
     """
     if len(_groups(found)) < _ENOUGH:
         return
@@ -141,7 +141,7 @@ def bends_modes(found: Identified, delay: Delay) -> bool:
 
 
 def take_out_delay(known: Evidence, seconds: float) -> Evidence:
-    """Return the evidence with outputs advanced: multiplied by e^{j omega tau}, line by line."""
+    """Return the evidence with the outputs advanced by a delay tau of `seconds`: multiplied by e^{j omega tau}, line by line."""
 
     def lines(number: int = 0, parts: int = 1) -> Iterable[Lines]:
         for each in known.lines(number, parts):

@@ -30,10 +30,10 @@ _MOST = 20
 
 
 class PeakCause(Enum):
-    """Reason why a peak is not a mode."""
+    """Reason to reject a peak as a mode."""
 
     TONE = "tone"
-    """Sinusoid in outputs, absent from the inputs: removed."""
+    """Sinusoid in the outputs, absent from the inputs, which is removed."""
     UNDRIVEN = "not driven"
     """Resonance without excitation by the recorded inputs."""
     WEAK = "weak"
@@ -50,9 +50,9 @@ class PeakCause(Enum):
 class Peak:
     """Peak at `frequency` in Hz, `width` Hz wide at half power (absent: at most a line).
 
-    Present in the `outputs`, with lines `resolution` Hz apart. `chance` is the probability of such a peak without a mode: noise with the
-    purity of a tone, or the strength of a weak or narrow peak; inputs that explain as much of an undriven one. Modes need 1e-9, and lines
-    within their width.
+    `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of such a
+    peak without a mode. For a tone, noise is as pure with this probability; for a weak or narrow peak, noise is as strong. For an undriven
+    peak, the inputs explain as much of the motion by chance. A mode requires 1e-9, and a line spacing below its width.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -70,7 +70,7 @@ class Peak:
 
     @property
     def reason(self) -> Annotated[str, VIEW]:
-        """Reason why it is not a mode.
+        """Reason to reject the peak as a mode, with advice.
 
         >>> Peak(120.0, PeakCause.NARROW, 1e-6, None, 0.3125, ("y",)).reason
         'one line, 0.3125 Hz from the next: a narrower resonance or a tone (2 x 60 Hz: the mains?). Measure with finer lines.'
@@ -91,7 +91,7 @@ class Peak:
 
 @dataclass(frozen=True, eq=False)
 class ResidualResponses:
-    """Residual responses, `rest` (f, p, m), after modes at `poles` (k,) in Hz, at `lines` (f,) in Hz."""
+    """Residual responses `rest` (f, p, m) at `lines` (f,) in Hz, after subtraction of the modes with `poles` (k,) in Hz."""
 
     lines: Array
     rest: Array
@@ -103,8 +103,9 @@ def peaks(
 ) -> tuple[Peak, ...]:
     """List all peaks that are not modes, by ascending frequency.
 
-    Includes removed tones; resonances `refused` for lack of excitation; resonances `lost` because noise is as strong in one of a thousand
-    trials at most; and single lines of stored responses (in records those are tones, or none).
+    The list has removed tones, resonances `refused` because the inputs do not excite them, and resonances `lost` because they are not
+    significant. A lost resonance is listed only if noise is as strong in less than one of a thousand trials. For an analyser's responses,
+    the list also has prominent single lines.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
@@ -167,9 +168,9 @@ def tone_peaks(tones: Iterable[Tone], resolution: float, outputs: Sequence[Chann
 def narrow_peaks(responses: Responses, left: ResidualResponses) -> list[Peak]:
     """List prominent single lines of the residual responses.
 
-    Each line is compared with a cubic through its neighbours from the 2nd to the 12th on both sides, with the variance of their residual
-    (an F-test). It is prominent at a false-alarm rate of one in twenty data sets. Lines within four half-widths of a mode, or three lines,
-    belong to it. Unevenly spaced lines have no such neighbours.
+    An F-test compares each line with a cubic through its neighbours, from the 2nd to the 12th on both sides. The false-alarm rate is one in
+    twenty data sets. Lines within four half-widths of a mode, or within three lines, belong to the mode and are not listed. Responses with
+    unevenly spaced lines are not tested.
 
     >>> lines, noise = np.arange(100.0), np.random.default_rng(2).standard_normal((2, 100, 1, 1))
     >>> rest = noise[0] + 1j * noise[1] + 30.0 * (lines == 60.0)[:, None, None]

@@ -1,4 +1,4 @@
-"""Data unexplained by the identified modes: frequency of the excess, and a mode that would explain it."""
+"""Data not explained by the identified modes: excess of the residual by frequency, and a further mode that explains it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from flexstage.base.number import Array
 from flexstage.experiment.identification.likelihood import Band, Modal, explained_share, with_shapes
 
 SURPRISING = 8.0
-"""Significant excess in standard deviations."""
+"""Smallest significant excess of the residual, in standard deviations."""
 _TERMS = 2
 _WIDTHS = 1.0
 
@@ -16,8 +16,8 @@ _WIDTHS = 1.0
 def excess(band: Band, modal: Modal) -> Array:
     """Compute the excess of the residual chi-squared in each cell (c,), in standard deviations.
 
-    The residual is fitted in every cell by responses constant and linear in frequency. For pure noise the explained output powers, over the
-    noise's, have a mean and variance equal to the number of complex parameters.
+    In every cell, responses constant and linear in frequency are fitted to the residual. With noise only, the explained power over the
+    noise power has a mean and a variance equal to the number of complex parameters.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit
@@ -37,7 +37,7 @@ def excess(band: Band, modal: Modal) -> Array:
 
 
 def suggest_mode(band: Band, modal: Modal, cell: int) -> Modal:
-    """Propose an additional mode from the residual in that cell, starting from its strongest participation there.
+    """Add a mode to `modal` in cell number `cell`, with the strongest participation in the cell's residual.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()

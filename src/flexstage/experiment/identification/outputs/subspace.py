@@ -18,7 +18,7 @@ from flexstage.experiment.progress import report
 from flexstage.experiment.records.record import Channel, Record, Responses, Role
 
 BLOCKS = 40
-"""Number of blocks of a record; their scatter gives the intervals."""
+"""Number of blocks of a record; intervals follow from the scatter between blocks."""
 _TAPER, _SKIPPED = 0.15, 2
 _ROWS, _LONGEST, _LARGEST, _SIZE = 8, 48, 240, 36
 _FADED = 0.08
@@ -31,9 +31,10 @@ _SINGULAR = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class AmbientMode:
-    """Mode of a stage under floor excitation: `pole` in Hz (rad/s over 2 pi), its `shape` (p,), largest component 1.
+    """Mode of a stage under floor excitation: `pole` in Hz (rad/s over 2 pi), and `shape` (p,) with largest component 1.
 
-    `width_deviation` and `deviation` belong to the pole's real and imaginary part, `shape_deviation` (p,) to the shape.
+    Standard deviations are `width_deviation` of the pole's real part, `deviation` of its imaginary part, `shape_deviation` (p,) of the
+    shape.
     """
 
     pole: complex
@@ -45,9 +46,9 @@ class AmbientMode:
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Covariances of a band: by block (b, lags, p, p) at steps of `step` s, shifted down by `low` Hz; the searched part is `sweep`.
+    """Covariances of the outputs in a frequency band, by block (b, lags, p, p), with lags in steps of `step` [s].
 
-    Outputs are multiplied by `scale` (p,).
+    Frequencies are shifted down by `low` [Hz]. The searched part of the band is `sweep`. Outputs are multiplied by `scale` (p,).
     """
 
     covariances: Array
@@ -60,9 +61,9 @@ class Band:
 def band_covariances(record: Record, low: float, high: float) -> tuple[list[Band], Responses]:
     """Compute output covariances of all bands from `low` to `high` in Hz, by block; and the outputs' amplitude density, unit/Hz^0.5.
 
-    Each block is transformed. Products of its lines within a band, tapered at the ends, give R(l) = E[y(n + l) y(n)^H] of that band by
-    inverse transform, equivalent to mixing and decimation. R is divided by 1 - l/N, the share of the block at lag l. Outputs are divided by
-    their root mean squares. The floor's density must be smooth only within a band.
+    Each block is transformed. The inverse transform of products of lines within a band, tapered at the ends, is the band's covariance
+    R(l) = E[y(n + l) y(n)^H]. This is equivalent to mixing and decimation. R is divided by 1 - l/N, the share of the block's N samples
+    available at lag l. Outputs are divided by their root mean squares. The floor's density must be smooth only within each band.
     """
     chosen = record.select([channel.name for channel in record.outputs])
     size = record.length // BLOCKS
@@ -89,9 +90,10 @@ def band_covariances(record: Record, low: float, high: float) -> tuple[list[Band
 
 
 def searched_from(low: float, high: float, *, outputs: int, resolution: float) -> float:
-    """Compute the lowest frequency in Hz at which bands from `low` to `high` have twice the lines of the minimum block rows; else infinite.
+    """Compute the lowest frequency [Hz] between `low` and `high` that can be searched; infinite if no band has enough lines.
 
-    Covariances of N lines repeat after N lags. `resolution` [Hz] belongs to a block.
+    Covariances of a band with N lines repeat after N lags. A band must therefore have twice the lines that the minimum number of block
+    rows requires. `resolution` [Hz] is the line spacing of a block.
 
     >>> round(searched_from(0.1, 100.0, outputs=6, resolution=0.02), 1), searched_from(50.0, 50.1, outputs=6, resolution=1.0)
     (1.4, inf)
@@ -161,14 +163,16 @@ def _roots(covariances: Array, rows: int) -> tuple[Array, Array]:
 
 
 def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, list[AmbientMode]]:
-    """Identify the modes of a band, with the stabilisation diagram: H = O Z of increasing order, poles by O(shifted) = O A.
+    """Identify the modes of a band by stochastic subspace identification, with the stabilisation diagram.
 
-    H is weighted with the roots of the future and past covariances, W H V, so that its singular values are canonical
-    correlations: weakly excited modes have the same weight as strongly excited ones. Van Overschee & De Moor, Subspace Identification for
-    Linear Systems, 1996, ch. 3; Peeters & De Roeck, MSSP 13 (1999) 855. The equations are projected onto the signal subspace of the whole
-    record, U^H W H(shifted) V = Lambda U^H W H V. They are perturbed to first order by the covariances of independent blocks (Doehler &
-    Mevel, MSSP 38 (2013) 346). Low orders are biased by modes outside the band, high ones by spurious poles: each mode has its own order
-    (`_select_order`).
+    The Hankel matrix of covariances is factored as H = O Z for increasing orders; the poles follow from O(shifted) = O A. H is weighted
+    with the inverse roots W and V of the future and past covariances. The singular values of W H V are canonical correlations: weakly and
+    strongly excited modes have equal weight (Van Overschee & De Moor, Subspace Identification for Linear Systems, 1996, ch. 3; Peeters &
+    De Roeck, MSSP 13 (1999) 855).
+
+    The equations are projected onto the signal subspace of the whole record, U^H W H(shifted) V = Lambda U^H W H V. Deviations follow from
+    a first-order perturbation by the covariances of independent blocks (Doehler & Mevel, MSSP 38 (2013) 346). Modes outside the band bias
+    low orders, spurious poles bias high orders: each mode has its own order (`_select_order`).
     """
     outputs = band.covariances.shape[2]
     diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)

@@ -26,10 +26,11 @@ _DEGREE, _CLOSE = 2, 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Tone:
-    """Sinusoid of constant `frequency` in Hz in samples `start` to `stop`: 2 Re(a exp(2 pi j f t)), t from `start`.
+    """Sinusoid of constant `frequency` f [Hz] in samples `start` to `stop`: 2 Re(a exp(2 pi j f t)), with t = 0 at `start`.
 
-    `amplitudes` (p,) are a for the outputs, zero if absent. `chance` is the probability of noise of that purity. `fades` is the share that
-    decays from start to end: a free oscillation, which stays in the record.
+    `amplitudes` (p,) are the complex a of the outputs, zero if absent. `chance` is the probability of noise with the purity of this tone.
+    `fades` is the share of the amplitude that decays from start to stop; zero for a steady tone. A tone that decays is a free oscillation,
+    which is not removed from the record.
     """
 
     frequency: float
@@ -41,7 +42,7 @@ class Tone:
 
 
 def steady_tones(tones: Iterable[Tone]) -> tuple[Tone, ...]:
-    """Tones without decay.
+    """Select the tones without decay.
 
     >>> len(steady_tones([Tone(1.0, np.ones(1), 0, 8), Tone(2.0, np.ones(1), 0, 8, fades=0.2)]))
     1
@@ -50,7 +51,7 @@ def steady_tones(tones: Iterable[Tone]) -> tuple[Tone, ...]:
 
 
 def quiet_samples(samples: Samples, tones: Sequence[Tone], columns: tuple[int, ...], rate: float) -> Samples:
-    """Samples without the tones in the channels with indices `columns`, sampled at `rate`.
+    """Subtract tones from the channels with indices `columns` of samples at `rate` [Hz].
 
     >>> from flexstage.experiment.records.record import InMemory
     >>> hum = Tone(0.25, np.array([0.5]), 0, 4)
@@ -76,11 +77,11 @@ def quiet_samples(samples: Samples, tones: Sequence[Tone], columns: tuple[int, .
 def remove_tones(record: Record) -> tuple[Record, tuple[Tone, ...]]:
     """Remove steady tones from the outputs of a record, and return all tones.
 
-    A tone is a line of the unexplained output that exceeds its surroundings eightfold and passes Thomson's harmonic F-test (Thomson, Proc.
-    IEEE 70 (1982) 1055, 13; with sine tapers, Riedel & Sidorenko 1995): a sinusoid of constant amplitude and phase, at a false-alarm rate
-    of 1e-9 for noise and noise-excited resonances. A tone also found in an input is not removed. A tone with a decay of more than five
-    deviations is a free oscillation, and stays. A resonance without decay within the record also counts as a tone: no record can
-    distinguish them.
+    A tone is a sinusoid of constant amplitude and phase. Its line in the unexplained part of the output exceeds neighbouring lines
+    eightfold and passes Thomson's harmonic F-test (Thomson, Proc. IEEE 70 (1982) 1055, 13; with sine tapers, Riedel & Sidorenko 1995). The
+    false-alarm rate is 1e-9 for noise and noise-excited resonances. Tones also present in an input remain in the record. So do free
+    oscillations: tones with a decay of more than five deviations. A resonance without measurable decay counts as a tone, because the record
+    cannot distinguish the two.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.records.record import InMemory

@@ -31,10 +31,10 @@ _UNSCALED = (
 def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     """Identify the modes of a stage under floor excitation from outputs only: `shaken_modes`, band by band, with 95 % intervals.
 
-    The forces' density must be smooth within a band of ratio 1.4, in as many independent directions as modes coincide. A mode is reported
-    if its width is 6.1 standard deviations from zero, which noise reaches once in 1e9. Steady tones are removed before; a resonance
-    narrower than the line spacing of a block is not distinguished from a tone. Participations are unknown: the result has no inputs. Raises
-    `DesignError` for several records, and for a record too short.
+    The density of the exciting forces must be smooth within each band (frequency ratio 1.4). Repeated modes require as many independent
+    force directions. A mode is reported if its half-power width differs from zero by 6.1 standard deviations, which noise reaches once in
+    1e9. Steady tones are removed first. A resonance narrower than the line spacing of a block cannot be distinguished from a tone.
+    Participations are unknown: the result has no inputs. Raises `DesignError` for several records, and for a record that is too short.
     """
     require(_floor_findings(records))
     record, tones = remove_tones(records[0].select([channel.name for channel in records[0].outputs]))
@@ -84,11 +84,11 @@ def _is_double(first: AmbientMode, second: AmbientMode) -> bool:
 
 
 def identify_decay(records: Sequence[Record], search: Search) -> Identified:
-    """Identify modes of free decays from outputs only: the transform of a decay is a response with the stage's poles.
+    """Identify modes of free decays from outputs only: the transform of a decay is a frequency response with the stage's poles.
 
-    For y(n) = sum phi a e^{p n T}, the transform over N samples is sum phi a (1 - e^{p N T})/(1 - e^{(p - jw)T}): each decay is a column
-    like an input, with its amplitudes as participations. It starts at the largest outputs, relative to their root mean squares, and ends
-    with the record. Several records are several decays; of repeated modes one decay shows only one combination.
+    For y(n) = sum phi a e^{p n T}, the transform over N samples is sum phi a (1 - e^{p N T})/(1 - e^{(p - jw)T}). Each decay is therefore
+    treated like an input, with its amplitudes a as participations. A decay starts at the largest outputs, relative to their root mean
+    squares, and ends with the record. Each record is one decay. One decay shows only one combination of repeated modes.
     """
     starts = [_largest(record) for record in records]
     size = min(record.length - start for record, start in zip(records, starts, strict=True))
