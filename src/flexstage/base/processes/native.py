@@ -101,6 +101,8 @@ def kernel_lanes() -> Lanes:
 def kernel_library(source: Path) -> ctypes.CDLL | None:
     """Load the library of a kernel; `None` if FLEXSTAGE_KERNEL is `off`, or no library was built from the current sources.
 
+    Raises `DesignError` if FLEXSTAGE_KERNEL names unsupported lanes.
+
     >>> kernel_library(Path("no-such-kernel.c")) is None
     True
     """
