@@ -281,8 +281,8 @@ def corrected(
 ) -> State:
     """Correct a state for a slightly different model by two Newton steps; the result is correct to first order in the difference.
 
-    One step is not sufficient, because the stiffness is the derivative of the residual only to 1e-6. Loads and fixed coordinates are those
-    of `start`, unless specified. Cases without a state in `start` have none in the result.
+    One step is not sufficient, because the stiffness is the derivative of the residual only to 1e-6. The loads and fixed coordinates must
+    be those of `start`. Cases without a state in `start` have none in the result.
     """
     request = _request(model, loads or {}, hold or {}, weight, stated)
     pose = _first(model, start, request.hold, len(request.loads.inputs))

@@ -42,8 +42,8 @@ def evaluate_designs(
 ) -> Array:
     """Evaluate results (d, ...) for a batch of d designs, given as one description with arrays; for a single design, (...).
 
-    Loads and fixed coordinates are as in `equilibrium`; axes of cases come after the axis of designs. The results of a design without an
-    equilibrium are NaN, provided that `results` returns NaN.
+    Loads and fixed coordinates are as in `equilibrium`; axes of cases come after the axis of designs. For a design without an equilibrium,
+    the state is NaN, and so are the results.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.addresses.address import set_value
