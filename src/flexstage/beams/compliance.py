@@ -35,9 +35,7 @@ class Law:
     """Stiffness and constraints of a link: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` DOFs.
 
     `inner` (..., m) [1/s^2] are the squared angular frequencies of its mass-normalised fixed-end modes, which are m additional coordinates
-    of the lumped model (default: no modes).
-
-    The mass matrix of the link is then (..., 12 + m, 12 + m), with the modes after the ends.
+    of the lumped model (default: no modes). The mass matrix of the link is then (..., 12 + m, 12 + m), with the modes after the ends.
     """
 
     stiffness: Array

@@ -25,10 +25,8 @@ def mass(part: Part, material: Material | None) -> Array:
 
     The section at x moves by v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), with Gamma(x) = S(x) K. S is the compliance accumulated from the
     first end to x, and K = S(end)^-1. The mass is M = integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X
-    (1 - Gamma), X Gamma].
-
-    The mass includes the material between the ends of the profile. In a rigid motion, the inertia of the solid is exact. A
-    `ComplianceMatrix` part has half its mass at each end; `Joint` and `Restricted` parts have none.
+    (1 - Gamma), X Gamma]. The mass includes the material between the ends of the profile. In a rigid motion, the inertia of the solid is
+    exact. A `ComplianceMatrix` part has half its mass at each end; `Joint` and `Restricted` parts have none.
 
     For a part with m fixed-end modes, the matrix is (..., 12 + m, 12 + m). It contains the unit masses of the modes, and their coupling to
     the motion of the ends.

@@ -7,10 +7,8 @@ squared bending moment. Then
     1 / factor = (1 - nu^2) + nu^2 s(L / b).
 
 s depends little on nu. It is a rational function of L/b between two limits: s -> 1 - const b/L for narrow leaves, s -> const L/b for wide
-leaves.
-
-The constants are fitted to a converged Ritz solution of the thin plate (tests/analytic). The factors agree with this solution within 0.06 %
-for b/L from 0.03 to 8 and nu from 0.1 to 0.45. They agree within 0.08 % with the plate elements of reference B6.
+leaves. The constants are fitted to a converged Ritz solution of the thin plate (tests/analytic). The factors agree with this solution
+within 0.06 % for b/L from 0.03 to 8 and nu from 0.1 to 0.45. They agree within 0.08 % with the plate elements of reference B6.
 """
 
 from __future__ import annotations

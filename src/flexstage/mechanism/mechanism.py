@@ -72,10 +72,8 @@ class Link(Description):
 
     A part with ports (a superelement) joins a body at each named port; several ports may join the same body. The link frame is then the
     frame of the part's axes. With two ports, `free` are the degrees of freedom of the second port's body against the first port's body,
-    about the second port's origin.
-
-    `circuit` names the input of a force actuator. Force actuators of one circuit are in series on one amplifier and share the input. A `-`
-    before the name reverses the polarity (push-pull).
+    about the second port's origin. `circuit` names the input of a force actuator. Force actuators of one circuit are in series on one
+    amplifier and share the input. A `-` before the name reverses the polarity (push-pull).
     """
 
     joins: Joins

@@ -1,10 +1,8 @@
 """Finite motion of the ideal model: inverse kinematics (pose to strokes) and forward kinematics (strokes to pose) on SE(3).
 
 The unknowns are the poses of all bodies. The locked components of the relative pose of every link are zero; for an actuator, they equal its
-free deformation times its stroke. Force actuators do not constrain motion.
-
-Any topology is supported, including closed loops. Free internal modes are determined by steps of least norm. Redundant constraints are
-satisfied by least squares.
+free deformation times its stroke. Force actuators do not constrain motion. Any topology is supported, including closed loops. Free internal
+modes are determined by steps of least norm. Redundant constraints are satisfied by least squares.
 """
 
 from __future__ import annotations

@@ -1,10 +1,8 @@
 """Ideal model: rigid bodies; hinges are free in their intended DOFs and locked in all others; superelements are rigid.
 
 The unknowns are the twists of all bodies and the strokes. The deformations of every link in locked DOFs are zero; for an actuator, they
-equal its free deformation times its stroke.
-
-The remaining motions give R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform mobility, free internal modes and
-redundant constraints.
+equal its free deformation times its stroke. The remaining motions give R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the
+platform mobility, free internal modes and redundant constraints.
 
 Force actuators do not constrain motion. Their generalised forces on the ideal motions are computed by virtual work.
 """

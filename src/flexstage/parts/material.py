@@ -236,7 +236,7 @@ _KEPT = ("density", "yield_stress", "expansion", "loss_factor", "source", "fatig
 
 @dataclass(frozen=True, eq=False)
 class Oriented(Material):
-    """Cubic crystal in the axes of a part: `young` along x, `poisson` of a plate, `shear_modulus` in the x-z plane, `other_shear` in x-y.
+    """Cubic crystal in the axes of a part: `young` along x, `poisson` of a plate, `shear_modulus` of plane xz, `other_shear` of plane xy.
     """
 
     other_shear: Annotated[Number, MODULUS, POSITIVE] = np.nan

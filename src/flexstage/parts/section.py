@@ -98,8 +98,7 @@ class Section:
         return axial + 0.5 * self.height * about_z + 0.5 * self.width * about_y
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return the largest shear stress [Pa] of a torque [N m]; `uniform` is the fraction of Saint-Venant torsion, the rest is warping.
-        """
+        """Return the largest shear stress [Pa] of a torque [N m]; `uniform` is the fraction of Saint-Venant torsion, not of warping."""
         raise NotImplementedError
 
     def each(self, function: Callable[[Number], Any]) -> Self:

@@ -18,8 +18,7 @@ _PARALLEL = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Convex:
-    """Convex polytope: corners `points` (n, 3) [m], and unit vectors normal to its faces, `normals` (k, 3), and along its `edges` (m, 3).
-    """
+    """Convex polytope: corners `points` (n, 3) [m], unit vectors normal to its faces, `normals` (k, 3), and along its `edges` (m, 3)."""
 
     points: Array
     normals: Array

@@ -22,8 +22,7 @@ _FREQUENCIES = 6
 
 @dataclass(frozen=True)
 class BodyEffect:
-    """Value of a `quantity` [SI] with `rigid` and with `flexible` bodies; `body` names the body (or equal bodies) with the largest effect.
-    """
+    """Value of a `quantity` [SI] with `rigid` and with `flexible` bodies; `body` names the body or bodies with the largest effect."""
 
     quantity: str
     rigid: float

@@ -54,8 +54,7 @@ class DirectionalStiffness:
         return 1.0 - self.softest / self.stiffest
 
     def along(self, angle: Number) -> Array:
-        """Return the stiffness along directions at `angle` [rad] from x: force over displacement in the same direction, 1 / (n^T K^-1 n).
-        """
+        """Return the stiffness along directions at `angle` [rad] from x: force over displacement in this direction, 1 / (n^T K^-1 n)."""
         direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
         if not self.tensor.values.any(axis=-1).all():  # an axis without stiffness
             return np.zeros(direction.shape[:-1])

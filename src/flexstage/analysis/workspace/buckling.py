@@ -90,10 +90,8 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
 
     Slender parts are leaves, rods, notches, necks and stacks. The Euler load is P = pi^2 E I / L_e^2, with the least second moment of the
     thinnest section over the whole length. The load of notched hinges is thus underestimated. A lower torsional buckling load takes
-    precedence.
-
-    The load factor of the whole stage is for the actual end conditions. Compressions below 1e-9 of the largest force in any part are
-    rounding errors and count as zero.
+    precedence. The load factor of the whole stage is for the actual end conditions. Compressions below 1e-9 of the largest force in any
+    part are rounding errors and count as zero.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

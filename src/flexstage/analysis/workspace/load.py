@@ -73,8 +73,7 @@ class LoadShare(Result):
         return np.sum(self.loads.values, axis=-1)
 
     def under(self, force: Array, at: Array) -> Array:
-        """Return the additional compression (..., n) [N] by a force (..., 3) [N] on the platform at a point (..., 3) [m], in the stage's frame.
-        """
+        """Return the compression (..., n) [N] due to a force (..., 3) [N] on the platform at a point (..., 3) [m], in stage axes."""
         moment = np.cross(at - self.reference, force)
         wrench = np.concatenate(np.broadcast_arrays(force, moment), axis=-1)
         return (self.share.values @ wrench[..., None])[..., 0]

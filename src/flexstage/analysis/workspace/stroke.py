@@ -57,8 +57,7 @@ class StrokeLimits:
         return np.where(high, self.high[..., None, :], self.low[..., None, :])
 
     def points(self, depth: int) -> Array:
-        """Return the corners as points (2^n, ..., n) with at least `depth` batch axes in the middle, to broadcast with a batch of designs.
-        """
+        """Return the corners as points (2^n, ..., n) with at least `depth` batch axes in the middle, to broadcast with many designs."""
         return beside(np.moveaxis(self.corners, -2, 0), depth)
 
 

@@ -34,16 +34,14 @@ class _Sort(Enum):
 
 @dataclass(frozen=True)
 class Sheet:
-    """Table of values: `names` are columns with the names of the rows (empty for a single row), `columns` the values of every field by row.
-    """
+    """Table of values: `names` are columns with the row names (empty for a single row), `columns` the values of every field by row."""
 
     names: Mapping[str, tuple[Any, ...]]
     columns: Mapping[Field, tuple[Any, ...]]
 
     @property
     def heads(self) -> Mapping[str, tuple[Any, ...]]:
-        """All columns by heading: the names of the rows, then the fields. A field's heading is its key in the document, with the SI unit.
-        """
+        """All columns by heading: row names, then fields. The heading of a field is its key in the document, with the SI unit."""
         fields = {each.key: values for each, values in self.columns.items()}
         return {f"{head}_name" if head in fields else head: values for head, values in self.names.items()} | fields
 

@@ -156,9 +156,7 @@ def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = Fals
     """Build the law of any `Beam` part by stress modes: curvature = flexibility(s) x polynomials (docs/nonlinear.md, 14).
 
     At zero load, the law equals the 6x6 of the beam. `flat`: the section is thin, and its fibres far from the axis stretch in twist (Wagner
-    effect).
-
-    `curvature` is the natural curvature about z [1/m].
+    effect). `curvature` is the natural curvature about z [1/m].
     """
     places, weights, flexibility, inertia = _whole(part)
     length = np.sum(weights)

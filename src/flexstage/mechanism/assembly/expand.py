@@ -169,11 +169,9 @@ class Assembly:
     """Expanded stage: all moving bodies, links and gauges by name. `actuators` maps input names to link names.
 
     For a circuit of force actuators, `actuators` has the first link of the input. `circuits` maps each of its links to the input and the
-    sign.
-
-    `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in `superelements` instead of `links`,
-    because they join any number of bodies. Bodies that belong to another body (`of`) are not listed: their solids are part of the owner, or
-    of `ground`, the outlines of the ground.
+    sign. `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in `superelements` instead of
+    `links`, because they join any number of bodies. Bodies that belong to another body (`of`) are not listed: their solids are part of the
+    owner, or of `ground`, the outlines of the ground.
     """
 
     bodies: Mapping[str, PlacedBody]

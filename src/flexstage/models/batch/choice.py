@@ -2,9 +2,7 @@
 
 The platform twist in a mass-normalised mode is phi. The platform's static compliance is C = sum phi phi^T / omega^2. H(f) is the sum over
 the modes up to frequency f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed
-`THRESHOLD`.
-
-The eigenvalues of H do not depend on units, on the reference point, on the basis of repeated modes, or on modes above f.
+`THRESHOLD`. The eigenvalues of H do not depend on units, on the reference point, on the basis of repeated modes, or on modes above f.
 """
 
 from __future__ import annotations

@@ -114,8 +114,7 @@ class Elimination:
 
     @cached_property
     def updates(self) -> tuple[tuple[int, int, int], ...]:
-        """Triples (edge, edge, target): two edges of an eliminated node and the edge that their product changes; -1 is the diagonal block.
-        """
+        """Triples (edge, edge, target): two edges of an eliminated node, and the edge that their product changes (-1: diagonal block)."""
         place = {edge: number for number, edge in enumerate(self.edges)}
         triples: list[tuple[int, int, int]] = []
         for _, own in itertools.groupby(range(len(self.edges)), key=lambda number: self.edges[number][0]):

@@ -2,9 +2,7 @@
 
 Terms are products of Chebyshev polynomials of the variables on which a number depends. The degree in each variable is found along two lines
 through the ranges. Terms of high total degree are dropped if the error at the validation designs remains small. The coefficients are fitted
-by least squares at random points.
-
-Functions that are not smooth are not fitted, e.g. outlines whose overlaps change over the ranges.
+by least squares at random points. Functions that are not smooth are not fitted, e.g. outlines whose overlaps change over the ranges.
 """
 
 from __future__ import annotations
@@ -32,8 +30,7 @@ _TOGETHER = 256
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Fit of those numbers (`rows`) that depend on the same `variables` (d,): Chebyshev `degrees` (terms, d), `coefficients` (terms, rows).
-    """
+    """Fit of numbers (`rows`) that depend on the same `variables` (d,): Chebyshev `degrees` (terms, d), `coefficients` (terms, rows)."""
 
     variables: Array
     degrees: Array

@@ -3,10 +3,8 @@
 A pivoted QR decomposition of the six columns of a body splits the rows that contain the body. Some rows give the body's coordinates from
 the coordinates of its neighbours. The other rows no longer contain the body and constrain only its neighbours.
 
-A coordinate without a row is a free internal mode. A zero row is a redundant constraint.
-
-Bodies with the fewest neighbours are eliminated first, so that free internal modes involve few bodies. The platform and the strokes are
-kept.
+A coordinate without a row is a free internal mode. A zero row is a redundant constraint. Bodies with the fewest neighbours are eliminated
+first, so that free internal modes involve few bodies. The platform and the strokes are kept.
 """
 
 from __future__ import annotations
@@ -51,9 +49,7 @@ class ConstraintSolution:
     """Motions that satisfy the constraints, over N coordinates.
 
     `last` is the elimination of the platform's coordinates and the strokes. `idle` are k rows (N,), one free internal mode per
-    unconstrained coordinate.
-
-    `redundant` lists, for each state of self-stress, the numbers of its constraints.
+    unconstrained coordinate. `redundant` lists, for each state of self-stress, the numbers of its constraints.
     """
 
     last: Elimination

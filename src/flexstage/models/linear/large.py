@@ -1,10 +1,8 @@
 """Sparse stiffness and inertia of large stages: factors, exact solutions and the lowest modes.
 
 The stiffness is K = G^T k G, with G the strains of all links per coordinate. In a long chain, rounding in K gives rigid motions of a part a
-spurious energy. Solutions are therefore refined with forces computed from the strains.
-
-If the refinement does not converge, strains and motions are both unknowns, and rigid motions are exact. This is the augmented system of
-weighted least squares (Bjorck, BIT 7, 1, 1967).
+spurious energy. Solutions are therefore refined with forces computed from the strains. If the refinement does not converge, strains and
+motions are both unknowns, and rigid motions are exact. This is the augmented system of weighted least squares (Bjorck, BIT 7, 1, 1967).
 """
 
 from __future__ import annotations

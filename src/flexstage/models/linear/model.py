@@ -58,17 +58,13 @@ class LinearModel(InNotebook, CheckedFields):
     - `inertial` (..., n, m): M_u, inertial forces due to motions that inputs impose (absent: zero).
     - `unknown`: outputs that the model does not determine, i.e. forces of locked DOFs.
 
-    Batch axes lead. An array without batch axes is valid for every design.
-
-    `viscous` are the dampers (..., d, d) [N s/m] of parts, by stiffness contribution. A damper resists the rate of the contribution's
-    elastic deformation (G q minus the imposed deformation) in the first d rows. The damping law of the model is added. Link forces do not
-    include dampers.
+    Batch axes lead. An array without batch axes is valid for every design. `viscous` are the dampers (..., d, d) [N s/m] of parts, by
+    stiffness contribution. A damper resists the rate of the contribution's elastic deformation (G q minus the imposed deformation) in the
+    first d rows. The damping law of the model is added. Link forces do not include dampers.
 
     `idle` names coordinates without stiffness (free internal modes), which are removed. The kept coordinates are M-orthogonal to the
-    removed modes. Frequencies and shapes thus do not depend on the choice of coordinates.
-
-    `idle_output` (..., p, k) are the outputs of the k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground
-    acceleration (both absent: none).
+    removed modes. Frequencies and shapes thus do not depend on the choice of coordinates. `idle_output` (..., p, k) are the outputs of the
+    k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground acceleration (both absent: none).
 
     `floating` (n, k) are the mass-normalised motions without stiffness of a platform that only forces drive (absent: none). K is then
     singular, and `solve` returns the elastic displacement without momentum in these motions (inertia relief).
@@ -187,8 +183,7 @@ class LinearModel(InNotebook, CheckedFields):
 
     @property
     def loss_matrix(self) -> Array:
-        """Compute the imaginary part of B (..., n, m) with structural damping: forces of imposed deformations have the part's loss factor.
-        """
+        """Compute the imaginary part of B (..., n, m) under structural damping: imposed deformations have the part's loss factor."""
         return self._of_imposed(lost=True)
 
     def _of_imposed(self, *, lost: bool) -> Array:

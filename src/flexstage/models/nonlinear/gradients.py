@@ -75,10 +75,8 @@ def gradients(
 
     By the implicit function theorem, dq/dp = - K^-1 dF/dp. K is the tangent stiffness, including the inner unknowns of flexures. dF/dp is
     the derivative of the residual at the known state. Residual and results are differentiated by a fourth-order central difference with
-    four points.
-
-    The error is about 1e-8 of the result divided by the number. Gradients are NaN without an equilibrium. Raises `DesignError` for
-    addresses that are not a single number.
+    four points. The error is about 1e-8 of the result divided by the number. Gradients are NaN without an equilibrium. Raises `DesignError`
+    for addresses that are not a single number.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> stage = parallelogram()

@@ -26,10 +26,8 @@ class FlexureState:
     """State of a group of l flexures at a pose of b cases: frames and arms (l, b, ...) in space, configurations, and responses.
 
     `lever` is h, from the first body's reference point to the end. `arm` is a_j, from the second body's reference point to the end. `onset`
-    is a_i, from the first body's reference point to the start.
-
-    `weight` (l, b, 3) is the weight per length, divided by E I / L^3, in the start frames (absent without gravity). `gap` (l, b, 6) is the
-    distance of the end from the second body.
+    is a_i, from the first body's reference point to the start. `weight` (l, b, 3) is the weight per length, divided by E I / L^3, in the
+    start frames (absent without gravity). `gap` (l, b, 6) is the distance of the end from the second body.
 
     `wrench` (l, b, 6) is the wrench of the second body on the end after the flexure's own unknowns are solved.
     """

@@ -183,8 +183,7 @@ class _Step:
 
 
 def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[EquilibriumSolution]:
-    """Iterate several designs of one structure, each with its cases. Elements other than flexures are evaluated for all designs together.
-    """
+    """Iterate several designs of one structure, each with its cases. Elements other than flexures are evaluated for all together."""
     first = tasks[0]
     if _all_compiled(first.model, first.hold):
         return [_search_compiled(task, options) for task in tasks]

@@ -35,7 +35,9 @@ def system(tangent: Tangent) -> Array:
 
 
 def condense(tangent: Tangent, gap: Array) -> FlexureResponse:
-    """Solve for the response to end motions and to the residual; `gap` (..., 6) is the distance of the end from its body. NaN if singular.
+    """Solve for the response to end motions and to the residual; NaN if singular.
+
+    `gap` (..., 6) is the distance of the end from its body.
     """
     matrix = system(tangent)
     size = tangent.hessian.shape[-1]

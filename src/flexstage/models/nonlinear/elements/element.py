@@ -22,9 +22,7 @@ class Shape:
     """Configuration of a flexure: curvatures (..., b, n, 3) and fields (..., b, n, 2) at its n points, rotations at points and end.
 
     `place` (..., b, n, 3) is the position r, `rate` (..., b, n, 3) is r', `end` (..., b, 3) is r at the end. `soft` (..., b, n, 3, 3) is
-    the compliance R C_n R^T, `tension` (..., b, n) the axial force N.
-
-    The loads are the `force` at the end and the `weight`.
+    the compliance R C_n R^T, `tension` (..., b, n) the axial force N. The loads are the `force` at the end and the `weight`.
     """
 
     rule: Rule

@@ -18,9 +18,7 @@ class FixedCoordinates:
     """h fixed coordinates: body numbers (h,), nominal arms (h, 3) of the points, `component` (h,) 0 to 5, and `value` (b, h) [m, rad].
 
     A translation is the displacement of the point; a rotation is a component of the rotation vector log R, with the moment T^-T e as
-    reaction. `origin` (h, 3) are the nominal points.
-
-    If the cases belong to different designs, arms and origins are (b, h, 3).
+    reaction. `origin` (h, 3) are the nominal points. If the cases belong to different designs, arms and origins are (b, h, 3).
     """
 
     body: Array

@@ -1,10 +1,8 @@
 """Links with a 6x6 about a centre, at large displacements: springs, stacks, specified matrices, joints (docs/nonlinear.md, 15).
 
 Both bodies are rigidly extended to frames a and b at the centre. The deformation is psi = log(R_a^T R_b) and d = R_m^T (x_b - x_a) in the
-half-way frame R_m = R_a exp(psi / 2). It does not depend on the order of the ends.
-
-A strut (a spring with a length L) turns about both ends: d_x = |x_b - x_a + (R_a + R_b) e_1 L / 2| - L. Its force acts along the line
-between its ends.
+half-way frame R_m = R_a exp(psi / 2). It does not depend on the order of the ends. A strut (a spring with a length L) turns about both
+ends: d_x = |x_b - x_a + (R_a + R_b) e_1 L / 2| - L. Its force acts along the line between its ends.
 
 A part with a length also shortens by its own bending: 1/2 e^T G e is added to e = (d, psi) (`beams.geometric.foreshortening`).
 """
@@ -125,8 +123,7 @@ def _by_case(table: Array, axes: int) -> Array:
 
 
 def stiffen(hinges: Hinges, ends: Ends, inputs: Array, pushing: Array, held: Array) -> tuple[Array, Array, Array, Array]:
-    """Compute the residual (l, b, 12) on both bodies, its derivative (l, b, 12, 12) by complex steps, deformations and their derivatives.
-    """
+    """Compute the residual (l, b, 12) on both bodies, its derivative (l, b, 12, 12), deformations and their derivatives."""
     deformation, rows = deform(hinges, ends)
     residual = _work(rows, exerted(hinges, deformation, inputs, pushing, held))
     stepped, stepped_rows = deform(hinges, _nudge(ends))

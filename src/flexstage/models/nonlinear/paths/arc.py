@@ -124,9 +124,7 @@ def march(loading: ProportionalLoading, begin: Point, length: float, *, longest:
     """Generate equilibria beyond `begin`; the step length is controlled by the path curvature and the prediction errors.
 
     A step is repeated with a shorter length if the tangent rotates, the equilibrium is off the tangent, or slope and stiffness differ from
-    their prediction. Therefore, no step skips two events.
-
-    The path ends if the step is too small a fraction of the longest previous step.
+    their prediction. Therefore, no step skips two events. The path ends if the step is too small a fraction of the longest previous step.
     """
     before, last, most = None, begin, 0.0
     while length > max(_FINEST * most, _SHORTEST):

@@ -40,8 +40,7 @@ Reserve = Callable[[Point], tuple[float, str]]
 
 @dataclass(frozen=True, eq=False)
 class FollowedPath:
-    """Followed path: last stable point, first critical point if any, load factor of an imperfect bifurcation (`bend`), factor at the end.
-    """
+    """Followed path: last stable point, first critical point if any, load factor of an imperfect bifurcation, and final factor."""
 
     last: Point
     event: Point | None
