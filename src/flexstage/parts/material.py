@@ -236,8 +236,7 @@ _KEPT = ("density", "yield_stress", "expansion", "loss_factor", "source", "fatig
 
 @dataclass(frozen=True, eq=False)
 class Oriented(Material):
-    """Cubic crystal in the axes of a part: `young` along x, `poisson` of a plate, `shear_modulus` of plane xz, `other_shear` of plane xy.
-    """
+    """Cubic crystal in the axes of a part: `young` along x, `poisson` of a plate, `shear_modulus` of plane xz, `other_shear` of xy."""
 
     other_shear: Annotated[Number, MODULUS, POSITIVE] = np.nan
     tensor: Array = field(default_factory=lambda: np.full((6, 6), np.nan))

@@ -50,7 +50,7 @@ class DirectionalStiffness:
 
     @property
     def spread(self) -> Annotated[Array, INNER, SHARE, Heading(digits=3)]:
-        """Relative difference of the principal stiffnesses (...)."""
+        """Difference of the principal stiffnesses (...), relative to the larger one."""
         return 1.0 - self.softest / self.stiffest
 
     def along(self, angle: Number) -> Array:

@@ -1,7 +1,7 @@
 """Size and dimension of units.
 
-Names and prefixes are defined in two tables; the angle is a separate dimension. A unit is a product or quotient of
-names with small powers, read from left to right: `N m/rad`, `nm/Hz^0.5`, `um/m/K`, `1/K`, `m/(N m)`. Sizes are exact fractions.
+Unit names and prefixes are defined in two tables. The angle is a separate dimension. A unit is a product or quotient of names with small
+powers, read from left to right: `N m/rad`, `nm/Hz^0.5`, `um/m/K`, `1/K`, `m/(N m)`. Sizes are exact fractions.
 """
 
 from __future__ import annotations

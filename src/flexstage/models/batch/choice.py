@@ -18,7 +18,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
 
 THRESHOLD = 0.1
-"""Fraction of the static compliance in some direction that the modes must exceed. For most stages, 0.1 and 0.7 give equal results."""
+"""Fraction of the static compliance in some direction that the modes must exceed. Most stages give equal results from 0.1 to 0.7."""
 
 MARGIN = 5e-3
 """Required distance of the eigenvalues of H from the threshold for a result by iteration, whose modes change H by 2e-3 at most."""

@@ -90,7 +90,7 @@ class _Coordinates:
 def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -> LinearModel:
     """Linearise about a state: a linear model for modes, responses and losses of a displaced or loaded stage.
 
-    All cases are a batch.
+    The cases of the state are the batch axes of the model.
 
     - Fixed coordinates are released: the stage is free under their reactions, which keep their directions. The reaction of a rotation is
       the moment conjugate to the component of the rotation vector. Fixed coordinates in `locked` remain fixed.
