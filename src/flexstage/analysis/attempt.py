@@ -1,4 +1,4 @@
-"""Collection of results that may be refused individually."""
+"""Collection of results, some of which may fail with an error."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _Result = TypeVar("_Result")
 
 
 class Attempts:
-    """Collector of reasons for refused results, by name; the `left_out` ones are `None` without a reason.
+    """Collector of results: it stores the reason for each result that fails, by name. Results in `left_out` are `None` without a reason.
 
     >>> from flexstage.base.finding import refuse
     >>> attempts = Attempts()
@@ -27,7 +27,7 @@ class Attempts:
         self._left_out = left_out
 
     def of(self, name: str, result: Callable[[], _Result]) -> _Result | None:
-        """Return the result, or `None` and store the reason."""
+        """Return the value of `result()`; if it raises `DesignError`, store the reason and return `None`."""
         if name in self._left_out:
             return None
         try:
@@ -37,7 +37,7 @@ class Attempts:
             return None
 
     def of_ground(self, name: str, ground: _Ground | None, reason: str, result: Callable[[_Ground], _Result]) -> _Result | None:
-        """Return the result of `ground` if present; else `None`, and store the reason."""
+        """Return the value of `result(ground)`; if `ground` is `None`, store the reason and return `None`."""
         if ground is None and name not in self._left_out:
             self.missing[name] = reason
         return None if ground is None else self.of(name, lambda: result(ground))

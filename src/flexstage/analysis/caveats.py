@@ -50,7 +50,7 @@ from flexstage.parts.plausible import implausible
 
 @dataclass(frozen=True)
 class Default(Finding):
-    """Default value of an unspecified field, and the kinds of results that are independent of the field (`without`)."""
+    """Default value of an unspecified field. `without` are the kinds of results that do not depend on the field."""
 
     without: Annotated[frozenset[str], INNER] = frozenset()
 
@@ -71,7 +71,7 @@ class Caveats:
     defaults: tuple[Default, ...] = ()
 
     def defaults_of(self, kind: str) -> tuple[Default, ...]:
-        """Defaults that a kind of result (`modes`, `workspace`) depends on."""
+        """Return the defaults on which a kind of result (`modes`, `workspace`) depends."""
         return tuple(each for each in self.defaults if kind not in each.without)
 
 
@@ -195,9 +195,9 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
 
 @one_thread
 def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Return warnings: loaded stage, parts outside beam theory's range, blocked strokes, interfering or intruding outlines.
+    """Return warnings about loads, parts outside the range of beam theory, blocked strokes, and interfering or intruding outlines.
 
-    An overridden part is named by its link.
+    A warning about an overridden part names its link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [each.where for each in design_warnings(double_triangle())]
@@ -358,7 +358,7 @@ def _blockages(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Return the errors that prevent models: actuators without a path, free internal modes, unreadable requirements.
+    """Return the errors that prevent a model: actuators without a path to the platform, free internal modes, unreadable requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> model_findings(double_triangle())
@@ -376,7 +376,7 @@ def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Check a stage: return its errors, or its warnings if there is no error, as `flexstage check` lists them.
 
-    `severity` of a finding distinguishes them. An empty tuple means that the stage has neither.
+    `severity` of a finding distinguishes errors and warnings. An empty tuple means that the stage has neither.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [finding.where for finding in check(double_triangle())]

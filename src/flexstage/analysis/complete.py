@@ -60,16 +60,17 @@ _UNLUMPED = "this needs the lumped model"
 class Analysis(InNotebook):
     """All results of one model of a stage; a field without a result is `None`, with the reason in `missing` by field name.
 
-    `response` is from the actuators' inputs to the platform's twist and all gauges, `transmissibility` from the ground to the platform. The
-    lumped model gives `deflection` and `buckling` under permanent load, drift, error budget, `units` (each distinct isolated unit) and the
-    `verdicts` on requirements. Other models have only the verdicts.
+    `response` is from the actuators' inputs to the platform's twist and all gauges, `transmissibility` from the ground to the platform.
+    Only the lumped model gives `deflection` and `buckling` under permanent load, drift, error budget, and `units` (each distinct isolated
+    unit). All models give the `verdicts` on requirements.
 
     `loaded` is the effect of the permanent load. If it is significant, statics, modes, responses (`felt`), lost motion, drift, error budget
     and their verdicts are for the loaded stage. Other results and `linear` are nominal. `second_order` is the small-displacement error over
-    the required strokes, or the available ones. `ends` has critical load factors at the ends of the paths, up to the required factor; None
-    without paths. The error budget is for the required strokes, or all single-axis strokes at once, and one kelvin. `freedoms` (stiffness
-    along ideal motions and constraints; None for six ideal motions) and `mass` of the platform belong to the statics.
-    `stress` is at the required strokes, or of force-driven stages without them at peak current.
+    the required strokes (default: the available strokes). `ends` has critical load factors at the ends of the paths, up to the required
+    factor; None without paths. The error budget is for one kelvin and the required strokes (default: all single-axis strokes at once).
+
+    `freedoms` is the stiffness along ideal motions and constraints (None for six ideal motions), `mass` the effective mass of the platform.
+    `stress` is at the required strokes; for force-driven stages without required strokes, at peak current.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("an analysis", "fs.analyse(stage)")
@@ -106,7 +107,7 @@ class Analysis(InNotebook):
 
 
 def felt(mechanism: Mechanism, model: Model) -> LinearModel | None:
-    """Return the linear model of a stage; for a significant permanent load, the lumped one linearised about the loaded state.
+    """Return the linear model of a stage. If the permanent load is significant, the lumped model is linearised about the loaded state.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> "geometric" in felt(double_triangle(), Model.LUMPED).stiffness
@@ -118,7 +119,9 @@ def felt(mechanism: Mechanism, model: Model) -> LinearModel | None:
 
 
 def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
-    """Return the linear model of a stage; `None` for the ideal one. Refuses an unstable nominal position.
+    """Return the nominal linear model of a stage; `None` for the ideal model.
+
+    Raises `DesignError` for an unstable nominal position.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(read(double_triangle(), Model.MAPPED).coordinates)
@@ -136,7 +139,7 @@ def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
 @check_arguments
 @one_thread
 def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = True) -> Analysis:
-    """Compute all analyses of one model; unless `whole`, only those of the short form, in half the time.
+    """Compute all analyses of one model; without `whole`, only those of the short form, in half the time.
 
     The short form omits responses, isolated units and most of the workspace. Impossible results (lost motion of an under-actuated stage)
     are `None`, with the reason in `missing`. Raises `DesignError` if the model is refused.

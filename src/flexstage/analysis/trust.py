@@ -1,4 +1,4 @@
-"""Outcome of a comparison of theory and FEA. Separate module: tables import it without the comparison."""
+"""Outcome of a comparison of theory and FEA, in a separate module so that tables need not import the comparison."""
 
 from __future__ import annotations
 

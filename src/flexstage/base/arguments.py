@@ -1,7 +1,7 @@
 """Conversion and validation of arguments by the annotation of their field or parameter.
 
-Annotations are as in files and schemas: `section: LeafSection` accepts a member or its spelling in files ("beam"), `Annotated[Number,
-LENGTH]` a finite number or an array. Other values raise an error with the name of the argument.
+The annotations are the same as for files and schemas. `section: LeafSection` accepts a member or its spelling in files ("beam").
+`Annotated[Number, LENGTH]` accepts a finite number or an array. Other values raise an error with the name of the argument.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ Rule: TypeAlias = Callable[[Any], Any]
 
 @dataclass(frozen=True)
 class Demand:
-    """Rules of conversion: whether numbers must be finite, and whether mutable values become immutable."""
+    """Rules of conversion: `finite` requires finite numbers, `frozen` converts mutable values to immutable ones."""
 
     finite: bool = True
     frozen: bool = False
@@ -49,7 +49,7 @@ UNLIMITED = Demand(finite=False)
 
 
 WRITTEN = "WRITTEN"
-"""Class attribute of descriptions and results: a noun, and the call that creates it (`fs.lumped(stage)`)."""
+"""Name of a class attribute of descriptions and results: a noun, and a call that creates such an object (`fs.lumped(stage)`)."""
 
 
 class MismatchError(Exception):
@@ -60,7 +60,7 @@ class MismatchError(Exception):
         self.value, self.expected, self.advice, self.place = value, expected, advice, ""
 
     def refusal(self, where: str) -> DesignError:
-        """Return the error of a field or parameter.
+        """Return the error as a `DesignError` for the field or parameter `where`.
 
         >>> str(MismatchError(3.0, "a text", "Give a str").refusal("Leaf.material"))
         'Leaf.material: must be a text (got 3.0). Give a str.'
@@ -69,11 +69,11 @@ class MismatchError(Exception):
 
 
 class CheckedFields:
-    """Base of frozen dataclasses with fields converted or refused at construction."""
+    """Base of frozen dataclasses that convert or refuse their field values at construction."""
 
     __slots__ = ()
     frozen_values: ClassVar[bool] = False
-    """Whether lists become tuples, mappings tables, and arrays read-only."""
+    """Whether field values become immutable: lists become tuples, mappings become tables, arrays become read-only."""
 
     def __post_init__(self) -> None:
         own = self.__dict__
@@ -90,8 +90,8 @@ class CheckedFields:
 def check_arguments(function: Callable[P, T]) -> Callable[P, T]:
     """Decorate a function to convert or refuse its arguments by its annotations.
 
-    Raises `DesignError` under the name of the parameter; `TypeError`, with the probable call, for a stage instead of an
-    object created from it.
+    Raises `DesignError` with the name of the parameter. For a stage instead of a model or result created from the stage, raises `TypeError`
+    with the probable call.
 
     >>> def bend(ends: tuple[str, ...], *, load: float = 1.0) -> float:
     ...     return load

@@ -43,7 +43,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class DesignWarning(Finding):
-    """A doubtful value or result, which prevents nothing."""
+    """Warning about a doubtful value or result, which is still computed."""
 
     severity = Severity.WARNING
 
@@ -60,7 +60,7 @@ class DesignError(ValueError):
 
 
 class LowerBoundError(DesignError):
-    """Quantity known only by its lower `bound`."""
+    """Error for a quantity of which only a lower `bound` is known."""
 
     def __init__(self, findings: Iterable[Finding], bound: float) -> None:
         super().__init__(findings)
@@ -104,7 +104,7 @@ def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def combine_warnings(warnings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Merge warnings with different objects and values of one bound into the worst one, with their number.
+    """Merge warnings that differ only in object and value into one: the worst value, and the number of warnings.
 
     >>> large = [Finding(f"B{each}", f"stress too large (got {each} MPa, expected 1 MPa or less)", "Reduce it") for each in (2, 4, 3)]
     >>> print(*combine_warnings(large))
@@ -126,7 +126,7 @@ def _worst(group: Sequence[Finding]) -> Finding:
 
 
 def name_first(names: Sequence[str], most: int = 8) -> str:
-    """Return the first names, and the number of the others.
+    """Return a text with the first `most` names and the number of the other names.
 
     >>> name_first(["b2"]), name_first(["b2", "b3", "b4", "b5"], most=2)
     ('b2', 'b2, b3 and 2 more')
@@ -135,7 +135,10 @@ def name_first(names: Sequence[str], most: int = 8) -> str:
 
 
 def suggest_nearest(name: str, names: Iterable[str], *, otherwise: str = "") -> str:
-    """Return a hint for an unknown name: its new name, at most six similar names (the nearest first), else `otherwise`, else known names.
+    """Return a hint for an unknown name.
+
+    The hint is the new name of a renamed item, or at most six similar names (the nearest first). Without a similar name, the hint is
+    `otherwise` or some known names.
 
     >>> suggest_nearest("plattform", ["ground", "platform"]), suggest_nearest("xyz", ["ground", "platform"])
     ('Use platform', 'Use ground or platform')

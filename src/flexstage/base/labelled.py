@@ -12,7 +12,7 @@ from flexstage.base.number import Array
 
 NOISE = 1e-9
 NOISE_RULE = "0: rounding noise, below 1e-9 of the geometric mean of the largest entries (SI) in the row and the column."
-"""Rule for rounding noise as 0, for table notes."""
+"""Rule, as text for table notes, by which rounding noise is shown as 0."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +85,7 @@ class Matrix(InNotebook):
 
     @property
     def unit_places(self) -> tuple[list[str], list[str], list[list[str]]]:
-        """Common units of columns, rows and entries: each unit once, at the outermost common level."""
+        """Units for the column heads, row heads and entries. A common unit appears only once, at the outermost level that shares it."""
         across, down = len(self.columns), len(self.rows)
         blank = [[""] * across] * down
         if isinstance(self.unit, str):

@@ -1,4 +1,4 @@
-"""Lazy import: names of a package (PEP 562), and rarely used modules."""
+"""Lazy import of the names of a package (PEP 562) and of rarely used modules."""
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
@@ -9,9 +9,10 @@ from flexstage.base.renamed import new_name
 
 
 def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], object], Callable[[], list[str]]]:
-    """Return `__getattr__` and `__dir__` of a package with names in the modules of `homes`: module below the package -> names.
+    """Return `__getattr__` and `__dir__` of a package whose names are imported at first use.
 
-    They raise `AttributeError` for other names. A name must not be a module of the package: an import would replace it.
+    `homes` maps each module below the package to its names. Other names raise `AttributeError`. A name must not be a module of the package:
+    importing that module would replace the name.
     """
     home = {name: module for module, names in homes.items() for name in names.split()}
 
@@ -27,7 +28,7 @@ def lazy_attributes(package: str, homes: Mapping[str, str]) -> tuple[Callable[[s
 
 
 class LazyModule:
-    """Module by its full name, imported at first use; type checkers see the import.
+    """Module by its full name, imported at first use. Type checkers treat it as imported.
 
     >>> LazyModule("math").floor(1.5)
     1

@@ -1,4 +1,4 @@
-"""Notebook display: hook for the renderer of `show`."""
+"""Notebook display: connection of results to the display modules."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers of a description: a float, or a read-only array of batch axes."""
+"""Numbers of a description: a float, or a read-only array with batch axes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Number: TypeAlias = float | NDArray[np.float64]
-"""Physical value: one design (float) or a batch (array); complex for differentiation."""
+"""Physical value: a float for one design, an array for a batch. Complex values are for complex-step differentiation."""
 
 Array: TypeAlias = NDArray[Any]
 """Real or complex array with leading batch axes."""
@@ -112,9 +112,9 @@ def magnitude(value: Any) -> Any:
 
 
 def with_step(value: Array, slope: Array, number: Array) -> Array:
-    """Return f(x + ih) = f(x) + ih f'(x) for a complex step, from f and f' at the real part.
+    """Return f(x + ih) = f(x) + ih f'(x) of a complex `number` x + ih, from `value` f and `slope` f' at the real part.
 
-    Faster than complex functions.
+    This is faster than a complex function. A real `number` returns `value`.
 
     >>> number = np.array([0.5 + 1e-20j])
     >>> bool(with_step(np.sin(number.real), np.cos(number.real), number) == np.sin(number))
@@ -124,7 +124,7 @@ def with_step(value: Array, slope: Array, number: Array) -> Array:
 
 
 def first_design(values: Array, axes: int) -> Array:
-    """Return the first design of a batch: the last `axes` axes at index 0 of all leading ones.
+    """Return the first design of a batch: index 0 of all axes except the last `axes` axes.
 
     >>> first_design(np.array([[1.0, 2.0], [3.0, 4.0]]), 1).tolist()
     [1.0, 2.0]
@@ -136,9 +136,9 @@ _ALIKE = 1e-9
 
 
 def index_of_largest(values: Array, slack: Array | float = 0.0) -> Array:
-    """Return the index of the largest real value along the last axis; of equal ones (within 1e-9 or `slack`), the first.
+    """Return the index of the largest real value along the last axis; among equal values, the first index.
 
-    Ties are thus broken by order, not by rounding.
+    Values within 1e-9 (relative) or `slack` (absolute) of the largest are equal. The order breaks ties, not rounding.
 
     >>> int(index_of_largest(np.array([1.0, 3.0 - 1e-15, 3.0])))
     1
@@ -163,7 +163,7 @@ def argsort_descending(values: Array, alike: float = _ALIKE) -> list[int]:
 
 
 def distinct_values(values: Array) -> Array:
-    """Return distinct values above 0 in ascending order: of values within 1e-9 of one another, the least.
+    """Return the distinct values above 0 in ascending order; of values within 1e-9 of one another, only the least.
 
     >>> distinct_values(np.array([2.0, 1.0, 2.0 + 1e-12])).tolist()
     [1.0, 2.0]

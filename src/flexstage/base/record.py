@@ -1,9 +1,9 @@
-"""Records: results with annotated fields, read by one walker for documents, tables and their description.
+"""Records: results with annotated fields. One function (`walk`) reads them for documents, tables and their description.
 
-The key of a field is its name, for a number with its SI unit: `natural: Annotated[Array, FREQUENCY]` is `natural_hz`. An array with the
-names of its last axis in another field, `Annotated[Array, LENGTH, Along("actuators")]`, is written name by name. A property is included if
-its type is annotated with a quantity or `VIEW`. Bare arrays, `INNER` fields and descriptions are omitted. Absent values are None, with
-`reasons` by field.
+The key of a field is its name; for a number, the SI unit is appended: `natural: Annotated[Array, FREQUENCY]` has the key `natural_hz`. For
+an array, `Along` can name another field with the names of the last axis: `Annotated[Array, LENGTH, Along("actuators")]`. Such an array is
+written name by name. A property is included if its type is annotated with a quantity or `VIEW`. Arrays without annotation, `INNER` fields
+and descriptions are omitted. Absent values are None; `reasons` gives the reason by field.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _Kind = TypeVar("_Kind")
 
 
 class Walked(Enum):
-    """Inclusion of a field, independent of its type."""
+    """Annotation that includes (`VIEW`) or omits (`INNER`) a field in documents, independent of its type."""
 
     VIEW = True
     INNER = False
@@ -39,14 +39,14 @@ VIEW, INNER = Walked.VIEW, Walked.INNER
 
 @dataclass(frozen=True)
 class Along:
-    """Name field of the last axis of an array."""
+    """Annotation of an array: `names` is the field with the names of its last axis."""
 
     names: str
 
 
 @dataclass(frozen=True, init=False)
 class Axes:
-    """Fields (names or numbers) of the last axes of an array; a document contains the array unchanged."""
+    """Annotation of an array: `fields` are the fields (names or numbers) of its last axes. A document contains the array unchanged."""
 
     fields: tuple[str, ...]
 
@@ -56,21 +56,21 @@ class Axes:
 
 @dataclass(frozen=True)
 class UnitOf:
-    """Numbers by name, each with the SI unit of its name."""
+    """Annotation of a mapping from names to numbers: `unit` returns the SI unit of a number from its name."""
 
     unit: Callable[[str], str]
 
 
 @dataclass(frozen=True)
 class UnitIn:
-    """Numbers with SI units in another field, shown in tables."""
+    """Annotation of numbers for tables: another `field` of the result contains their SI units."""
 
     field: str
 
 
 @dataclass(frozen=True)
 class Called:
-    """Key of a field with a symbol that is not a Python name, e.g. R_a."""
+    """Annotation with the `key` of a field whose symbol is not a Python name, e.g. R_a."""
 
     key: str
 
@@ -91,7 +91,10 @@ class Mark(Enum):
 
 @dataclass(frozen=True)
 class Graded:
-    """Grades of a number: `best` up to the size `good`, warning up to `poor`, failed beyond; if `good` exceeds `poor`, more is better."""
+    """Grade of a number by its size: `best` up to `good`, warning up to `poor`, failed beyond.
+
+    If `good` exceeds `poor`, larger values are better.
+    """
 
     good: float
     poor: float = np.inf
@@ -113,9 +116,9 @@ class Graded:
 class Heading:
     """Table format of a field, in addition to its name and quantity.
 
-    `text` is the column heading (default: the name in words). `digits` are significant ones of each number (default: aligned decimals).
-    `unit` is the display unit (default: that of the quantity); a ratio may be in `%`. `varying`: each number has a suitable unit.
-    `infinite` is the word for an infinite value, `absent` for an absent one. `mark` grades a value.
+    `text` is the column heading (default: the name in words). `digits` is the number of significant digits (default: aligned decimals).
+    `unit` is the display unit (default: the quantity's display unit); a ratio may be in `%`. With `varying`, each number has its own
+    suitable unit. `infinite` and `absent` are the words for infinite and absent values. `mark` returns the grade of a value.
     """
 
     text: str = ""
@@ -129,11 +132,11 @@ class Heading:
 
 @dataclass(frozen=True)
 class Layout:
-    """Table of a result class, its `TABLE`: title, fields in order (default: all that fit a cell), head over names, notes.
+    """Table layout of a result class, in its attribute `TABLE`: title, fields in order, head over names, notes.
 
-    Fields may be paths (`requirement.key`) and `INNER`; a labelled matrix is shown by columns; fields without any value are omitted. Title
-    and notes may have attributes of the result, as `{self.point}`. For several results, the title uses the first one; different notes are
-    listed by name. A property `notes` of the result adds notes on its values.
+    Default fields: all that fit in a cell. A field may be a path (`requirement.key`), also to an `INNER` field. A labelled matrix is shown
+    by columns; fields without any value are omitted. Title and notes may contain attributes of the result, as `{self.point}`. For several
+    results, the title uses the first result; different notes are listed by name. A property `notes` of the result adds notes on its values.
     """
 
     title: str
@@ -144,7 +147,7 @@ class Layout:
 
 @dataclass(frozen=True)
 class Field:
-    """Field of a result: name, type, annotations, and the first line of its explanation."""
+    """Field of a result: name, type, annotations, and `meaning` (the first line of its docstring)."""
 
     name: str
     type: Any
@@ -153,7 +156,7 @@ class Field:
 
     @property
     def key(self) -> str:
-        """Name with the unit.
+        """Key in documents: the name followed by the unit.
 
         >>> from flexstage.base.units.quantity import STIFFNESS
         >>> Field("axial", float, (STIFFNESS,)).key
@@ -164,13 +167,13 @@ class Field:
 
     @property
     def unit(self) -> str:
-        """SI unit; `1` without one."""
+        """SI unit; `1` for a field without a quantity."""
         quantity = self.annotation(Quantity)
         return quantity.si if quantity else "1"
 
     @property
     def heading(self) -> Heading:
-        """Table format.
+        """Table format, with the name in words as default text.
 
         >>> Field("blocking_force", float, (Heading(digits=4),)).heading
         Heading(text='blocking force', digits=4, unit='', varying=False, infinite='inf', absent='', mark=None)
@@ -186,7 +189,7 @@ class Field:
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """Fields of its last axes."""
+        """Names of the fields that label the last axes of the array."""
         axes = self.annotation(Axes)
         return axes.fields if axes else (self.along,) if self.along else ()
 
@@ -195,7 +198,7 @@ class Field:
         return next((each for each in self.annotations if isinstance(each, kind)), None)
 
     def of(self, record: Any) -> Any:
-        """Return its value."""
+        """Return the value of this field in a result."""
         value = getattr(record, self.name)
         by_name = self.annotation(UnitOf)
         return (
@@ -206,7 +209,7 @@ class Field:
 
     @property
     def along(self) -> str | None:
-        """Field with the names of its last axis."""
+        """Name of the field with the names of the array's last axis; `None` without one."""
         along = self.annotation(Along)
         return along.names if along else None
 
@@ -225,7 +228,7 @@ def key_with_unit(name: str, unit: str) -> str:
 
 @functools.cache
 def result_fields(kind: type) -> Mapping[str, Field]:
-    """Return all fields of a result class by name, then its properties; including table-only ones."""
+    """Return all fields of a result class by name, then its properties, including those shown only in tables."""
     hints = get_type_hints(kind, include_extras=True)
     own = [(each.name, hints[each.name], "") for each in fields(kind)]
     return {name: Field(name, *_unwrap(hint), doc) for name, hint, doc in (*own, *_properties(kind))}
@@ -262,7 +265,7 @@ def field_of(kind: type, path: str) -> Field:
 
 
 def field_at(record: Any, path: str) -> tuple[Field, Any]:
-    """Return a field of a result as `field_of`, and its value; None if it or a result on the path is absent.
+    """Return a field of a result (see `field_of`) and its value; the value is None if any result on the path is absent.
 
     >>> field_at(Field("mass", float, ()), "heading.text")[1]
     'mass'
@@ -301,7 +304,7 @@ def _properties(kind: type) -> Iterator[tuple[str, Any, str]]:
 
 
 def walk(record: Any) -> dict[str, Any]:
-    """Return the fields of a result, one level deep, and the `reasons` for absent values."""
+    """Return the fields of a result as a mapping, without conversion of nested results, and the `reasons` for absent values."""
     values, reasons = values_of(record)
     named, result = {each.along for each in values}, dict[str, Any]()
     for each, value in values.items():
@@ -344,15 +347,12 @@ def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
 
 
 def by_name(value: Any) -> Any:
-    """Return the values of a field along names, one per name."""
+    """Return the values of a field by its last axis, one item per name."""
     return np.moveaxis(value, -1, 0) if isinstance(value, np.ndarray) else value
 
 
 def paths(kind: type, before: str = "") -> Iterator[tuple[str, str, str]]:
-    """Yield path, kind and explanation of all document fields of a result class.
-
-    A nested result explains its own fields.
-    """
+    """Yield (path, kind, explanation) of all document fields of a result class, also of nested results."""
     kinds = walked_fields(kind)
     named = {each.along for each in kinds}
     for each in kinds:

@@ -1,4 +1,4 @@
-"""Registers of kinds: own kinds of a layer, and kinds of other packages by entry points."""
+"""Registers of kinds: the layer's own kinds, and kinds that other packages provide by entry points."""
 
 from __future__ import annotations
 
@@ -12,16 +12,13 @@ from flexstage.base.finding import refuse
 
 PREFIX = "flexstage."
 GROUPS = tuple(f"{PREFIX}{name}" for name in ("parts", "laws", "shapes", "gauges", "measures", "formats", "controllers", "amplifiers"))
-"""Entry-point groups for additions by packages, one per register."""
+"""Entry-point groups for kinds of other packages, one group per register."""
 Entry = TypeVar("Entry")
 
 
 @dataclass(frozen=True)
 class Register(Generic[Entry]):
-    """Entries by kind: `own` ones, and those of installed packages in the entry-point `group`, loaded on first use.
-
-    The caller reports unknown kinds. Processes started later load the same packages.
-    """
+    """Entries by kind: `own` entries, and entries of installed packages in the entry-point `group`, loaded on first use."""
 
     group: str
     own: Mapping[str, Entry]
@@ -32,7 +29,7 @@ class Register(Generic[Entry]):
         yield from dict.fromkeys(offer.name for offer in _offered(self.group) if offer.name not in self.own)
 
     def get(self, kind: str) -> Entry | None:
-        """Return the entry of a kind; `None` if there is none. Raises `DesignError` for an unloadable or duplicate one.
+        """Return the entry of a kind, or `None` if there is none. Raises `DesignError` for an entry that cannot be loaded or is duplicate.
 
         >>> Register("flexstage.nothing", {"leaf": 1.0}).get("leaf")
         1.0
@@ -44,7 +41,7 @@ class Register(Generic[Entry]):
         return self.own[kind] if kind in self.own else _load(offers[0]) if offers else None
 
     def offer(self, kind: str) -> str:
-        """Return name and version of the package of a kind; empty for own kinds."""
+        """Return name and version of the package that provides a kind; empty for own kinds."""
         return ", ".join(_distribution(offer) for offer in _offered(self.group) if offer.name == kind)
 
     @property
@@ -55,9 +52,9 @@ class Register(Generic[Entry]):
 
 
 def origin(module: str) -> str:
-    """Return name and version of the installed package of a module; empty for flexstage and scripts.
+    """Return name and version of the installed package that contains a module; empty for flexstage and scripts.
 
-    Part of digests: results of a class may change with its package's version.
+    Digests include this text, because results of a class may change with its package's version.
 
     >>> origin("flexstage.parts.leaf")
     ''

@@ -27,11 +27,11 @@ Tap InputSignal            Recorded InputQuantity      load_wanted load_optimisa
 """
 _WORDS = iter(_TEXT.split())
 RENAMED = tuple(zip(_WORDS, _WORDS, strict=True))
-"""Pairs of an old and a new name; an old name may have several, one per command or file."""
+"""Pairs of an old and a new name. An old name may have several new names, each for another command or file."""
 
 
 def new_name(old: str, known: Collection[str]) -> str | None:
-    """Return the name that replaced `old` among the `known` ones; `None` without one, or if `old` is known.
+    """Return the `known` name that replaced the name `old`; `None` without such a name, or if `old` itself is known.
 
     >>> new_name("mode_limit", ["name", "max_mode_frequency"]), new_name("by", ["by", "method"])
     ('max_mode_frequency', None)

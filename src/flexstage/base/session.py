@@ -1,7 +1,4 @@
-"""Session cache: results of functions for later calls in this process; can be listed and cleared.
-
-Pure functions of small constants use `functools.lru_cache` instead.
-"""
+"""Session cache: function results for later calls in this process. The cache can be listed and cleared."""
 
 from __future__ import annotations
 
@@ -13,13 +10,13 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 class Session:
-    """Results cached by function, least recently used dropped first."""
+    """Cached results of functions. Each function's least recently used results are dropped first."""
 
     def __init__(self) -> None:
         self._kept: dict[str, Any] = {}
 
     def keep(self, most: int) -> Callable[[_Function], _Function]:
-        """Decorate a pure function of hashable values to cache its last results, `most` at most.
+        """Decorate a pure function of hashable values to cache at most `most` results.
 
         >>> session = Session()
         >>> half = session.keep(2)(lambda value: value / 2)

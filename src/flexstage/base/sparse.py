@@ -1,4 +1,4 @@
-"""Sparse matrices: rows with few nonzero columns, and operations on them."""
+"""Sparse matrices: matrices with few nonzero columns, and operations on them."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Sparse:
-    """Real matrix (r, n) with few nonzero `columns` (c,) of `values` (r, c); repeated columns add up.
+    """Real matrix (r, n) that is zero except for `columns` (c,) with `values` (r, c). Values of repeated columns are added.
 
-    It replaces an operator (r, n): products with arrays are arrays; other numpy functions use the dense matrix.
+    It can replace a dense operator (r, n). Its products with arrays are arrays; other numpy functions use the dense matrix.
 
     >>> import numpy as np
     >>> rows = Sparse(np.array([2]), np.array([[3.0]]), 4)
@@ -35,7 +35,7 @@ class Sparse:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(r, n)."""
+        """Shape (r, n)."""
         return self.values.shape[0], self.size
 
     @property
@@ -45,7 +45,7 @@ class Sparse:
 
     @property
     def real(self) -> Sparse:
-        """Itself."""
+        """The matrix itself, which is real."""
         return self
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:  # noqa: FBT001 (numpy's protocol)
@@ -75,12 +75,12 @@ class Sparse:
         return np.asarray(self)[index]
 
     def swapaxes(self, first: int, second: int) -> Array:
-        """Dense transpose."""
+        """Return the dense transpose."""
         return np.swapaxes(np.asarray(self), first, second)
 
 
 def few(matrix: Array | Sparse) -> Sparse:
-    """Return a real matrix (r, n) without empty columns.
+    """Convert a real matrix (r, n) to `Sparse`, without empty columns.
 
     >>> import numpy as np
     >>> few(np.array([[0.0, 2.0, 0.0]])).columns.tolist()
@@ -137,7 +137,7 @@ def block_diagonal(blocks: Iterable[Array]) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Tall matrix (p, n) by its nonzero entries: an output matrix with dense requested rows.
+    """Tall matrix (p, n), stored by its nonzero entries. Selected rows are dense arrays; for output matrices.
 
     >>> import numpy as np
     >>> tall = Rows.of([Sparse(np.array([2]), np.array([[3.0]]), 4)], 4)
@@ -153,16 +153,16 @@ class Rows:
 
     @staticmethod
     def of(rows: Iterable[Sparse], size: int) -> Rows:
-        """Stack matrices vertically."""
+        """Stack matrices with `size` columns vertically."""
         return Rows(as_csr(rows, size))
 
     @property
     def shape(self) -> tuple[int, int]:
-        """(p, n)."""
+        """Shape (p, n)."""
         return self.entries.shape
 
     def few(self, first: int, count: int) -> Sparse:
-        """Return consecutive rows without empty columns."""
+        """Return `count` consecutive rows from row `first`, without empty columns."""
         starts = self.entries.indptr[first : first + count + 1]
         own = self.entries.indices[starts[0] : starts[-1]]
         columns = np.unique(own)
@@ -178,7 +178,7 @@ class Rows:
 
     @property
     def real(self) -> Rows:
-        """Itself."""
+        """The matrix itself, which is real."""
         return self
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:  # noqa: FBT001 (numpy's protocol)
@@ -196,5 +196,5 @@ class Rows:
         return np.asarray(self)[index]
 
     def swapaxes(self, first: int, second: int) -> Array:
-        """Dense transpose."""
+        """Return the dense transpose."""
         return np.swapaxes(np.asarray(self), first, second)

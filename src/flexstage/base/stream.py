@@ -1,4 +1,4 @@
-"""Reproducible random streams by seed and key, in any order."""
+"""Reproducible random numbers: independent streams by seed and key, in any order."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def generator(seed: int, *key: int) -> np.random.Generator:
-    """Return the generator of a stream: equal seed and key give equal numbers, other keys independent ones.
+    """Return the random generator of a stream. Equal seed and key give equal numbers, other keys independent numbers.
 
     >>> first, again, other = (generator(7, *key).standard_normal() for key in ((1, 0), (1, 0), (1, 1)))
     >>> first == again, first == other

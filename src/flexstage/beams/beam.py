@@ -15,9 +15,10 @@ from flexstage.parts.section import Section
 
 @dataclass(frozen=True, eq=False)
 class Beam:
-    """A beam symmetric about its centre: `flexibility` and `inertia` per length at each station (..., m, 6), order (x, y, z, rx, ry, rz).
+    """Beam symmetric about its centre: `flexibility` and `inertia` per length at each station (..., m, 6), order (x, y, z, rx, ry, rz).
 
-    Flexibility: 1/(E A), k/(G A) twice, twist rate per torque, 1/(E I_y), 1/(E I_z). Inertia: rho A three times, rho I_p, rho I_y, rho I_z.
+    The flexibilities are 1/(E A), k/(G A) twice, twist rate per torque, 1/(E I_y), 1/(E I_z). The inertias are rho A three times, rho I_p,
+    rho I_y, rho I_z.
     """
 
     points: Stations
@@ -40,7 +41,7 @@ class Beam:
 
 
 def beam(points: Stations, section: Section, material: Material) -> Beam:
-    """Build the beam of a section sampled at stations; warping is restrained at its ends.
+    """Build the beam of a section given at stations; warping is restrained at both ends.
 
     >>> from flexstage.beams.quadrature import stations
     >>> from flexstage.parts.section import Rectangle
@@ -60,12 +61,14 @@ def beam(points: Stations, section: Section, material: Material) -> Beam:
 
 
 def shear_across(material: Material) -> Array | None:
-    """The shear modulus in the x-y plane (..., 1) where it differs from the x-z plane (orthotropic material)."""
+    """Return the shear modulus in the x-y plane (..., 1) [Pa] if it differs from the x-z plane (cubic crystal); else `None`."""
     return None if material.shear_across is None else _column(material.shear_across)
 
 
 def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting, across: Array | None = None) -> Array:
-    """Compute the flexibility per length (..., m, 6) of a section; moduli of shape (..., 1), `across` the one for shear along y.
+    """Compute the flexibility per length (..., m, 6) of a section; moduli `young` and `shear` [Pa] of shape (..., 1).
+
+    `across` is the shear modulus for shear along y, if different.
 
     >>> from flexstage.parts.section import circle
     >>> section = circle(np.ones(1), 1.0)

@@ -1,7 +1,7 @@
 """Compliance, stiffness and part law by beam theory, about the part's centre and in its link frame.
 
-Both ends are rigidly extended to the centre. Compliance takes the wrench at the centre on the second end to the relative twist, second
-minus first.
+Both ends are rigidly extended to the centre. The compliance times the wrench on the second end gives the relative twist, second end minus
+first, both at the centre.
 """
 
 from __future__ import annotations
@@ -34,10 +34,8 @@ _EVERY: Array = np.arange(6)
 class Law:
     """Stiffness and constraints of a link: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` DOFs.
 
-    `inner` (..., m) [1/s^2] are the squared angular frequencies of its mass-normalised fixed-end modes: m more coordinates of the lumped
-    model.
-
-    The mass of the link is then (..., 12 + m, 12 + m), with the modes after the ends. Absent: no modes.
+    `inner` (..., m) [1/s^2] are the squared angular frequencies of its mass-normalised fixed-end modes, which are m additional coordinates
+    of the lumped model (default: no modes). The mass matrix of the link is then (..., 12 + m, 12 + m), with the modes after the ends.
     """
 
     stiffness: Array
@@ -48,7 +46,7 @@ class Law:
 def compliance(part: Elastic, material: Material | None) -> Array:
     """Compute the compliance (..., 6, 6) of a part about its centre, rows (x, y, z, rx, ry, rz), SI.
 
-    It is diagonal except for a `ComplianceMatrix`. Notches, necks, leaves and rods need a `material`.
+    The matrix is diagonal, except for parts with a specified matrix. Notches, necks, leaves and rods need a `material`.
 
     Raises `DesignError` if the material is missing, or if the part has a specified stiffness that is singular (no compliance exists).
 
@@ -85,8 +83,8 @@ def law(part: Part, material: Material | None) -> Law:
 
     A `Joint` has no stiffness and locks all DOFs that are not free. Ordinary parts lock nothing.
 
-    A `Restricted` part starts from K = C^-1. Locked rows and columns are deleted. Freed ones are condensed: K_ee - K_ef K_ff^-1 K_fe.
-    Freedoms without any stiffness are free already.
+    For a `Restricted` part, K = C^-1 is reduced. Rows and columns of locked DOFs are deleted. Free DOFs f are condensed: K_ee - K_ef
+    K_ff^-1 K_fe, with the elastic DOFs e. DOFs without any stiffness are already free.
 
     >>> law(Joint((Freedom.RZ,)), None).locked == others((Freedom.RZ,))
     True
@@ -126,7 +124,7 @@ def viscous_damping(part: Part) -> Array | None:
 
 @SESSION.keep(32)
 def fixed_end_modes(part: Elastic, material: Material | None) -> tuple[FixedEndModes, ...]:
-    """Compute the fixed-end modes of a part, `inner_modes` of them, at the stations of its beam.
+    """Compute the `inner_modes` lowest fixed-end modes of a part, at the stations of its beam.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.leaf import Leaf
@@ -148,7 +146,7 @@ def locked_freedoms(part: Part) -> tuple[Freedom, ...]:
 
 
 def law_of(part: Part) -> PartLaw | None:
-    """Return the part law of beam theory for the part's kind (of the inner part if restricted), or `None` if there is none."""
+    """Return the part law for the part's kind (for a restricted part, of the part inside), or `None` if there is none."""
     return LAWS.get(inner(part).kind)
 
 

@@ -1,4 +1,4 @@
-"""Parts known by a 6x6 matrix."""
+"""Parts with a specified 6x6 compliance matrix."""
 
 from __future__ import annotations
 

@@ -31,13 +31,11 @@ class _HalfCross(Rectangle):
 
 
 def cruciform_beam(part: Cruciform, material: Material) -> Beam:
-    """Build the Timoshenko beam of a cruciform hinge: its leaves share the torque equally, with the restrained warping of `beams.torsion`.
+    """Build the Timoshenko beam of a cruciform hinge. Both leaves carry equal torque, with restrained warping as in `beams.torsion`.
 
-    The limit of thin leaves is Vlasov's torsion (Thin-Walled Elastic Beams, 1961):
+    For thin leaves, the torsional stiffness approaches Vlasov's (Thin-Walled Elastic Beams, 1961):
 
-    K = G J / L / (1 - tanh(k L / 2) / (k L / 2)), k^2 = G J / (E C_w).
-
-    The contraction that rigid ends prevent is neglected.
+    K = G J / L / (1 - tanh(k L / 2) / (k L / 2)), k^2 = G J / (E C_w). The restrained contraction at the rigid ends is neglected.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> hinge = Cruciform("steel", length=0.03, thickness=0.001, width=0.01)

@@ -26,9 +26,9 @@ Numbers = tuple[float, ...]
 
 @dataclass(frozen=True, eq=False)
 class HingeDimensions:
-    """Dimensions of a hinge (...): thickness, width, half length, axes of its arcs, Poisson's ratio.
+    """Dimensions of a hinge (...): thickness, width, half length, arc semi-axes, Poisson's ratio.
 
-    `beam` (..., 6) is the diagonal of its compliance by beam theory times Young's modulus. Hinges without arcs do not use the arc axes.
+    `beam` (..., 6) is the diagonal of its compliance by beam theory times Young's modulus. Hinges without arcs do not use the semi-axes.
     """
 
     thickness: Array
@@ -41,12 +41,12 @@ class HingeDimensions:
 
     @property
     def radius(self) -> Array:
-        """Radius of curvature at the throat."""
+        """Radius of curvature R at the throat."""
         return self.along**2 / self.across
 
     @property
     def root(self) -> Array:
-        """Square root of t/R."""
+        """Square root of t/R, thickness over radius at the throat."""
         return np.sqrt(self.thickness / self.radius)
 
     @property
@@ -65,7 +65,10 @@ class HingeDimensions:
         return 2.4 * (1.0 + self.poisson) * self.beam[..., 0]
 
     def plane_strain(self, scale: float, power: float, size: Array) -> Array:
-        """Plane-strain factor: 1 - nu^2 where the width prevents contraction over a `size`, 1 where it does not, smooth in between."""
+        """Compute the plane-strain factor: from 1 - nu^2 for a width far above `size` times `scale`, to 1 for a width far below.
+
+        `power` is the exponent of the transition between them.
+        """
         return 1.0 - self.poisson**2 / (1.0 + (scale * size / self.width) ** power)
 
 
@@ -74,14 +77,17 @@ Law = Callable[[HingeDimensions, Numbers], Array]
 
 
 def notch_x(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Tension: the root compliance d(t/R) / (E b), and prevented contraction."""
+    """Tension of a notch: the root compliance d(t/R) / (E b), and restrained contraction."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[5] + p[6] * (1.0 - flat)
     return hinge.plane_strain(p[3], p[4], hinge.half) * (hinge.beam[..., 0] + yielded / hinge.width)
 
 
 def notch_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Transverse: the roots, bending with prevented contraction, and the block, subtracted as a beam although it is a plate."""
+    """Transverse compliance of a notch: root compliance, bending with restrained contraction, and the block.
+
+    Beam theory includes the block as a beam. This term is subtracted, because the block deforms as a plate.
+    """
     root, flat = hinge.root, hinge.flatness
     circle = (p[0] + p[1] * root + p[2] * root**2 + p[3] * root**3) * flat ** p[9]
     yielded = circle + (flat - 1.0) * (p[10] + p[11] * root + p[12] * root**2)
@@ -91,7 +97,7 @@ def notch_y(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending about the thickness, as for tension; the roots of narrow hinges are stiffer."""
+    """Bending of a notch about its thickness, as for tension; the roots of narrow hinges are stiffer."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[7] + p[8] * (1.0 - flat)
     share = 1.0 / (1.0 + p[5] * (hinge.along / hinge.width) ** p[6])
@@ -99,7 +105,7 @@ def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def notch_rz(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending: the root rotation, proportional to t/R for small t/R, and larger for a larger Poisson's ratio."""
+    """Bending of a notch: the root rotation is proportional to t/R for small t/R, and increases with Poisson's ratio."""
     neck = np.sqrt(hinge.thickness * hinge.radius)
     turned = _root_rotation(hinge, p) * hinge.flatness ** p[4] * (1.0 + p[5] * (hinge.poisson - 0.3))
     return hinge.plane_strain(p[2], p[3], neck) * (hinge.beam[..., 5] + turned)
@@ -142,13 +148,13 @@ def wu_zhou_rotation(young: Number, width: Number, thickness: Number, radius: Nu
 
 
 def bar_x(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Tension between rigid faces, which restrain the contraction across the width and the thickness."""
+    """Tension of a bar between rigid faces, which restrain the contraction across the width and the thickness."""
     wide, thick = _proportions(hinge)
     return hinge.beam[..., 0] * (1.0 - hinge.poisson**2 * (_saturate(p[0] * wide) + _saturate(p[1] * thick)))
 
 
 def bar_z(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending and shear in the plane of the width between rigid faces."""
+    """Bending and shear of a bar in the plane of its width, between rigid faces."""
     wide, thick = _proportions(hinge)
     sheared = hinge.shear_share / hinge.beam[..., 2]
     restraint = hinge.poisson**2 * (p[0] * wide + p[1] * thick)
@@ -156,7 +162,7 @@ def bar_z(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def bar_ry(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending in the plane of the width between rigid faces."""
+    """Bending of a bar in the plane of its width, between rigid faces."""
     wide, thick = _proportions(hinge)
     return hinge.beam[..., 4] * (1.0 - hinge.poisson**2 * (p[0] * wide + p[1] * thick))
 
@@ -184,7 +190,7 @@ def leaf_y(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def leaf_rx(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Torsion of a leaf: its strips bend with contraction restrained at the ends, from 1 to 1 / (1 - nu^2) stiffer with the width."""
+    """Torsion of a leaf: its strips bend with restrained contraction at the ends, from 1 to 1 / (1 - nu^2) stiffer with the width."""
     wide, _ = _proportions(hinge)
     restrained = hinge.poisson**2 / (1.0 - hinge.poisson**2)
     return hinge.beam[..., 3] / (1.0 + p[0] + restrained * _saturate(p[1] * wide + p[2] * wide**2))
@@ -206,7 +212,7 @@ def _saturate(share: Array) -> Array:
 
 
 def toroidal(hinge: HingeDimensions, p: Numbers, index: int) -> Array:
-    """Compute the factor of a toroidal neck: larger compliance by exp(t/R (p0 + p1 (t/R)^1/2 + p2 (nu - 0.3)))."""
+    """Compute the compliance factor of a toroidal neck, exp(t/R (p0 + p1 (t/R)^1/2 + p2 (nu - 0.3)))."""
     return hinge.beam[..., index] * np.exp(hinge.root**2 * (p[0] + p[1] * hinge.root + p[2] * (hinge.poisson - 0.3)))
 
 
@@ -256,4 +262,4 @@ LAWS: Mapping[str, Mapping[str, tuple[Law, Numbers]]] = MappingProxyType(
         },
     }
 )
-"""Fitted law and coefficients by family and axis."""
+"""Fitted law and its coefficients by hinge family and axis."""

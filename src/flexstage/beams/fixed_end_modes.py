@@ -1,19 +1,19 @@
 """Fixed-end modes of prismatic parts (Ritz's method): transverse bending, and twist.
 
-The polynomials vanish at both ends; their number exceeds the requested modes so that the lowest modes are right to 1e-4 or better. Bending
-follows Timoshenko: deflection w, section rotation psi.
+The polynomials vanish at both ends. Their number exceeds the number of requested modes, so that the lowest modes are correct to 1e-4 or
+better. Bending is by Timoshenko's theory: deflection w, section rotation psi.
 
-A plate (Kirchhoff) also bends across its width. Its deflection is w (phi z in twist) plus Legendre polynomials of even (odd) degree in z,
-zero at the clamped ends,
+A plate (Kirchhoff) also bends across its width. In bending, its deflection is w plus Legendre polynomials of even degree in z; in twist,
+phi z plus polynomials of odd degree. They are zero at the clamped ends. The strain energy U of a plate is
 
     2 U = integral of D (w_xx^2 + 2 nu w_xx w_zz + w_zz^2 + 2 (1 - nu) w_xz^2) + S (w' - psi)^2 dx,   D = E t^3 / (12 (1 - nu^2)),
 
-with psi' for the w_xx of the mean and S the shear stiffness. A narrow plate bends with E I, a short wide one with E I / (1 - nu^2). Shear
-at its edges reduces the twist stiffness: 2 (1 - nu) D b is replaced with G J of its section.
+with psi' for the mean of w_xx over the width, and S the shear stiffness. A narrow plate bends with E I, a short wide plate with E I / (1 -
+nu^2). Shear at the edges reduces the twist stiffness: G J of the section replaces 2 (1 - nu) D b.
 
-A beam twists by 2 U = integral of G J phi'^2 + E C_w phi''^2 dx, with phi' = 0 at ends with restrained warping.
+The energy of a twisted beam is 2 U = integral of G J phi'^2 + E C_w phi''^2 dx, with phi' = 0 at ends with restrained warping.
 
-The modes are simple, so that a complex step in any number passes through them to first order.
+The eigenvalues are distinct. Complex-step derivatives of the modes by any number are therefore correct.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _FIRST_LOBE = -0.9
 
 @dataclass(frozen=True, eq=False)
 class Plate:
-    """Plate data of a leaf: its `width` b and Poisson's ratio; a plate of beam rigidity E I has D b = E I / (1 - nu^2)."""
+    """Plate data of a leaf: `width` b and Poisson's ratio. The plate rigidity D follows from the beam rigidity: D b = E I / (1 - nu^2)."""
 
     width: Number
     poisson: Number
@@ -46,7 +46,7 @@ class Plate:
 
 @dataclass(frozen=True, eq=False)
 class Bending:
-    """A part of `length` in a plane: rigidity E I, `shear` stiffness, mass and rotary inertia per length."""
+    """Part of a `length` that bends in a plane: rigidity E I, `shear` stiffness, mass and rotary inertia per length."""
 
     length: Number
     rigidity: Number
@@ -58,9 +58,9 @@ class Bending:
 
 @dataclass(frozen=True, eq=False)
 class Torsion:
-    """A part of `length` that twists: `rigidity` G J, `warping` E C_w (absent: free warping), inertia and rho C_w per length.
+    """Part of a `length` that twists: `rigidity` G J, `warping` E C_w (absent: free warping), inertia and rho C_w per length.
 
-    As a `plate` its warping stiffness is D b^3 / 12, with polynomials of higher degree across its width.
+    For a `plate`, the warping stiffness is D b^3 / 12, with polynomials of higher degree across the width.
     """
 
     length: Number
@@ -75,7 +75,7 @@ class Torsion:
 class FixedEndModes:
     """Modes of unit modal mass: squared angular frequencies `squares` (..., n) [1/s^2], displacement and rotation of sections (..., n, s).
 
-    `axis`: 1 and 2 for deflections along y and z, with the section rotation dw/dx; 3 for twist about x, without it.
+    `axis` is 1 for deflections along y, 2 along z, 3 for twist about x. The rotation is dw/dx for deflections, and not used for twist.
     """
 
     axis: int
@@ -85,7 +85,7 @@ class FixedEndModes:
 
 
 def fixed_end_bending(axis: int, part: Bending, count: int, stations: Array) -> FixedEndModes:
-    """Compute the first `count` fixed-end bending modes along y or z (`axis` 1, 2), at stations (s,) from -1 to 1 over the half length.
+    """Compute the first `count` fixed-end bending modes along y (`axis` 1) or z (2) at `stations` (s,): x over the half length.
 
     Compared with Euler's clamped-clamped beam, whose frequencies are 22.3733, 61.6728, 120.903 times (E I / (rho A L^4))^(1/2):
 
@@ -117,7 +117,7 @@ def fixed_end_bending(axis: int, part: Bending, count: int, stations: Array) -> 
 
 
 def fixed_end_twist(part: Torsion, count: int, stations: Array) -> FixedEndModes:
-    """Compute the first `count` fixed-end twist modes, at stations (s,) from -1 to 1 over the half length.
+    """Compute the first `count` fixed-end twist modes at `stations` (s,): x over the half length, from -1 to 1.
 
     >>> rod = Torsion(length=1.0, rigidity=1.0, inertia=1.0)
     >>> (fixed_end_twist(rod, 3, np.zeros(1)).squares ** 0.5 / np.pi).round(9).tolist()
@@ -194,7 +194,7 @@ def _plate_blocks(
 
 
 def join(arrays: Iterable[Array]) -> Array:
-    """Concatenate arrays along their last axis, with the other axes broadcast.
+    """Concatenate arrays along their last axis; the other axes are broadcast.
 
     >>> join([np.ones((2, 1)), np.zeros(2)]).tolist()
     [[1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]

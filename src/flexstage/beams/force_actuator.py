@@ -1,4 +1,4 @@
-"""Bare force actuators: no stiffness, half of the mass on each body."""
+"""Force actuators without stiffness, with half of the mass on each body."""
 
 from flexstage.beams.law import PartLaw
 

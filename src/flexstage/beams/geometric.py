@@ -1,4 +1,4 @@
-"""Geometric stiffness of parts: the stiffness between their ends due to the forces they carry."""
+"""Geometric stiffness of parts: the additional stiffness between their ends due to the forces in the part."""
 
 from __future__ import annotations
 
@@ -25,12 +25,11 @@ _CROSS[[0, 1, 2], [1, 2, 0], [2, 0, 1]], _CROSS[[0, 1, 2], [2, 0, 1], [1, 2, 0]]
 
 @dataclass(frozen=True, eq=False)
 class Geometric:
-    """Geometric stiffness of a part for the twists of its first and second end, both taken at its centre, and for its inner bending.
+    """Geometric stiffness of a part for the twists of both ends, taken at its centre, and for k inner bending shapes.
 
-    `per_force` (..., 6, 12 + k, 12 + k) is per unit of each component of the wrench at the centre on the second end, in the link frame.
-
-    `inner` (..., k) is the elastic stiffness of the k inner bending shapes, which do not move the ends. `half` (...) is half the length
-    [m].
+    `per_force` (..., 6, 12 + k, 12 + k) is the stiffness per unit of each component of the wrench on the second end, at the centre in the
+    link frame. `inner` (..., k) is the elastic stiffness of the inner bending shapes, which do not move the ends. `half` (...) is half the
+    length [m].
     """
 
     per_force: Array
@@ -57,9 +56,10 @@ def geometric(part: Part, material: Material | None) -> Geometric:
 
 
 def foreshortening(part: Part, material: Material | None) -> Array:
-    """Compute the second-order deformation 1/2 e^T G e by bending and twist, e the relative twist at the centre; G (6, 6, 6).
+    """Compute the foreshortening matrices G (6, 6, 6): a relative twist e at the centre gives the second-order deformation 1/2 e^T G e.
 
-    K_g for the wrench w is then K_g of a bushing plus sum w_i G_i. Zero for parts without length; the axial stretch is neglected.
+    The deformation is due to bending and twist; the axial stretch is neglected. The geometric stiffness under the wrench w is K_g of a
+    bushing plus sum w_i G_i. G is zero for parts without length.
     """
     own, axis = geometric(part, material), np.eye(3)[0]
     result = own.per_force[..., 6:ENDS, 6:ENDS] - _of_point().per_force[:, 6:, 6:]

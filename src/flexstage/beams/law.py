@@ -1,4 +1,4 @@
-"""Part laws of beam theory by kind, and their register. `beams` fills it; kinds without an entry are unknown."""
+"""Part laws of beam theory by kind, and their register. The package `beams` fills the register; kinds without an entry have no law."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _CALIBRATE = 'Specify a measured or computed 6x6 (kind = "compliance_matrix"), o
 
 @dataclass(frozen=True, eq=False)
 class Range:
-    """A ratio of dimensions, such as t/R, and the interval of its comparison with elasticity."""
+    """Ratio of dimensions, such as t/R, with the interval in which beam theory was compared with elasticity."""
 
     name: str
     value: Array
@@ -27,7 +27,7 @@ class Range:
     high: float = float("inf")
 
     def finding(self, where: str) -> Finding | None:
-        """Return a warning for the first design outside the interval, else `None`."""
+        """Return a warning for the first design whose ratio is outside the interval, else `None`."""
         values = np.atleast_1d(self.value).ravel()
         outside = np.flatnonzero((values < self.low) | (values > self.high))
         if not outside.size:
@@ -53,9 +53,9 @@ def _no_family(_: Any) -> str | None:
 
 @dataclass(frozen=True)
 class PartLaw:
-    """Law of a kind: of a part and its material, or of a part only if `needs_material` is false.
+    """Law of a kind of part. Its functions take a part and its material; if `needs_material` is false, only a part.
 
-    A part is a `beam`, which defines its compliance, mass, geometric stiffness and stress. `diagonal` is its compliance (..., 6) if it
+    Usually, `beam` defines compliance, mass, geometric stiffness and stress of the part. `diagonal` (..., 6) is the compliance if it
     differs from the beam's (plates). All 6x6 are about the centre. A part without a beam has:
 
     - `compliance` (..., 6, 6), or `stiffness` (..., 6, 6) if it may be singular or negative in some DOFs;
@@ -67,7 +67,7 @@ class PartLaw:
     - `damping`: the viscous damping (..., 6, 6) [N s/m];
     - `twisting_load`: the compression [N] at which a column of this kind buckles in twist, below Euler's load;
     - `concentration`: the stress concentration factor of its notches; without it, or if it is `None`, the stress is unknown;
-    - `ranges`: the intervals of comparison with elasticity; `family`: the fitted laws of the model error;
+    - `ranges`: the intervals of comparison with elasticity; - `family`: the name of the fitted laws for the model error;
     - `held`: the fixed-end modes, `inner_modes` of them, at stations from -1 to 1 over the half length.
     """
 

@@ -1,4 +1,4 @@
-"""Leaf springs by beam theory, with plate action and restrained warping; `section` beam has neither."""
+"""Leaf springs by beam theory, with plate action and restrained warping; with `section` beam, without both."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ def leaf_beam(part: Leaf, material: Material) -> Beam:
 def leaf_diagonal(part: Leaf, material: Material) -> Array:
     """Compute the diagonal (..., 6) of the leaf's compliance about its centre.
 
-    Timoshenko's beam, with bending about the width divided by the plate factors of `beams.plate`, and the torsion of
-    `torsional_compliance`. In-plane bending and tension follow the beam: restrained contraction (up to 1 - nu^2 softer than computed for b
-    >> L) is neglected.
+    The leaf is a Timoshenko beam with two changes: the bending compliance about z is divided by the plate factors of `beams.plate`, and
+    torsion is `torsional_compliance`. In-plane bending and tension are those of the beam. Restrained contraction is neglected: for b >> L,
+    the true compliance is smaller by up to 1 - nu^2.
 
-    With `section` beam all six follow `leaf_beam`, with Saint-Venant torsion: the frame element of textbooks.
+    With `section` beam, all six entries are those of `leaf_beam`, with Saint-Venant torsion, as in a textbook frame element.
 
     >>> soft = Material(young=1.0, poisson=0.3, density=1.0)
     >>> wide = leaf_diagonal(Leaf("soft", length=1.0, thickness=1e-3, width=0.5), soft)
@@ -67,10 +67,12 @@ def leaf_diagonal(part: Leaf, material: Material) -> Array:
 
 
 def torsional_compliance(part: Leaf, material: Material) -> Number:
-    """Compute the twist of a leaf with restrained warping [rad/(N m)]: L / (G J) (1 - tanh(lam) / lam), lam = (L/b) sqrt(6 / (1 + nu)).
+    """Compute the torsional compliance of a leaf with restrained warping [rad/(N m)].
 
-    L / (G J) if its ends may warp, J of the rectangle. Compared with plate elements (reference B6) it is too soft by 0.2 % at b/L = 0.1,
-    1.2 % at 0.5 and 6 % at 2.
+    It is L / (G J) (1 - tanh(lam) / lam), lam = (L/b) sqrt(6 / (1 + nu)).
+
+    J is the torsion constant of the rectangle. If the ends may warp, the compliance is L / (G J). Compared with plate elements (reference
+    B6), the compliance is too large by 0.2 % at b/L = 0.1, 1.2 % at 0.5 and 6 % at 2.
 
     >>> soft = Material(young=2.6, poisson=0.3, density=1.0)
     >>> thin = Leaf("soft", length=1.0, thickness=1e-5, width=0.5)
@@ -99,7 +101,9 @@ def _twisting(part: Leaf, points: Stations, section: Section, material: Material
 
 
 def leaf_modes(part: Leaf, material: Material, places: Array) -> tuple[FixedEndModes, ...]:
-    """Compute the fixed-end modes of a leaf, bending along y and twist: as a plate with restrained warping, or by its `section`.
+    """Compute the fixed-end modes of a leaf: bending along y, and twist. `places` are stations (s,), x over the half length.
+
+    The leaf is a plate with restrained warping, unless its `section` and `ends` specify otherwise.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> bending, _ = leaf_modes(Leaf("steel", length=0.1, thickness=0.0002, width=0.01, inner_modes=1), steel, np.zeros(1))

@@ -23,13 +23,13 @@ from flexstage.parts.part import Elastic, Part, Restricted, inner
 def mass(part: Part, material: Material | None) -> Array:
     """Compute the mass (..., 12, 12) of a part for the twists of its first and second end, both at its centre, in the link frame [SI].
 
-    The section at x moves by v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), Gamma(x) = S(x) K. S is the compliance accumulated from the first end
-    to x, K = S(end)^-1. M = integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X (1 - Gamma), X Gamma].
+    The section at x moves by v(x) = X_x (q_a + Gamma(x) (q_b - q_a)), with Gamma(x) = S(x) K. S is the compliance accumulated from the
+    first end to x, and K = S(end)^-1. The mass is M = integral of N^T diag(rho A, rho A, rho A, rho I_p, rho I_y, rho I_z) N dx with N = [X
+    (1 - Gamma), X Gamma]. The mass includes the material between the ends of the profile. In a rigid motion, the inertia of the solid is
+    exact. A `ComplianceMatrix` part has half its mass at each end; `Joint` and `Restricted` parts have none.
 
-    It includes the material between the arc ends and gives a rigid motion the exact inertia of the solid. A `ComplianceMatrix` part has
-    half its mass at each end; `Joint` and `Restricted` parts have none.
-
-    A part with m fixed-end modes has (..., 12 + m, 12 + m): their unit masses, and their coupling to the motion of the ends.
+    For a part with m fixed-end modes, the matrix is (..., 12 + m, 12 + m). It contains the unit masses of the modes, and their coupling to
+    the motion of the ends.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=8000.0)
     >>> from flexstage.parts.leaf import Leaf
@@ -48,7 +48,7 @@ def mass(part: Part, material: Material | None) -> Array:
 
 @keep
 def law_and_mass(part: Part, material: Material | None) -> tuple[Law, Array]:
-    """Compute law and mass of a part, as `law` and `mass`, with one integration of its beam.
+    """Compute the law and the mass of a part (see `law` and `mass`) with a single integration of its beam.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=8000.0)
     >>> from flexstage.parts.rod import Rod
@@ -71,8 +71,8 @@ def _has_fixed_end_modes(part: Part) -> bool:
 def consistent_mass(beam: Beam) -> Array:
     """Compute the consistent mass (..., 12, 12) of a beam; see `mass`.
 
-    A straight symmetric section moves along its axis, about it, and in two planes; these four are decoupled. In terms of the mean and the
-    difference of the end motions each splits into two again. Only their entries are integrated, over half the beam.
+    The motions along the axis, about the axis, and in two planes are decoupled. For a beam symmetric about its centre, the mean and the
+    difference of the end motions are also decoupled. Only the nonzero entries are integrated, over half the beam.
 
     >>> from flexstage.beams.piezo import piezo_beam
     >>> from flexstage.parts.piezo import Piezo

@@ -1,7 +1,7 @@
-"""Flat annular membranes as thin plates, and as discs in their plane.
+"""Flat annular membranes: thin plates for motion out of their plane, discs for motion in their plane.
 
-With a and b the radii of hub and rim, D = E t^3 / (12 (1 - nu^2)), kappa = (3 - nu) / (1 + nu) of plane stress, and
-e = (b^2 - a^2) / (b^2 + a^2):
+With a and b the radii of hub and rim, D = E t^3 / (12 (1 - nu^2)), kappa = (3 - nu) / (1 + nu) of plane stress, and e = (b^2 - a^2) / (b^2
++ a^2), the stiffnesses are:
 
     along x      16 pi D / (b^2 (1 - s^2 - 4 s^2 ln(s)^2 / (1 - s^2))), s = a / b    (Timoshenko & Woinowsky-Krieger, Plates, section 17)
     about y, z   4 pi D / (ln(b/a) - e)                                              (as r, r^3, 1/r and r ln r fit clamped edges)
@@ -23,7 +23,8 @@ from flexstage.parts.stated import point_masses
 def membrane_stiffness(part: Membrane, material: Material) -> Array:
     """Compute the stiffness (..., 6, 6) of the hub relative to the rim about its centre.
 
-    Small displacements: beyond half of its thickness along x a membrane stretches and stiffens. Plate shear is neglected.
+    It is valid for small displacements: beyond about half the thickness along x, a membrane stretches and becomes stiffer. Plate shear is
+    neglected.
 
     >>> sheet = Membrane("steel", inner=0.02, outer=0.06, thickness=2e-4)
     >>> membrane_stiffness(sheet, Material(young=200e9, poisson=0.3, density=7750.0)).diagonal().round(1).tolist()

@@ -1,16 +1,14 @@
 """Plate action of leaf springs: bending stiffness between a beam and a plate in plane strain.
 
-A leaf bent about its width has anticlastic curvature across it, except near its clamped ends. A narrow leaf is a beam of rigidity EI, a
-wide one a plate of rigidity EI / (1 - nu^2). With s the fraction of the length, weighted by the squared bending moment, in which the leaf
-curves freely,
+A leaf bent about its width has anticlastic curvature across the width, except near its clamped ends. A narrow leaf is a beam of rigidity
+EI, a wide leaf a plate of rigidity EI / (1 - nu^2). Let s be the fraction of the length in which the leaf curves freely, weighted by the
+squared bending moment. Then
 
     1 / factor = (1 - nu^2) + nu^2 s(L / b).
 
-s depends little on nu. It is an interpolation, rational in L/b, between its limits: s -> 1 - const b/L for narrow, s -> const L/b for wide
-leaves.
-
-Its constants are fitted to a converged Ritz solution of the thin plate (tests/analytic). They agree within 0.06 % with that solution for
-b/L from 0.03 to 8 and nu from 0.1 to 0.45. They agree within 0.08 % with the plate elements of reference B6.
+s depends little on nu. It is a rational function of L/b between two limits: s -> 1 - const b/L for narrow leaves, s -> const L/b for wide
+leaves. The constants are fitted to a converged Ritz solution of the thin plate (tests/analytic). The factors agree with this solution
+within 0.06 % for b/L from 0.03 to 8 and nu from 0.1 to 0.45. They agree within 0.08 % with the plate elements of reference B6.
 """
 
 from __future__ import annotations
@@ -22,7 +20,7 @@ _ODD = (0.1465, 0.0159, 0.05075, 0.3010, 0.1419)
 
 
 def moment_factor(slenderness: Number, poisson: Number) -> Number:
-    """Compute the plate factor on EI/L for a moment constant along the leaf; `slenderness` = L/b.
+    """Compute the plate factor on EI/L for a bending moment constant along the leaf; `slenderness` = L/b.
 
     >>> [round(moment_factor(ratio, 0.3), 4) for ratio in (10.0, 5.0, 2.0, 0.5)]  # reference B6: 1.0076, 1.0150, 1.0377, 1.0819
     [1.0074, 1.0147, 1.0374, 1.0823]
@@ -31,7 +29,7 @@ def moment_factor(slenderness: Number, poisson: Number) -> Number:
 
 
 def shear_factor(slenderness: Number, poisson: Number) -> Number:
-    """Compute the plate factor on 12 EI/L^3 for the guided leaf, whose moment is linear and zero at its centre; `slenderness` = L/b.
+    """Compute the plate factor on 12 EI/L^3 for a guided leaf, whose moment is linear with zero at its centre; `slenderness` = L/b.
 
     >>> [round(shear_factor(ratio, 0.3), 4) for ratio in (10.0, 5.0, 2.0, 0.5)]  # reference B6: 1.0209, 1.0376, 1.0679, 1.0912
     [1.0202, 1.0371, 1.0676, 1.0913]

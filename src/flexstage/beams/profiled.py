@@ -9,13 +9,14 @@ from flexstage.beams.law import Range, ratio
 from flexstage.parts.profile import Circular, Contour, Elliptic, Filleted, Profile, Straight
 
 HIGHEST = {"notch": 0.8, "fillet": 1.0, "toroid": 0.5}
-"""The largest thickness over radius of the comparison with finite elements."""
+"""Largest thickness over throat radius for which stresses were compared with finite elements."""
 
 
 def concentration(profile: Profile, thickness: Number) -> Number | None:
     """Compute the notch factor in bending, K_t = (1 + t/2R)^(9/20) (Smith, Flexures, 2000), R the radius at the throat.
 
-    R is a^2/c for an ellipse, the fillet radius for a corner-filleted hinge; a straight hinge has K_t = 1 (its corners are not described).
+    R is a^2/c for an ellipse, and the fillet radius for a corner-filleted hinge. A straight hinge has K_t = 1, because its corners are not
+    specified.
 
     Errors compared with plane-stress finite elements with full-height blocks, for t/2R up to 1 (tests/elsewhere):
 
@@ -25,7 +26,8 @@ def concentration(profile: Profile, thickness: Number) -> Number | None:
     Parabolas, hyperbolas and the tips of a V use their throat radius too. The factor of a deep notch depends only on thickness and radius
     at the throat (Neuber, Kerbspannungslehre, 1958).
 
-    `None` for powers, whose curvature is zero or infinite at the throat, and for tables, for which no source exists.
+    Returns `None` for power profiles, whose curvature at the throat is zero or infinite, and for free-form tables, for which there is no
+    reference.
 
     >>> from flexstage.parts.profile import Circular
     >>> round(float(concentration(Circular(0.005), 0.001)), 4)
@@ -42,7 +44,10 @@ def concentration(profile: Profile, thickness: Number) -> Number | None:
 
 
 def proportions(profile: Profile, thickness: Number, family: str) -> tuple[Range, ...]:
-    """Return thickness over the throat radius, length over thickness if straight; nothing for curves without comparison."""
+    """Return the ratios to check: thickness over the throat radius, or length over thickness for a straight profile.
+
+    The result is empty for profiles that were not compared with finite elements.
+    """
     return () if isinstance(profile, Contour) else (_proportion(profile, thickness, family),)
 
 

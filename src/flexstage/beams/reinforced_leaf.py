@@ -1,4 +1,4 @@
-"""Leaves with a thick middle by beam theory: three pieces in series, the thin ones with plate action."""
+"""Leaves with a thick middle by beam theory: three pieces in series, with plate action in the two thin ones."""
 
 from __future__ import annotations
 
@@ -35,11 +35,9 @@ def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
 def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
     """Compute the diagonal (..., 6) of the compliance about the centre: the beam's, reduced by the plate action of its thin ends.
 
-    Each thin end, up to its fillet, is a leaf between two ends that cannot curve across it, with the factors of `beams.plate`. It has a
-    rotation by the moment at its middle, and shear.
-
-    The middle counts as stiff, which holds if it is twice as thick. The middle is a beam, free to curve across. With `section` beam no
-    plate action is included.
+    Each thin end, up to its fillet, is a leaf whose two ends cannot curve across the width, with the factors of `beams.plate`. The moment
+    at its middle and the shear force have different factors. The middle is assumed stiff, which is valid if it is twice as thick. The
+    middle is a beam and curves freely across its width. With `section` beam, there is no plate action.
     """
     whole = reinforced_beam(part, material).diagonal()
     if part.section is LeafSection.BEAM:
@@ -56,8 +54,8 @@ def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
 def reinforced_plate(part: ReinforcedLeaf, material: Material) -> Beam:
     """Build the beam whose bending equals `reinforced_diagonal`: plate action reduces the flexibility of the thin ends about z.
 
-    Over each thin end it is a + c u^2 times the beam's, u from -1 to 1. Its mean matches the rotation of the plate, its second moment the
-    shear.
+    Over each thin end, the flexibility is a + c u^2 times the beam's, with u from -1 to 1. The constants a and c match the plate's rotation
+    and its shear.
     """
     whole = reinforced_beam(part, material)
     if part.section is LeafSection.BEAM:

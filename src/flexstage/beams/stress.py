@@ -13,7 +13,7 @@ from flexstage.parts.material import Material
 from flexstage.parts.part import Part, inner
 
 FACES = ("faces +-y", "faces +-z", "whole section", "shear and torsion")
-"""Place in the section of the largest stress of M_z, M_y, N, and of shear force and torque."""
+"""Names of the locations in the section with the largest stress of M_z, of M_y, of N, and of shear force and torque."""
 _ALONE: Array = np.array([[0.0, 1, 0, 0, 0, 1], [0, 0, 1, 0, 1, 0], [1, 0, 0, 0, 0, 0]])
 """Components of the wrench that make M_z, M_y and N."""
 _ALIKE = 1e-9
@@ -21,7 +21,7 @@ _ALIKE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Stress:
-    """The largest von Mises stress: `nominal` (...) [Pa] at `position` x (...) [m] from the part's centre, and the notch `factor` K_t."""
+    """Largest von Mises stress: `nominal` (...) [Pa] at `position` x (...) [m] from the part's centre, and the notch `factor` K_t."""
 
     nominal: Array
     position: Array
@@ -34,7 +34,7 @@ class Stress:
 
 
 def has_section(part: Part) -> bool:
-    """Whether the section and the notch factor of the part are known, so that `stress` has a result.
+    """Return whether `stress` has a result: the section and the notch factor of the part are known.
 
     >>> from flexstage.parts.notch import Notch
     >>> from flexstage.parts.profile import Circular
@@ -48,14 +48,14 @@ def has_section(part: Part) -> bool:
 def stress(part: Part, material: Material | None, wrench: Array) -> Stress | None:
     """Compute the largest stress in a part under `wrench` (..., 6) [N, N m] at its centre, on its second end, in its link frame.
 
-    Beam theory at every station from end to end: N = F_x, M_z = m_z - x F_y, M_y = m_y + x F_z.
+    The stress is computed by beam theory at every station from end to end: N = F_x, M_z = m_z - x F_y, M_y = m_y + x F_z.
 
     sigma = |N|/A + |M_z| t/(2 I_z) + |M_y| b/(2 I_y) + warping (round: |N|/A + |M| d/(2 I)).
 
-    tau is the sum of the largest shear and torsion stresses, and the result sqrt(sigma^2 + 3 tau^2).
+    tau is the sum of the largest shear and torsion stresses. The von Mises stress is sqrt(sigma^2 + 3 tau^2).
 
-    The maxima of a section are added although they occur at different points: an upper bound of the nominal stress. `None` for parts
-    without a known section (piezo stacks have load limits instead) or without a known notch factor.
+    The maxima of a section are added although they occur at different points: the result is an upper bound of the nominal stress. Returns
+    `None` for parts without a known section (piezo stacks have load limits) or a known notch factor.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.leaf import Leaf
@@ -80,7 +80,9 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
 
 
 def stressed_place(part: Part, material: Material | None, wrench: Array) -> tuple[Array, Array]:
-    """Place of the largest stress of one part under wrenches (k, 6): end (-1 first, 0 neither, 1 second), index in `FACES`.
+    """Return the location of the largest stress of one part under wrenches (k, 6): end (k,) and index in `FACES` (k,).
+
+    The end is -1 for the first end, 1 for the second, 0 for a point between them.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)

@@ -1,12 +1,13 @@
 """Torsion of hinges with restrained warping at their ends.
 
-A twisted section also warps along x, and the rigid bodies at the ends of a hinge prevent warping. With twist phi(x) and warping u =
-theta(x) y z,
+A twisted section also warps along x. The rigid bodies at the ends of a hinge prevent warping. With twist phi(x) and warping u = theta(x) y
+z, the strain energy U is
 
     2 U = integral of G J phi'^2 + G S (r phi' - theta)^2 + E C_w theta'^2 dx,    theta = 0 at both ends,
 
 J is Saint-Venant's constant, S = I_p / k the shear stiffness (k the shear factor), r = (b^2 - t^2) / (b^2 + t^2), C_w = b^3 t^3 / 144. For
-the shape y z this is the exact energy of the displacement field, except for k and for J, which replaces b^3 t^3 / (3 (b^2 + t^2)).
+the shape y z, this is the exact energy of the displacement field with two changes: the factor k, and J instead of b^3 t^3 / (3 (b^2 +
+t^2)).
 
 Limits:
 
@@ -14,13 +15,14 @@ Limits:
 - wide hinge: C = 12 C_y / b^2 (every strip dz bends as the hinge does);
 - square section: no warping.
 
-No interpolation is needed between them. Errors compared with 3-D finite elements of circular notches with rigid arc ends (tests/elsewhere):
+No interpolation is needed between these limits. Stiffness errors, compared with 3-D finite elements of circular notches with rigid arc ends
+(tests/elsewhere):
 
 - t/R = 0.2: below 1 % for widths from 2 t to 10 t, 2 % at 30 t;
 - t/R from 0.5 to 1: +3 to +8 %, and -6 % for a square throat.
 
-Saint-Venant is up to 25 times, 12 C_y / b^2 up to 10 times too soft. The root compliance of full-height blocks makes a wide notch up to 20
-% softer still, as in tension.
+Saint-Venant torsion is up to 25 times too soft, 12 C_y / b^2 up to 10 times. The root compliance of full-height blocks makes a wide notch
+up to 20 % softer, as in tension.
 """
 
 from __future__ import annotations
@@ -41,7 +43,7 @@ _TOGETHER = 32
 
 @dataclass(frozen=True, eq=False)
 class Twisting:
-    """Response to a unit torque at the stations (..., m): twist `rate` phi' [rad/(N m^2)] and `bimoment` E C_w theta' [m]."""
+    """Response of a hinge to a unit torque at the stations (..., m): twist `rate` phi' [rad/(N m^2)] and `bimoment` E C_w theta' [m]."""
 
     rate: Array
     bimoment: Array
@@ -61,10 +63,10 @@ def free_twist(section: Section, shear: Array) -> Twisting:
 def constrained_twist(section: Section, points: Stations, young: Array, shear: Array) -> Twisting:
     """Compute the twist of a hinge with restrained warping; moduli `young` E and `shear` G [Pa], shape (..., 1).
 
-    Eliminating phi' gives (E C_w theta')' - g theta + f = 0, f = S r / (J + S r^2), g = G S J / (J + S r^2). It is solved as theta = A (f -
-    g theta) with A the twofold integral by the rule of the stations.
+    Eliminating phi' (see the module) gives (E C_w theta')' - g theta + f = 0, with f = S r / (J + S r^2) and g = G S J / (J + S r^2). This
+    equation is solved as theta = A (f - g theta), with A the twofold integral by the rule of the stations.
 
-    For a constant section whose ends the stations resolve, theta = f / g (1 - cosh(kx) / cosh(kL/2)), k^2 = g / (E C_w).
+    For a constant section whose end zones are resolved by the stations, theta = f / g (1 - cosh(kx) / cosh(kL/2)), k^2 = g / (E C_w).
 
     >>> from flexstage.beams.quadrature import stations
     >>> from flexstage.parts.section import Rectangle
@@ -120,7 +122,7 @@ def _at_stations(points: Stations, rigidity: Array, spring: Array, load: Array) 
 
 
 def decays(points: Stations, wavenumber: Array) -> tuple[Array, Array]:
-    """Compute cosh(k x) and sinh(k x) over cosh(k l) at the stations, l the last of them, for a wavenumber k (..., 1).
+    """Compute cosh(k x) / cosh(k l) and sinh(k x) / cosh(k l) at the stations x, for a wavenumber k (..., 1); l is the last station.
 
     >>> from flexstage.beams.quadrature import stations
     >>> from flexstage.parts.profile import Straight

@@ -27,7 +27,7 @@ _Bounds = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class Validity(InNotebook):
-    """Ranges of a part, the signed relative `errors` of its compliance by component (-0.1: 10 % too stiff), and `findings`.
+    """Validity of beam theory for a part: its ranges, relative compliance `errors` by component (-0.1: 10 % too stiff), and warnings.
 
     A component without an error, or with NaN in a batch, was not compared with elasticity.
     """
@@ -40,9 +40,9 @@ class Validity(InNotebook):
 def validity(part: Part, where: str = "part", material: Material | None = None) -> Validity:
     """Estimate the model error of beam theory for a part; `where` names it in the warnings. Poisson's ratio is 0.3 without a material.
 
-    The errors are right within 1 % of the compliance (fillets along y and about z: 2 %), compared with three-dimensional elements.
+    The errors are correct within 1 % of the compliance (fillets along y and about z: 2 %), compared with three-dimensional finite elements.
 
-    - Notches include their roots, on blocks of their full height and width; straight ones, leaves and rods are between rigid faces.
+    - Notches include their roots, on blocks of their full height and width. Straight notches, leaves and rods are between rigid faces.
     - Along z and about x a notch has no error: its own compliance is too small compared with the blocks.
     - Parts with a specified matrix have no error.
 
@@ -121,9 +121,9 @@ def _axes(profile: Profile | None) -> tuple[Array, Array]:
 
 
 def within(family: str, axis: str, hinge: HingeDimensions) -> Array:
-    """Whether the proportions and Poisson's ratio are within the comparison with elements.
+    """Return whether the proportions and Poisson's ratio are within the comparison with finite elements.
 
-    Bending about z has known limits: beam theory for thin throats, plane strain for wide ones. It has no bound on that side.
+    Bending about z has no bound on the sides of thin throats and wide hinges, because the limits are known: beam theory and plane strain.
 
     >>> from flexstage.parts.rod import Rod
     >>> bool(within("bar", "x", hinge_dimensions(Rod("steel", length=0.1, diameter=0.002), 0.45)))

@@ -1,4 +1,4 @@
-"""Voice coils: the magnet stiffness and damping along x, of rotary ones about x, and the masses of both sides."""
+"""Voice coils: magnet stiffness and damping along x (for rotary coils, about x), and the masses of both sides."""
 
 from flexstage.beams.law import PartLaw
 

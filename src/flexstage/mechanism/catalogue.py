@@ -18,7 +18,10 @@ from flexstage.parts.voice_coil import VoiceCoil
 
 @dataclass(frozen=True)
 class Section:
-    """Entries of one class by name, as tables of a design file under `key`; `kind` is the part's kind, None outside of `parts`."""
+    """Section of a catalogue: entries of one class by name, as tables of a design file under `key`.
+
+    `kind` is the kind of part; None outside of `parts`.
+    """
 
     name: str
     title: str
@@ -30,17 +33,17 @@ class Section:
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Catalogue: sections of entries for `like`, and the sources of their tags."""
+    """Catalogue of entries that `like` can name, in sections, with the sources of their tags."""
 
     sections: tuple[Section, ...]
     sources: Mapping[str, str]
 
     def section(self, record: type) -> Section | None:
-        """Section of a class; `None` if there is none."""
+        """Return the section of a class; `None` if there is none."""
         return next((section for section in self.sections if section.record is record), None)
 
     def extended(self, raw: Mapping[str, Any]) -> Catalogue:
-        """Return the catalogue extended by another one's tree, whose entries take precedence.
+        """Return the catalogue extended by the tree `raw` of another catalogue, whose entries take precedence.
 
         >>> result = Catalogue((), {}).extended({"materials": {"ours": {"young": "200 GPa"}}})
         >>> list(result.section(Material).entries)
@@ -53,7 +56,7 @@ class Catalogue:
         )
 
     def sources_of(self, tags: Iterable[str]) -> dict[str, str]:
-        """Sources named in tags (`stated key place`)."""
+        """Return the sources named in tags (`stated key place`), by key."""
         keys = {word for tag in tags for word in tag.split()[1:2]}
         return {key: text for key, text in self.sources.items() if key in keys}
 

@@ -25,7 +25,7 @@ def designs(mechanism: Mechanism) -> int | None:
 
 
 def design(mechanism: Mechanism, place: int, share: float = 0.0) -> Mechanism:
-    """Return the design at an index of a batch; of complex numbers, the real part plus a `share` of the imaginary part.
+    """Return the design at an index of a batch; a complex number becomes its real part plus `share` times its imaginary part.
 
     >>> import flexstage as fs
     >>> design(fs.Mechanism("stage", gravity=(0.0, 0.0, np.array([-9.8, -1.6]))), 1).gravity[2]
@@ -43,7 +43,7 @@ def design(mechanism: Mechanism, place: int, share: float = 0.0) -> Mechanism:
 
 
 def step_size(mechanism: Mechanism) -> float:
-    """Return the share of imaginary parts that changes each number by 1e-4 at most; zero if all are real.
+    """Return the `share` for `design` that changes each number by 1e-4 at most (relative); zero if all numbers are real.
 
     >>> step_size(Mechanism("stage"))
     0.0

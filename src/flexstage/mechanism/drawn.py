@@ -1,4 +1,4 @@
-"""Calibrated parts of a stage, and the nominal stage with its drawn parts."""
+"""Calibrated parts of a stage, and the nominal stage with the drawn parts that they replace."""
 
 from __future__ import annotations
 
@@ -12,9 +12,7 @@ from flexstage.parts.part import Restricted, material_of
 
 
 def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
-    """Return the stage with drawn parts instead of the compliance matrices that replace them.
-
-    Raises `DesignError` if the replaced part is missing.
+    """Return the stage with the drawn parts instead of the compliance matrices that replace them.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> with_drawn_parts(double_triangle()) == double_triangle()
@@ -32,7 +30,9 @@ def with_drawn_parts(mechanism: Mechanism) -> Mechanism:
 
 
 def as_drawn(mechanism: Mechanism, link: PlacedLink) -> PlacedLink:
-    """Return the link with the drawn part that its compliance matrix replaces, with its length, expansion and damping.
+    """Return the link with the drawn part instead of the compliance matrix that replaces it.
+
+    The link then has the length, expansion and damping of the drawn part.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -49,7 +49,7 @@ def as_drawn(mechanism: Mechanism, link: PlacedLink) -> PlacedLink:
 
 
 def calibrated_parts(mechanism: Mechanism) -> tuple[str, ...]:
-    """Return the names of parts with a 6x6 from FEA: theory with these parts is not independent of FEA.
+    """Return the names of parts with a 6x6 from FEA. A theory that uses these parts is not independent of FEA.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> calibrated_parts(double_triangle())

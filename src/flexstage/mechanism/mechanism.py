@@ -1,4 +1,4 @@
-"""Description of a stage: frozen, without state and results."""
+"""Description of a stage: immutable data, without state and results."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ from flexstage.parts.part import Part
 GROUND = "ground"
 PLATFORM = "platform"
 NOT_GROWING = "none"
-"""Value instead of the ground's material: no thermal expansion."""
+"""Value for the ground's material that means no thermal expansion."""
 EVERYWHERE = "all"
-"""Value instead of a body: the temperature of bodies without their own."""
+"""Name in `temperatures` for all bodies without their own temperature."""
 
 NAMED = ("materials", "parts", "bodies", "links", "units", "placements", "sensors", "gauges", "payloads", "forces", "stops")
-"""Sections of entries by name."""
+"""Sections of a description with entries by name."""
 BESIDE = {"beside": True}
-"""Metadata of a field without a key in a file: formulas replace values there."""
+"""Field metadata: the field has no key in files. Formulas, for example, are written in place of values."""
 
 
 Joins: TypeAlias = tuple[str, str] | Mapping[str, str]
-"""Bodies joined by a link: first and second, or by port of its part."""
+"""Bodies joined by a link: the first and second body, or the bodies by port of its part."""
 
 
 def _empty(metadata: Mapping[str, Any] | None = None) -> Any:
@@ -55,7 +55,7 @@ def _empty(metadata: Mapping[str, Any] | None = None) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class NamedNumber(Description):
-    """Number that formulas refer to by name: its value [SI] and its unit in files (`1`: a ratio)."""
+    """Number with a name for use in formulas: its value [SI] and its unit in files (`1`: a ratio)."""
 
     value: Annotated[Number, ANY]
     unit: str
@@ -65,16 +65,15 @@ class NamedNumber(Description):
 class Link(Description):
     """Elastic connection (a part) between two bodies, or between as many bodies as the part has ports.
 
-    `joins` names the bodies: the relative twist is of the second body against the first. `part` names an entry of the mechanism's parts.
-    The link frame has its origin at the part's centre `at` and x along `along` (first to second body). The axis z is along `bends`, the
-    axis of compliant rotation, required for parts that are not axisymmetric. `free` overrides the ideal degrees of freedom of the part. The
-    part's two ends may replace `at` and `along`: `start` at the first body, `end` at the second.
+    `joins` names the bodies; the relative twist is the motion of the second body against the first. `part` names an entry of the
+    mechanism's parts. The link frame has its origin at the part's centre `at`, and x along `along` (first to second body). The z axis is
+    along `bends`, the axis of compliant rotation, which is required for parts that are not axisymmetric. `free` overrides the ideal degrees
+    of freedom of the part. Instead of `at` and `along`, two ends can be specified: `start` at the first body, `end` at the second.
 
-    A part with ports (a superelement) joins a body at each port, by name; several ports may join one body. The link frame is then the frame
-    of the part's axes. With two ports, `free` are the degrees of freedom of the second port's body against the first's, about its origin.
-
-    `circuit` names the input of a force actuator. Those of one circuit are in series on one amplifier and share the input; a `-` before
-    the name reverses the polarity (push-pull).
+    A part with ports (a superelement) joins a body at each named port; several ports may join the same body. The link frame is then the
+    frame of the part's axes. With two ports, `free` are the degrees of freedom of the second port's body against the first port's body,
+    about the second port's origin. `circuit` names the input of a force actuator. Force actuators of one circuit are in series on one
+    amplifier and share the input. A `-` before the name reverses the polarity (push-pull).
     """
 
     joins: Joins
@@ -110,8 +109,9 @@ class Unit(Description):
     Links may also join bodies of the stage (`ground`, `platform`, ...) and of other instances (`W/carriage`). `stiffness` is the unit's
     stiffness in actuator coordinates for the mapped model (default: computed for a direct or a lever unit).
 
-    `like` names another unit: its bodies and links are inherited, unless drawn here under the same names. Its overrides
-    (`inner/front.thickness`) are inherited too; own overrides (`outer/front.at.x`) take precedence. Its `stiffness` is not inherited.
+    `like` names another unit. The unit inherits the bodies and links of the other unit, except for names that it defines itself. Overrides
+    of the other unit (`inner/front.thickness`) are inherited too; the unit's own overrides (`outer/front.at.x`) take precedence.
+    `stiffness` is not inherited.
     """
 
     bodies: Mapping[str, Body] = _empty()
@@ -122,7 +122,7 @@ class Unit(Description):
 
 @dataclass(frozen=True, eq=False)
 class Placement(Description):
-    """Instances of a unit: its name and their pattern. The key `B1-B3` names three instances."""
+    """Instances of a unit: the unit's name, and the pattern of its instances. A key such as `B1-B3` names three instances."""
 
     unit: str
     pattern: Pattern
@@ -130,11 +130,11 @@ class Placement(Description):
 
 @dataclass(frozen=True, eq=False)
 class Probe(Description):
-    """Gauges (displacement sensors) of the motion of `body` against `base` along or about the x axis of the pattern's frame.
+    """Gauges (displacement sensors) for the motion of `body` against `base`, along or about the x axis of the pattern's frame.
 
-    The measuring point is the frame's origin. For a gap gauge, x points to its target: the gap opens for target motion along +x. `positive`
-    is the sign convention of the reading. Other gauges have no `positive`: their reading increases along +x, or with a right-handed
-    rotation about +x.
+    The measuring point is the frame's origin. For a gap gauge, x points to the target: the gap opens if the target moves along +x.
+    `positive` specifies whether the reading increases with an opening or a closing gap. Other gauges have no `positive`: their reading
+    increases with motion along +x, or with right-handed rotation about +x.
     """
 
     gauge: str
@@ -148,7 +148,7 @@ class Probe(Description):
 class LinkProbe(Description):
     """Gauge on a link of the expanded stage (`B1/pzt`), for its deformation along or about the link's x axis.
 
-    Motion of the second body against the first: positive for elongation. `B1-B3/pzt` are the links of three gauges.
+    It measures the motion of the second body against the first: positive for elongation. `B1-B3/pzt` names the links of three gauges.
     """
 
     gauge: str
@@ -159,7 +159,8 @@ class LinkProbe(Description):
 class GaugeSum(Description):
     """Weighted sum of other gauges of one quantity, by name: `{S1 = 0.5, S2 = -0.5}`.
 
-    The sum replaces its members: the pose follows from sums and from gauges outside sums. Noise, steps and range belong to its members.
+    The sum replaces its members: the pose is computed from sums and from gauges that are not in a sum. Noise, steps and range are specified
+    for the members.
     """
 
     sum: Mapping[str, Annotated[Number, RATIO]]
@@ -170,7 +171,7 @@ GaugePlace: TypeAlias = Probe | LinkProbe | GaugeSum
 
 @dataclass(frozen=True, eq=False)
 class Stop(Description):
-    """Stop of a stroke: `body` may move by `gap` along x of the pattern's frame, at its origin, against `base`.
+    """Stop of a stroke: at the origin of the pattern's frame, `body` can move by `gap` along x against `base`.
 
     `gap_negative` is the limit in the opposite direction (default: none). A key such as `E1-E3` names three stops.
     """
@@ -184,7 +185,7 @@ class Stop(Description):
 
 @dataclass(frozen=True, eq=False)
 class Force(Description):
-    """Constant force on a body at a point (a bonding force), in the stage's frame."""
+    """Constant force on a body at a point (e.g. a bonding force), in the stage's frame."""
 
     body: str
     at: Annotated[Vector, LENGTH]
@@ -195,9 +196,12 @@ class Force(Description):
 class StrokePath(Description):
     """Load path of a stage: `drive` (a coordinate such as `platform.y`, a stack, a load) varies between the two values of `to`.
 
-    Values are texts with units, relative to the static equilibrium; equilibria are computed at `points` of them. `hold` has the constant
-    conditions: a permanent load along a coordinate (`{"platform.x": "-20 N"}`), a coordinate fixed at its static equilibrium
-    (`{"platform.rz": "0"}`), or `{"gravity": "off"}`.
+    The values are texts with units, relative to the static equilibrium. Equilibria are computed at a number of `points`. `hold` has the
+    constant conditions, for example:
+
+    - `{"platform.x": "-20 N"}`: a permanent load along a coordinate;
+    - `{"platform.rz": "0"}`: a coordinate fixed at its static equilibrium;
+    - `{"gravity": "off"}`: no weight.
     """
 
     drive: str
@@ -215,7 +219,7 @@ class ModalDamping(Description):
 
 @dataclass(frozen=True, eq=False)
 class StructuralDamping(Description):
-    """Structural damping by the loss factor of each part's material: K_p (1 + j eta_p); frequency domain only."""
+    """Structural damping by the loss factor eta_p of each part's material: K_p (1 + j eta_p); in the frequency domain only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,11 +248,11 @@ class Mechanism(InNotebook, Description):
     `ground` is implied, body `platform` is the moving part. `overrides` are values of single links that replace those of the shared part,
     by address (`horizontal/front.thickness`, `B2/front.thickness`). `max_mode_frequency` is the frequency limit of listed modes.
 
-    `stops` limit strokes, `paths` are load paths for requirements. `ground` names the ground's material, for its expansion (`none`: no
-    expansion). `temperatures` are changes since manufacture, by body (also `ground`), and of `all` others; a part has the mean of its
-    bodies. `packages` provide kinds of parts, gauges and measures, with optional versions: `tapered-leaf >= 1`. With `elastic_bodies`,
-    the lumped model includes the flexibility of bodies, estimated from their outlines. `formulas`, by address, compute values from
-    `numbers`; the description stores the computed values.
+    `stops` limit strokes; `paths` are load paths for requirements. `ground` names the ground's material, for its expansion (`none`: no
+    expansion). `temperatures` are temperature changes since manufacture, by body (also `ground`), and for `all` other bodies. The
+    temperature of a part is the mean of its bodies. `packages` are required packages with kinds of parts, gauges and measures, with
+    optional versions: `tapered-leaf >= 1`. With `elastic_bodies`, the lumped model includes the flexibility of bodies, estimated from their
+    outlines. `formulas`, by address, compute values from `numbers`; the description stores the computed values.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a description", "stage")
@@ -284,7 +288,7 @@ class Mechanism(InNotebook, Description):
     elastic_bodies: bool = field(default=False, metadata=WHERE_STATED)
 
     def view(self, *, motion: str = "mode 1") -> Any:
-        """Return the interactive 3-D view of the stage, for a notebook or a page: `flexstage.view`."""
+        """Return an interactive 3-D view of the stage for a notebook or a page (see `flexstage.view`)."""
         return RenderHook.views.view(self, motion=motion)
 
 
@@ -309,7 +313,7 @@ def every_body(mechanism: Mechanism) -> Iterator[tuple[str, Body]]:
 
 
 def posed(gauges: Mapping[str, GaugePlace]) -> dict[str, Probe]:
-    """Yield the gauges with their own poses: neither on links nor sums of other gauges.
+    """Return the gauges that have poses of their own: not gauges on links, not sums of gauges.
 
     >>> list(posed({"D": GaugeSum({"S1": 1.0, "S2": -1.0}), "SG": LinkProbe("strain", "B1/pzt")}))
     []

@@ -18,15 +18,15 @@ SECTIONS = {
     "like": "units",
     "gauge": "sensors",
 }
-"""Section of the entries referred to, by field name."""
+"""Section of a description to which a field refers, by field name."""
 BODIES = ("body", "base", "of", "joins")
 """Fields that refer to bodies."""
 FILES = ("file", "stiffness_file", "mass_file", "damping_file")
-"""Fields of parts and outlines that name files."""
+"""Fields of parts and outlines that contain file names."""
 
 
 def references(value: Any, where: str) -> Iterator[tuple[str, str, str]]:
-    """Yield address, section and name of materials, parts, units and sensors referred to in a value at `where`.
+    """Yield (address, section, name) of each reference to a material, part, unit or sensor in a value at `where`.
 
     >>> from flexstage.parts.notch import Notch
     >>> from flexstage.parts.profile import Circular
@@ -49,7 +49,9 @@ def references(value: Any, where: str) -> Iterator[tuple[str, str, str]]:
 
 
 def renamed(value: Any, names: Collection[str], change: Callable[[str, str], str]) -> Any:
-    """Return a value with each text in fields of these names replaced by `change(field, text)`; unchanged without any.
+    """Return a value in which each text of the fields `names` is replaced by `change(field, text)`.
+
+    A value without such fields is returned unchanged.
 
     >>> from flexstage.mechanism.mechanism import Link
     >>> renamed(Link(("ground", "platform"), "leaf"), BODIES, lambda field, name: f"fine/{name}").joins
@@ -59,7 +61,7 @@ def renamed(value: Any, names: Collection[str], change: Callable[[str, str], str
 
 
 def transformed(value: Any, change: Callable[[str, Any], Any], field: str = "") -> Any:
-    """Return a value with each of its leaves replaced by `change(field, leaf)`; unchanged objects are kept.
+    """Return a value in which each leaf of its tree is replaced by `change(field, leaf)`; unchanged objects are kept.
 
     >>> transformed((1.0, (2.0, 3.0)), lambda _, number: 2.0 * number)
     (2.0, (4.0, 6.0))

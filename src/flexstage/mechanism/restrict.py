@@ -1,4 +1,4 @@
-"""Transformations of a description: restriction of degrees of freedom of parts, isolation of one unit."""
+"""Transformations of a description: restriction of the degrees of freedom of parts, and isolation of one unit."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ Freedoms = tuple[Freedom, ...]
 
 
 def restrict(mechanism: Mechanism, kept: Mapping[str, tuple[Freedoms, Freedoms]]) -> Mechanism:
-    """Restrict parts to (elastic, free) degrees of freedom, by part name or link address (`vertical/lower`); others are locked.
+    """Restrict parts to (elastic, free) degrees of freedom, by part name or link address (`vertical/lower`); all others are locked.
 
-    Restricted parts are massless. Raises `DesignError` for a name that is neither.
+    Restricted parts are massless. Raises `DesignError` for a name that is not a part or a link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> restrict(double_triangle(), {"neck": ((Freedom.X,), ())}).parts["neck"].elastic
@@ -60,8 +60,8 @@ def _restrict_link(result: Mechanism, original: Mechanism, address: str, elastic
 def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> Mechanism:
     """Isolate one unit in its own frame, with a massless platform at its output; `guide` constrains the output to a direction.
 
-    The output's reference point is the joint with the platform. Overrides of this instance are kept; other units, and outlines of other
-    bodies of the stage (lugs of the platform), are omitted.
+    The reference point of the output is the joint with the platform. Overrides of this instance are kept. Other units, and outlines that
+    belong to bodies of the stage (lugs of the platform), are omitted.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(isolate(double_triangle(), "B4").units)

@@ -1,10 +1,8 @@
-"""Finite motion of the ideal model: inverse (pose to strokes) and forward (strokes to pose) kinematics on SE(3).
+"""Finite motion of the ideal model: inverse kinematics (pose to strokes) and forward kinematics (strokes to pose) on SE(3).
 
-Unknowns are the poses of all bodies. The locked components of the relative pose of every link are zero; those of an actuator equal its free
-deformation times its stroke. Force actuators constrain nothing.
-
-Closed loops and any topology are supported. Free internal modes follow steps of least norm; redundant constraints are satisfied by least
-squares.
+The unknowns are the poses of all bodies. The locked components of the relative pose of every link are zero; for an actuator, they equal its
+free deformation times its stroke. Force actuators do not constrain motion. Any topology is supported, including closed loops. Free internal
+modes are determined by steps of least norm. Redundant constraints are satisfied by least squares.
 """
 
 from __future__ import annotations
@@ -38,9 +36,9 @@ _RANK = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class FinitePose(CheckedFields):
-    """A pose after finite motion: `displacement` (..., 3) [m] of the reference point and `rotation_vector` (..., 3) [rad], stage axes.
+    """Pose after finite motion: `displacement` (..., 3) [m] of the reference point, `rotation_vector` (..., 3) [rad], in stage axes.
 
-    Both are relative to the nominal position, so that a small pose is a twist.
+    Both are relative to the nominal position. For small motions, they are the components of a twist.
     """
 
     displacement: Array
@@ -48,18 +46,18 @@ class FinitePose(CheckedFields):
 
     @property
     def vector(self) -> Array:
-        """The six components (x, y, z, rx, ry, rz), comparable with a small twist."""
+        """Six components (x, y, z, rx, ry, rz), comparable with a small twist."""
         return np.concatenate(np.broadcast_arrays(self.displacement, self.rotation_vector), axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
 class FiniteMotion:
-    """A solved finite motion.
+    """Solution of finite kinematics.
 
     - `strokes` (..., n) [m] by `actuators`;
     - `pose` of the platform at its reference point;
-    - `bodies`: poses of all bodies at their reference points; idle bodies have the smallest rotation. The reading of a gauge on an idle
-      body does not follow from it: see `Kinematics.sensing`.
+    - `bodies`: poses of all bodies at their reference points. Bodies with a free internal mode have the smallest rotation; this pose does
+      not determine the reading of a gauge on such a body (see `Kinematics.sensing`).
     - `residual` (...): largest constraint error [m, rotations times `length`];
     - `iterations`: number of steps.
     """
@@ -75,7 +73,7 @@ class FiniteMotion:
 
     @property
     def consistent(self) -> Array:
-        """Whether redundant constraints agree at this finite motion; if not, the links are strained by about `residual`."""
+        """Whether redundant constraints are compatible with this finite motion; if not, the links are strained by about `residual`."""
         return self.residual <= _CONSISTENT * self.length
 
 
@@ -134,8 +132,8 @@ class _Relative:
 def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> FiniteMotion:
     """Compute the platform pose for strokes (..., n) [m] in the order of `kinematics.actuators`, from the nominal position.
 
-    Newton's method on the poses of all bodies. Leaves and rods shorten with their deflection w and slope t as in the beam constraint model
-    (Awtar, Slocum & Sevincer 2007), by 0.6 w^2/L - 0.1 w t + L t^2/15. The pivots of other links are fixed.
+    The poses of all bodies are computed by Newton's method. Leaves and rods with end deflection w and slope t shorten by 0.6 w^2/L - 0.1 w
+    t + L t^2/15, as in the beam constraint model (Awtar, Slocum & Sevincer 2007). Other links have fixed pivots.
 
     Raises `DesignError` if the strokes do not determine the platform or the iteration does not converge.
 
@@ -154,7 +152,7 @@ def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Ar
 def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: FinitePose) -> FiniteMotion:
     """Compute the strokes that move the platform's reference point to `pose`, in the components named in `kinematics.coordinates`.
 
-    Method, links and errors as for `forward_kinematics`.
+    The method, the model of the links and the errors are as for `forward_kinematics`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -169,7 +167,7 @@ def inverse_kinematics(mechanism: Mechanism, kinematics: Kinematics, pose: Finit
 
 
 def design_shape(mechanism: Mechanism, kinematics: Kinematics) -> tuple[int, ...]:
-    """Return the batch shape of the designs: leading axes of strokes and poses broadcast against it.
+    """Return the batch shape of the designs, with which the leading axes of strokes and poses must be broadcastable.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -1,9 +1,12 @@
 """Flexibility of bodies, estimated from their outlines: finite cells, condensed to the ends of the links on each body.
 
-Each outline has a rectangular grid of quadratic hexahedra with 20 nodes. Points of a cell outside the material have next to no stiffness
-(finite cell method; Parvizian, Duester, Rank, Comput. Mech. 41, 121, 2007). Outlines that meet or overlap are tied together at points of
-their cells. Wrenches at the ends of its links, balanced by the inertia of the accelerated body, give the twists of these ends against the
-body's mean motion (inertia relief). Linear models then hold rigid bodies with a compliance between each body and the ends of its links.
+Each outline has a rectangular grid of quadratic hexahedra with 20 nodes. Points of a cell outside the material have almost no stiffness
+(finite cell method; Parvizian, Duester, Rank, Comput. Mech. 41, 121, 2007). Outlines that touch or overlap are tied together at points of
+their cells.
+
+Loads are wrenches at the ends of the links on a body, balanced by the inertia of the accelerated body (inertia relief). The results are the
+twists of these ends against the body's mean motion. A linear model then has rigid bodies, with a compliance between each body and the ends
+of its links.
 """
 
 from __future__ import annotations
@@ -36,7 +39,7 @@ from flexstage.parts.shape import Shaped
 from flexstage.spatial.frame import FORCES, Frame, cross_matrix, spatial_rotation, twist_transform
 
 BODIES = "flexible bodies"
-"""The name of what flexible bodies take from the stiffness of a model."""
+"""Name of the stiffness contribution by which flexible bodies reduce the stiffness of a model."""
 _SLENDER, _COMPACT, _CUT, _WHOLE = 4, 3, 8, 8
 """Cells along the longest side of a slender and of a compact block, of another outline, whose surface cuts them, and of a whole body."""
 _EMPTY, _VOID = 0.005, 1e-3
@@ -69,10 +72,10 @@ _SAMPLES: Array = np.array(
 
 @dataclass(frozen=True, eq=False)
 class BodyFlexibility:
-    """Compliance (6 k, 6 k) [m/N] of a body at the ends of its k `links`.
+    """Compliance (6 k, 6 k) [SI] of a body at the ends of its k `links`.
 
-    Coordinates are the twists of these ends against the mean motion of the body, at the points `ends` (k, 3), in the stage's axes. Bodies
-    with the same outlines and links are of one `group`.
+    The coordinates are the twists of these ends against the mean motion of the body, at the points `ends` (k, 3), in the stage's axes.
+    Bodies with equal outlines and links belong to one `group`.
     """
 
     body: str
@@ -84,7 +87,7 @@ class BodyFlexibility:
 
 @dataclass(frozen=True, eq=False)
 class BodyEstimates:
-    """Flexibilities of bodies, and why others have none (`reasons`, by body)."""
+    """Flexibilities of bodies (`found`), and the `reasons` why other bodies have none, by body."""
 
     found: tuple[BodyFlexibility, ...]
     reasons: Mapping[str, str]
@@ -94,8 +97,14 @@ class BodyEstimates:
 def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     """Estimate the flexibility of every body of one design from its outlines.
 
-    Bodies without outlines, with imported ones, on superelements, ideal joints or fixed DOFs, and those whose links end far from the
-    outlines, have a reason instead; so have all bodies of large stages. Equal bodies share their estimate.
+    There is a reason instead of an estimate for:
+
+    - bodies without outlines, or with imported outlines;
+    - bodies on superelements, ideal joints or locked DOFs;
+    - bodies with links that end far from their outlines;
+    - all bodies of large stages.
+
+    Equal bodies share their estimate.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [each.body for each in body_flexibilities(parallelogram()).found]
@@ -127,7 +136,7 @@ def _is_varied(mechanism: Mechanism) -> bool:
 
 
 def with_estimated_bodies(model: LinearModel, mechanism: Mechanism) -> LinearModel:
-    """A lumped model of one design whose bodies have the flexibility that is estimated. Raises `DesignError` for several designs.
+    """Return the lumped model of one design with the estimated flexibility of its bodies; raises `DesignError` for several designs.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -140,7 +149,7 @@ def with_estimated_bodies(model: LinearModel, mechanism: Mechanism) -> LinearMod
 
 
 def flexible_links(mechanism: Mechanism) -> tuple[str, ...]:
-    """Links that end on flexible bodies, in the order of their strains in a model.
+    """Return the names of links that end on flexible bodies, in the order of their strains in a model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> flexible_links(parallelogram())
@@ -154,12 +163,12 @@ def _links(flexibilities: Sequence[BodyFlexibility]) -> tuple[str, ...]:
 
 
 def with_flexible_bodies(model: LinearModel, mechanism: Mechanism, flexibilities: Sequence[BodyFlexibility]) -> LinearModel:
-    """A lumped model whose bodies yield between the ends of their links.
+    """Return the lumped model with bodies that deform elastically between the ends of their links.
 
-    Masses, gauges, points and links without length, such as coils and springs, follow the mean motion of each body.
+    Masses, gauges, points, and links without length (coils, springs) follow the mean motion of each body.
 
-    With link strains e = G q - s, link stiffness k, compliance C of bodies and E the strains of the links per unit of their ends' twists,
-    the ends' twists are eliminated: the links' forces are (k - k E X E^T k) e, X = (C^-1 + E^T k E)^-1.
+    The link strains are e = G q - s, the link stiffness is k, and the compliance of the bodies is C. E are the strains of the links per
+    unit twist of their ends. The twists of the ends are eliminated: the link forces are (k - k E X E^T k) e with X = (C^-1 + E^T k E)^-1.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

@@ -1,12 +1,10 @@
 """Ideal model: rigid bodies; hinges are free in their intended DOFs and locked in all others; superelements are rigid.
 
-Unknowns are the twists of all bodies and the strokes. The locked deformations of every link are zero; those of an actuator equal its free
-deformation times its stroke.
+The unknowns are the twists of all bodies and the strokes. The deformations of every link in locked DOFs are zero; for an actuator, they
+equal its free deformation times its stroke. The remaining motions give R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the
+platform mobility, free internal modes and redundant constraints.
 
-The remaining motions give R_a = da/dx and R_s = ds/dx (Eqs. 13 and 14 of Shin & Moon), the platform mobility, free internal modes and
-redundant constraints.
-
-Force actuators constrain nothing; their generalised forces on the ideal motions follow by virtual work.
+Force actuators do not constrain motion. Their generalised forces on the ideal motions are computed by virtual work.
 """
 
 from __future__ import annotations
@@ -75,8 +73,8 @@ def free_freedoms(link: PlacedLink) -> tuple[Freedom, ...]:
 def ideal(mechanism: Mechanism) -> Kinematics:
     """Compute the ideal kinematics of a stage.
 
-    Small motions about the nominal position. Raises `DesignError` if a stroke moves nothing but itself (an actuator without a path to the
-    platform). Under-actuated stages are accepted, but their `mapping` raises.
+    Motions are small, about the nominal position. Raises `DesignError` if a stroke moves only its own actuator (an actuator without a path
+    to the platform). Under-actuated stages are accepted, but their `mapping` raises `DesignError`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> ideal(double_triangle()).mapping.values[0].round(3).tolist()

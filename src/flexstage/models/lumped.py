@@ -1,7 +1,7 @@
 """Lumped model: rigid bodies with six degrees of freedom, joined by 6x6 links.
 
-K = sum H^T k H with H the relative twist at each link; M from bodies and parts. Strokes are imposed deformations of their actuators. Forces
-are equal and opposite wrenches H^T w on the two bodies of the actuator.
+The stiffness is K = sum H^T k H, with H the relative twist at each link per coordinate. Bodies and parts contribute to the mass M. A stroke
+is an imposed deformation of its actuator. A force is a pair of opposite wrenches, H^T w, on the two bodies of its actuator.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ _Value = TypeVar("_Value")
 
 
 class Masses(Enum):
-    """Included masses: all bodies and links, or the platform with its payloads only (the paper's model)."""
+    """Masses in the model: all bodies and links, or only the platform with its payloads (the paper's model)."""
 
     ALL = "all"
     PLATFORM = "platform"
@@ -106,9 +106,9 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 
     Valid for small displacements about the nominal position and for frequencies below the first resonance of the parts.
 
-    - Locked DOFs of `Restricted` and `Joint` parts are eliminated exactly, a stroke along a locked axis as an imposed motion.
-    - Free internal modes without effect keep their inertia, are removed with their zero modes, and are listed in `idle`.
-    - With `elastic_bodies`, bodies have the compliance that `body_flexibilities` estimates; batches of designs are refused.
+    - Locked DOFs of `Restricted` and `Joint` parts are eliminated exactly. A stroke along a locked axis is an imposed motion.
+    - Free internal modes without effect on the platform are removed and listed in `idle`; their inertia is included.
+    - With `elastic_bodies`, bodies have the compliance that `body_flexibilities` estimates; only for single designs.
 
     Raises `DesignError`:
 
@@ -126,9 +126,9 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 def variants(
     mechanism: Mechanism, kept: Iterable[Mapping[str, tuple[Freedoms, Freedoms]]], masses: Masses = Masses.ALL
 ) -> Iterator[LinearModel]:
-    """Build the models of a stage for other elastic and free DOFs of its restricted parts, by name, on one expansion of the stage.
+    """Build one model for each item of `kept`: other (elastic, free) DOFs of restricted parts, by name.
 
-    The origin of each model is the stage. Raises `DesignError` as `lumped`.
+    The stage is expanded only once. Raises `DesignError` as `lumped`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.restrict import restrict

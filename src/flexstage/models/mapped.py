@@ -1,7 +1,7 @@
 """Mapped model: the paper's axial-spring model (Eqs. 17-28 of Shin & Moon).
 
-K = R_a^T diag(K_i) R_a with the stiffness of each unit in actuator coordinates, M of the platform only. Units are massless, hinges have no
-bending stiffness.
+The stiffness is K = R_a^T diag(K_i) R_a, with the stiffness K_i of each unit in actuator coordinates. Only the platform has mass. Hinges
+have no bending stiffness.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _COLLINEAR = 1e-6
 class LeverStiffness:
     """Springs of a lever unit as in Fig. 7 and Eqs. 3-11 of the paper, SI.
 
-    `drive` K_1 (stack and its hinges), `pivot` K_theta2, `pole` K_3, `short_arm` r_1, `long_arm` r_2.
+    The fields are `drive` K_1 (stack and its hinges), `pivot` K_theta2, `pole` K_3, `short_arm` r_1, and `long_arm` r_2.
     """
 
     TABLE: ClassVar[Layout] = Layout("Springs of the lever units", "drive pivot pole short_arm long_arm gain tip_compliance", head="unit")
@@ -53,7 +53,7 @@ class LeverStiffness:
 
     @property
     def softness(self) -> Number:
-        """eps = K_theta2 / (r_1^2 K_1): stiffness ratio of pivot and drive."""
+        """Stiffness ratio of pivot and drive, eps = K_theta2 / (r_1^2 K_1)."""
         return self.pivot / (self.short_arm**2 * self.drive)
 
     @property
@@ -68,7 +68,7 @@ class LeverStiffness:
 
     @property
     def stiffness(self) -> Number:
-        """K_v in actuator coordinates: (r_2 / r_1)^2 over the tip compliance."""
+        """Stiffness K_v in actuator coordinates [N/m]: (r_2 / r_1)^2 over the tip compliance."""
         return (self.long_arm / self.short_arm) ** 2 / self.tip_compliance
 
 
@@ -78,7 +78,7 @@ def mapped(mechanism: Mechanism) -> LinearModel:
 
     The stiffness of each unit is specified in the description, or computed for direct units (a straight strut) and lever units.
 
-    Raises `DesignError` for every other unit, with the key that specifies its stiffness.
+    Raises `DesignError` for other units without a specified stiffness, with the key that specifies it.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> (mapped(double_triangle()).stiffness_matrix[0, 0] / 1e6).round(2).item()  # 1.5 K_a
@@ -145,8 +145,8 @@ def _broadcast(*arrays: Array) -> list[Array]:
 def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinematics | None = None) -> dict[str, Number]:
     """Return the stiffness of every actuator's unit in actuator coordinates [N/m], specified or computed.
 
-    Any other unit than a straight strut or a lever is the chain of links that carry its load (`chain_compliance`). This requires the
-    `kinematics`, and statics that determine those links.
+    For a unit that is not a straight strut or a lever, the stiffness is that of the chain of links that carry its load
+    (`chain_compliance`). This requires the `kinematics`, and a chain that is statically determinate.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
@@ -173,14 +173,13 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
 
 
 def chain_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) -> Number | None:
-    """Compute the compliance [m/N] in an actuator coordinate of all links that carry its load: the sum of f^T C f, by virtual work.
+    """Compute the compliance [m/N] of all links that carry an actuator's load, in its coordinate: the sum of f^T C f (virtual work).
 
-    f is the wrench in the locked DOFs of a link, in equilibrium with fixed strokes. The platform wrench loads only this actuator, V^T w
-    = R_a^T e, and no guide. Links that carry wrenches without motion are rigid in this model. Free DOFs carry nothing; ideal joints are
-    rigid.
+    f is the wrench in the locked DOFs of a link, in equilibrium with fixed strokes. The platform wrench w loads only this actuator, V^T w =
+    R_a^T e, and no guide. Free DOFs carry no load; ideal joints are rigid.
 
-    `None` if statics does not determine f (redundant constraints or a guide contribute), if a link has no known compliance, or if nothing
-    is elastic.
+    Returns `None` if statics does not determine f (redundant constraints or a guide), if a link has no known compliance, or if all links
+    are rigid.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
@@ -294,7 +293,9 @@ def computed_stiffness(assembly: Assembly, drive: str) -> Number:
 
 
 def lever_stiffness(assembly: Assembly, drive: str) -> LeverStiffness:
-    """Compute the springs and arms of a lever unit: drive ground - lever, one pivot ground - lever, pole lever - platform.
+    """Compute the springs and arms of a lever unit.
+
+    The drive and one pivot connect the ground and the lever; a pole connects the lever and the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(float(lever_stiffness(expand(double_triangle()), "B4/pzt").gain) / 3, 3)  # Table 2: 585 of 600

@@ -1,4 +1,4 @@
-"""Models of a stage by name, without import of their modules (for the command line)."""
+"""Names of the models of a stage; this module does not import the models (for the command line)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Model(Enum):
-    """Models of theory: ideal kinematics, axial springs of the paper, lumped 6x6 hinges."""
+    """Models: ideal kinematics, axial springs (the paper's mapped model), lumped 6x6 hinges."""
 
     IDEAL = "ideal"
     MAPPED = "mapped"

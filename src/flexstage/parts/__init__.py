@@ -35,7 +35,7 @@ PARTS: Register[type[Elastic]] = Register(
     "flexstage.parts",
     {part.kind: part for part in (*_HINGES, Membrane, ComplianceMatrix, Spring, Contact, Superelement, *_COMPOUNDS, *_ACTUATORS)},
 )
-"""Kinds of parts with stiffness, also of their members."""
+"""Classes of parts with stiffness by kind, including members of compound parts."""
 
 GAUGES: Register[type[Instrument]] = Register("flexstage.gauges", {gauge.kind: gauge for gauge in _GAUGES})
-"""Kinds of gauges (default: `Gauge`)."""
+"""Classes of gauges by kind (default: `Gauge`)."""

@@ -1,4 +1,4 @@
-"""Actuators: parts with an input, a stroke or a force between their two faces."""
+"""Actuators: parts whose input is a stroke, a force or a current between their two faces."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from flexstage.parts.shape import Elastic, Order
 
 
 class Actuator(Elastic):
-    """Part with an input of the quantity `input`.
+    """Part with an `input` of a physical quantity.
 
-    A stroke actuator (`input` a displacement) has a `free_deformation` s per unit of stroke u and the force k (dx - s u). A force actuator
-    (`input` a force or a current) exerts `wrench` per unit of input on its second face and the opposite on its first. All its degrees of
-    freedom are free; its own stiffness is additional. Positive pushes the faces apart.
+    A stroke actuator (`input` is a displacement) has a free deformation s per unit of stroke u. Its force is k (dx - s u). For a force
+    actuator, `input` is a force or a current. It exerts `wrench` per unit of input on its second face, and the opposite wrench on its first
+    face. A force actuator leaves all degrees of freedom free; its stiffness is a separate term. A positive input pushes the faces apart.
     """
 
     input: ClassVar[Quantity] = DISPLACEMENT
 
     @property
     def takes_stroke(self) -> bool:
-        """Whether the input is a stroke; else a force, or a current."""
+        """Whether the input is a stroke; otherwise the input is a force or a current."""
         return self.input is DISPLACEMENT
 
     @property
     def step(self) -> Number | None:
-        """Least step of the input; 0: continuous, None: unspecified."""
+        """Smallest step of the input; 0 for a continuous input, None if unspecified."""
         return 0.0
 
     @property
@@ -44,15 +44,15 @@ class Actuator(Elastic):
 
     @property
     def wrench(self) -> Array:
-        """Wrench (..., 6) on the second face per unit of input, in the link's frame at its centre; zero for a stroke actuator."""
+        """Wrench (..., 6) on the second face per unit of input, at the link's centre in the link's frame; zero for a stroke actuator."""
         return np.zeros(6)
 
 
 @dataclass(frozen=True, eq=False)
 class ForceLimit:
-    """Limit of a force actuator's input: `held` is continuous, `short` in short use (None: unknown).
+    """Limit of a force actuator's input: `held` for continuous use, `short` for short use (None: unknown).
 
-    `clips`: an instantaneous limit, unlike a thermal one.
+    `clips`: the limit acts at once (saturation), unlike a thermal limit.
     """
 
     name: str
@@ -62,9 +62,9 @@ class ForceLimit:
 
 
 class ThrustActuator(Actuator):
-    """Actuator with a force along x, positive pushing its faces apart, or a torque about x.
+    """Actuator with a force along x or a torque about x. A positive force pushes its faces apart.
 
-    `axis` is the place of its force or torque in its `wrench`.
+    `axis` is the index of the force or torque in the wrench: 0 or 3.
     """
 
     axis: ClassVar[int] = 0
@@ -81,34 +81,34 @@ class ThrustActuator(Actuator):
         return None
 
     def slew(self, limit: Number) -> Number | None:  # noqa: ARG002  (kinds that know one need it)
-        """Mean slew rate of the input from zero to a `limit` [1/s]; None: no known limit."""
+        """Return the mean rate of change of the input from zero to a `limit` [input unit/s]; None without a known limit."""
         return None
 
     def in_series(self, count: int) -> ThrustActuator:  # noqa: ARG002  (coils need it)
-        """As many of them in one circuit, as their amplifier sees them; force or torque is that of one."""
+        """Return an actuator with the electrical load of `count` such actuators in one circuit, but the force or torque of one."""
         return self
 
     def loss(self, rms: Number) -> Number | None:  # noqa: ARG002  (kinds that know it need it)
-        """Dissipated power [W] for an rms input; None: unknown."""
+        """Return the dissipated power [W] for an rms input; None if unknown."""
         return None
 
     def warming(self, rms: Number) -> Number | None:  # noqa: ARG002
-        """Steady-state temperature rise for an rms input [K]; None: unknown."""
+        """Return the steady-state temperature rise [K] for an rms input; None if unknown."""
         return None
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """All six."""
+        """Ideal degrees of freedom: all six."""
         return ALL
 
     @property
     def mirrored(self) -> ThrustActuator:
-        """Itself, by symmetry."""
+        """The actuator itself, by symmetry."""
         return self
 
     @property
     def wrench(self) -> Array:
-        """Thrust along x, or torque about x."""
+        """Wrench (..., 6) per unit of input: a force along x, or a torque about x."""
         return np.asarray(self.thrust)[..., None] * np.eye(6)[self.axis]
 
     @property
@@ -118,9 +118,9 @@ class ThrustActuator(Actuator):
 
 
 class StrokeActuator(Actuator):
-    """Actuator with an imposed stroke; a kind specifies the full free `stroke` and the blocked force.
+    """Actuator with an imposed stroke. Each kind specifies the full free `stroke` and the blocked force.
 
-    Load limits are unknown unless a kind specifies them.
+    The load limits are unknown, unless a kind specifies them.
     """
 
     stroke: Number
@@ -130,12 +130,12 @@ class StrokeActuator(Actuator):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """No passive degree of freedom; the stroke moves."""
+        """Ideal degrees of freedom: none, because only the stroke moves the faces."""
         return ()
 
     @property
     def free_deformation(self) -> Array:
-        """Along x."""
+        """Free deformation (6,) per unit of stroke: along x."""
         return np.eye(6)[0]
 
     @property
@@ -145,17 +145,17 @@ class StrokeActuator(Actuator):
 
     @property
     def below_rest(self) -> Number:
-        """Share of the stroke below the rest position: half."""
+        """Fraction of the stroke below the rest position: one half."""
         return 0.5
 
     @property
     def below_zero(self) -> Number:
-        """Share of the stroke below zero voltage: none."""
+        """Fraction of the stroke below zero voltage: zero."""
         return 0.0
 
 
 class ChargedActuator(StrokeActuator):
-    """Piezo stroke actuator: a voltage from `voltage_low` to `voltage_high` controls the stroke; it rests at its `bias`."""
+    """Piezo stroke actuator: a voltage from `voltage_low` to `voltage_high` controls the stroke; the rest position is at the `bias`."""
 
     voltage_low: Number | None
     voltage_high: Number | None
@@ -164,21 +164,24 @@ class ChargedActuator(StrokeActuator):
 
     @property
     def below_rest(self) -> Number:
-        """Share of the stroke below the bias (default: half)."""
+        """Fraction of the stroke below the bias voltage (default: half)."""
         if self.bias is None or self.voltage_low is None or self.voltage_high is None:
             return 0.5
         return (self.bias - self.voltage_low) / (self.voltage_high - self.voltage_low)
 
     @property
     def below_zero(self) -> Number:
-        """Share of the stroke below zero voltage (negative: the range begins above it); zero without a range."""
+        """Fraction of the stroke below zero voltage; zero without a voltage range.
+
+        It is negative if the voltage range begins above zero.
+        """
         if self.voltage_low is None or self.voltage_high is None:
             return 0.0
         return -self.voltage_low / (self.voltage_high - self.voltage_low)
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: bias within the voltage range."""
+        """Order relation: the bias is within the voltage range."""
         yield Order("voltage_low", self.voltage_low, self.voltage_high, "voltage_high", "Exchange them", VOLTAGE)
         advice = "Use a bias within the range of the stack"
         yield Order("bias", self.bias, self.voltage_high, "voltage_high", advice, VOLTAGE, strict=False)

@@ -1,4 +1,4 @@
-"""Actuators known by a 6x6 and a free deformation between their faces: amplified piezos, stepping drives."""
+"""Actuators with a specified 6x6 stiffness and a free deformation between their faces: amplified piezos, stepping drives."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _Deformation: TypeAlias = tuple[_Shift, _Shift, _Shift, _Turn, _Turn, _Turn]
 
 
 class BetweenFaces(StrokeActuator):
-    """Stroke actuator with the force f = k (dx - s u): a 6x6 k about its centre and a free deformation s per unit of stroke."""
+    """Stroke actuator with the force f = k (dx - s u): 6x6 stiffness k about its centre, free deformation s per unit of stroke u."""
 
     diagonal: _Diagonal | None
     matrix: _Matrix | None
@@ -54,28 +54,28 @@ class BetweenFaces(StrokeActuator):
 
     @property
     def carried(self) -> Array:
-        """Half of the mass (..., 12, 12) at each face, both at the centre."""
+        """Mass matrix (..., 12, 12) with half of the mass at each face; twists of both faces at the centre."""
         return point_masses(0.5 * self.mass, 0.5 * self.mass)
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Stiffness 6x6, and half of the mass at each face."""
+        """Return the specified 6x6 stiffness, and half of the mass at each face."""
         return Stated(self.between, self.carried)
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Free degrees of freedom."""
+        """Ideal degrees of freedom, as specified."""
         return self.free
 
     @property
     def between(self) -> Array:
-        """Stiffness k (..., 6, 6) about the centre, second face against first, SI."""
+        """Stiffness k (..., 6, 6) [SI] about the centre, for motion of the second face against the first."""
         if self.diagonal is not None:
             return stack(self.diagonal)[..., None] * np.eye(6)
         return np.linalg.inv(stack(self.compliance)) if self.matrix is None else stack(self.matrix)
 
     @property
     def mirrored(self) -> Self:
-        """Mirror image across y: couplings, products of inertia and deformations odd in y reversed."""
+        """Mirror image across y: couplings, products of inertia and deformations that are odd in y change sign."""
         return replace(self, **dict(_reversed(self)))  # pyright: ignore[reportArgumentType] (its kinds are dataclasses)
 
     @property
@@ -91,7 +91,7 @@ class BetweenFaces(StrokeActuator):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors of the stiffness: exactly one form, symmetric and positive definite."""
+        """Errors of the stiffness: it must be specified exactly once, and be symmetric and positive definite."""
         stated = [name for name in ("diagonal", "matrix", "compliance") if getattr(self, name) is not None]
         if len(stated) != 1:
             result = f"both {' and '.join(stated)} specified" if stated else "stiffness across its axis missing"
@@ -118,11 +118,11 @@ def _reversed(part: Any) -> Iterator[tuple[str, Any]]:
 class Amplified(BetweenFaces, ChargedActuator):
     """Amplified piezo actuator between its two faces: f = k (dx - s u).
 
-    `stroke` is the full free stroke of its output along x. `deformation` is the free deformation (x, y, z, rx, ry, rz) of the second face
-    against the first at full stroke (default: the stroke along x). It describes contracting actuators and parasitic motion. One of
-    `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` is its 6x6 about its centre at constant voltage. Half of `mass` and of
-    `inertia` is at each face, about the centre. `free` are the degrees of freedom of the ideal model. `resonance` (blocked at one face,
-    free at the other) is information only: internal modes are not modelled.
+    `stroke` is the full free stroke of the output along x. `deformation` is the free deformation (x, y, z, rx, ry, rz) of the second face
+    against the first at full stroke (default: the stroke along x). It can describe contracting actuators and parasitic motion. Exactly one
+    of `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` specifies the 6x6 about the centre at constant voltage. Half of `mass`
+    and of `inertia` is at each face, about the centre. `free` are the degrees of freedom of the ideal model. `resonance` (one face fixed,
+    the other free) is information only: internal modes are not modelled.
     """
 
     kind: ClassVar[str] = "amplified"
@@ -147,14 +147,14 @@ class Amplified(BetweenFaces, ChargedActuator):
 
     @property
     def free_deformation(self) -> Array:
-        """Deformation over stroke (default: along x)."""
+        """Free deformation (..., 6) per unit of stroke: `deformation` over `stroke` (default: along x)."""
         if self.deformation is None:
             return np.eye(6)[0]
         return stack(self.deformation) / np.asarray(self.stroke)[..., None]
 
     @property
     def carried(self) -> Array:
-        """Half of the mass and inertia (..., 12, 12) at each face, both at the centre.
+        """Mass matrix (..., 12, 12) with half of the mass and inertia at each face; twists of both faces at the centre.
 
         >>> Amplified(stroke=1e-4, mass=2.0).carried.diagonal()[:4].tolist()
         [1.0, 1.0, 1.0, 0.0]
@@ -173,9 +173,9 @@ class Amplified(BetweenFaces, ChargedActuator):
 class SteppingDrive(BetweenFaces):
     """Stepping drive, self-locking without power: inertia drive, inchworm, screw.
 
-    Its stroke is its whole `travel` along x, half to either side, in steps of `resolution`. One of `diagonal` (x, y, z, rx, ry, rz),
-    `matrix` and `compliance` is its 6x6 about its centre while locked. `holding_force` is the slip force along x: its load limit in both
-    directions. Half of `mass` is at each face. Linear: no backlash, no step forces.
+    The stroke is the whole `travel` along x, half to either side, in steps of `resolution`. Exactly one of `diagonal` (x, y, z, rx, ry,
+    rz), `matrix` and `compliance` specifies the 6x6 about the centre while locked. `holding_force` is the slip force along x: the load
+    limit in both directions. Half of `mass` is at each face. The model is linear: no backlash, no step forces.
     """
 
     kind: ClassVar[str] = "stepper"
@@ -192,25 +192,25 @@ class SteppingDrive(BetweenFaces):
 
     @property
     def stroke(self) -> Number:  # type: ignore[override]
-        """Travel [m]."""
+        """Full stroke [m]: the travel."""
         return self.travel
 
     @property
     def step(self) -> Number | None:
-        """Resolution [m]."""
+        """Smallest step [m]: the resolution."""
         return self.resolution
 
     @property
     def maximum_load(self) -> Number | None:  # type: ignore[override]
-        """Slip force [N]."""
+        """Largest compression [N]: the slip force."""
         return self.holding_force
 
     @property
     def tensile_limit(self) -> Number | None:  # type: ignore[override]
-        """Slip force [N]."""
+        """Largest tension [N]: the slip force."""
         return self.holding_force
 
     @property
     def below_zero(self) -> Number:
-        """Half: the nominal position is mid-travel."""
+        """Fraction of the stroke below the nominal position: one half."""
         return 0.5

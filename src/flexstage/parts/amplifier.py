@@ -14,9 +14,9 @@ from flexstage.base.units.quantity import CURRENT, FREQUENCY, POSITIVE, RESISTAN
 
 @dataclass(frozen=True)
 class Amplifier(CheckedFields):
-    """Voltage amplifier on the stack's capacitance C: first order, ideal without any of these fields.
+    """Voltage amplifier that drives the capacitance C of a stack: first-order lag; ideal if no field is specified.
 
-    `bandwidth` [Hz] as specified, or 1/(2 pi R C) of the output `resistance` R [ohm]. `current` [A] is the output limit.
+    `bandwidth` [Hz] is specified directly, or is 1/(2 pi R C) with the output `resistance` R [ohm]. `current` [A] is the output limit.
     """
 
     bandwidth: Annotated[float, FREQUENCY, POSITIVE] | None = None
@@ -24,7 +24,7 @@ class Amplifier(CheckedFields):
     current: Annotated[float, CURRENT, POSITIVE] | None = None
 
     def cutoff(self, capacitances: Array) -> Array:
-        """Return the bandwidth [Hz] for capacitances [F]; infinite without a limit.
+        """Return the bandwidth [Hz] for load capacitances [F]; infinite if the amplifier has no lag.
 
         >>> Amplifier(resistance=100.0).cutoff(np.array([0.4e-6])).round(1).tolist(), Amplifier().cutoff(np.ones(1)).tolist()
         ([3978.9], [inf])

@@ -1,4 +1,4 @@
-"""Rigid bodies: mass properties as specified, or from solid outlines and their density."""
+"""Rigid bodies: mass properties as specified, or computed from solid outlines and densities."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from flexstage.spatial.frame import Frame, axes
 
 
 class Solid(Description):
-    """Outline of a body, of one `material`, with its geometry in the frame of its centre.
+    """Solid outline of a body, of one `material`, with its geometry in its own frame at its centre.
 
-    In that frame, a cylinder's axis is x, the height of a block or an extrusion z.
+    In this frame, a cylinder's axis is x; the height of a block or an extrusion is along z.
     """
 
     material: str
@@ -28,12 +28,12 @@ class Solid(Description):
 
     @property
     def sides(self) -> Array:
-        """Sides (..., 3) of the bounding box along its axes [m]."""
+        """Side lengths (..., 3) [m] of the bounding box along its axes."""
         raise NotImplementedError
 
     @property
     def frame(self) -> Frame:
-        """Frame relative to the drawing frame: origin at the centre of the bounding box."""
+        """Frame of the solid relative to the drawing frame, with its origin at the centre of the bounding box."""
         raise NotImplementedError
 
     @property
@@ -53,11 +53,11 @@ class Solid(Description):
 
     @property
     def mirrored(self) -> Solid:
-        """Mirror image across y in its frame; itself if symmetric."""
+        """Mirror image across y in the drawing frame; the solid itself if it is symmetric."""
         return self
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Mask of points (n, 3) of its frame inside, or within `slack` [m]; of the first design."""
+        """Return a mask of the points (n, 3), in the solid's frame, that are inside or within `slack` [m] of it (first design)."""
         half = 0.5 * first_design(np.real(self.sides), 1)
         return np.all(np.abs(points) <= half + slack, axis=1)
 
@@ -66,8 +66,8 @@ class Solid(Description):
 class Block(Solid):
     """Rectangular block centred at `at`, x edge along `along`, z edge along `up` (perpendicular to `along`).
 
-    Without directions its edges are parallel to the drawing frame. `hole` is a centred rectangular through hole of sides (x, y) along the
-    block's z edge. Sizes in metres. `subtract`: it is a hole, see `Body`.
+    Without directions, its edges are parallel to the axes of the drawing frame. `hole` has the sides (x, y) [m] of a centred rectangular
+    through hole along the block's z edge. `subtract`: the block is a hole, see `Body`.
     """
 
     material: str
@@ -80,12 +80,12 @@ class Block(Solid):
 
     @property
     def sides(self) -> Array:
-        """Sizes."""
+        """Side lengths (..., 3) [m]."""
         return stack(self.size)
 
     @property
     def frame(self) -> Frame:
-        """Axes along its edges.
+        """Frame with axes along the edges of the block.
 
         >>> upright = Block("steel", size=(0.3, 0.2, 0.1), at=(0.0, 0.0, 1.0), along=(0.0, 0.0, 1.0), up=(1.0, 0.0, 0.0))
         >>> upright.frame.rotation.T.tolist()  # x edge up, y edge = up x along, z edge along the body's x
@@ -95,12 +95,12 @@ class Block(Solid):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: hole smaller than the block."""
+        """Order relations: the hole is smaller than the block."""
         for name, hole, size in zip("xy", self.hole or (), self.size, strict=False):
             yield Order(f"hole.{name}", hole, size, "the size of the block", "Make the hole smaller")
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Mask of points in its walls."""
+        """Return a mask of the points in the block, outside its through hole."""
         within = super().contains(points, slack)
         if self.hole is not None:
             hole = 0.5 * first_design(np.real(stack(self.hole)), 1)
@@ -112,7 +112,7 @@ class Block(Solid):
 class Cylinder(Solid):
     """Round cylinder or tube centred at `at`, axis along `along`; `bore` is the diameter of a concentric hole.
 
-    `subtract`: it is a hole, see `Body`.
+    `subtract`: the cylinder is a hole, see `Body`.
     """
 
     material: str
@@ -125,32 +125,32 @@ class Cylinder(Solid):
 
     @property
     def sides(self) -> Array:
-        """Length, and twice the diameter."""
+        """Side lengths (..., 3) [m] of the bounding box: length, diameter, diameter."""
         return stack((self.length, self.diameter, self.diameter))
 
     @property
     def frame(self) -> Frame:
-        """x along its axis."""
+        """Frame with the x axis along the cylinder's axis."""
         return Frame(axes(self.along), stack(self.at))
 
     @property
     def thinnest(self) -> Number:
-        """Length, diameter or wall thickness."""
+        """Smallest of length and diameter, or of length and wall thickness [m]."""
         wall = self.diameter if self.bore is None else 0.5 * (self.diameter - self.bore)
         return np.minimum(np.real(wall), np.real(self.length))
 
     @property
     def is_flat(self) -> bool:
-        """False: round."""
+        """False: its lateral surface is curved."""
         return False
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: bore smaller than the diameter."""
+        """Order relation: the bore is smaller than the diameter."""
         yield Order("bore", self.bore, self.diameter, "the diameter", "Make the bore smaller")
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Mask of points in its wall."""
+        """Return a mask of the points in the cylinder or the wall of the tube."""
         length, diameter, _ = first_design(np.real(self.sides), 1)
         radii = np.hypot(points[:, 1], points[:, 2])
         bore = 0.0 if self.bore is None else 0.5 * single(self.bore)
@@ -159,10 +159,10 @@ class Cylinder(Solid):
 
 @dataclass(frozen=True, eq=False)
 class Extrusion(Solid):
-    """Extruded polygon of a `height`: corners `outline` (x, y) in a plane through `at`, half of the height on either side.
+    """Polygon extruded by a `height`: corners `outline` (x, y) in a plane through `at`, half of the height on either side.
 
-    x of the outline is along `along`, the height along `up` (perpendicular to `along`). The corners are in order in either sense, the sides
-    do not cross. `subtract`: it is a hole, see `Body`.
+    The x axis of the outline is along `along`, the height along `up` (perpendicular to `along`). The corners may be in clockwise or
+    counter-clockwise order; the sides must not cross. `subtract`: the extrusion is a hole, see `Body`.
 
     >>> corner = Extrusion("steel", outline=((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)), height=1.0)
     >>> corner.sides.tolist(), corner.frame.position.tolist()
@@ -191,21 +191,21 @@ class Extrusion(Solid):
 
     @property
     def corners(self) -> Array:
-        """Corners (..., n, 2) from the centre of the bounding box, counter-clockwise from above (in the first design) [m]."""
+        """Corners (..., n, 2) [m] relative to the centre of the bounding box, counter-clockwise as seen from +z (in the first design)."""
         least, largest = self._ends
         centred = self._drawn - 0.5 * (least + largest)[..., None, :]
         return centred if winding(first_design(np.real(centred), 2)) > 0.0 else centred[..., ::-1, :]
 
     @property
     def sides(self) -> Array:
-        """Bounding box."""
+        """Side lengths (..., 3) [m] of the bounding box."""
         least, largest = self._ends
         size = largest - least
         return stack((size[..., 0], size[..., 1], self.height))
 
     @property
     def frame(self) -> Frame:
-        """Axes of its outline, z along its height."""
+        """Frame with the axes x and y of the outline, and z along the height."""
         least, largest = self._ends
         middle = 0.5 * (least + largest)
         own = Frame(axes(self.along, self.up), stack(self.at))
@@ -218,7 +218,7 @@ class Extrusion(Solid):
 
     @property
     def thinnest(self) -> Number:
-        """Height, or least distance of a corner from a side without it, in the first design."""
+        """Smaller of the height and the least distance of a corner from a non-adjacent side [m], in the first design."""
         corners = first_design(np.real(self.corners), 2)
         begin, run = corners, np.roll(corners, -1, axis=0) - corners
         share = np.clip(np.einsum("ijx,jx->ij", corners[:, None] - begin, run) / np.sum(run * run, axis=1), 0.0, 1.0)
@@ -228,7 +228,7 @@ class Extrusion(Solid):
         return min(float(np.min(gaps[apart])), single(self.height))
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Mask of points in its outline, or near one of its sides, and within its height."""
+        """Return a mask of the points in the extrusion, or near one of its sides."""
         corners = first_design(np.real(self.corners), 2)
         level = np.abs(points[:, 2]) <= 0.5 * single(self.height) + slack
         return level & within_polygon(points[:, :2], corners, slack)
@@ -236,7 +236,7 @@ class Extrusion(Solid):
 
 @dataclass(frozen=True, eq=False)
 class Sphere(Solid):
-    """Ball centred at `at`. `subtract`: it is a hollow, see `Body`."""
+    """Ball centred at `at`. `subtract`: the ball is a hollow, see `Body`."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "sphere")
     material: str
@@ -246,21 +246,21 @@ class Sphere(Solid):
 
     @property
     def sides(self) -> Array:
-        """Three times the diameter."""
+        """Side lengths (..., 3) [m] of the bounding box: the diameter along all axes."""
         return stack((self.diameter, self.diameter, self.diameter))
 
     @property
     def frame(self) -> Frame:
-        """Axes of the drawing frame."""
+        """Frame with the axes of the drawing frame."""
         return Frame(np.eye(3), stack(self.at))
 
     @property
     def is_flat(self) -> bool:
-        """False: round."""
+        """False: its surface is curved."""
         return False
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Mask of points within its radius."""
+        """Return a mask of the points in the ball."""
         return np.linalg.norm(points, axis=1) <= 0.5 * single(self.diameter) + slack
 
 
@@ -298,10 +298,12 @@ class Imported(Solid):
     """Imported solid: the STEP `file`, its origin at `at`, x axis along `along`, z axis along `up`.
 
     Rigid-body models use specified values in the file's axes: `size` (sides) and `middle` of the bounding box, `mass`, `centre` of mass,
-    and `inertia` about the centre. The solid model compares them with the file (0.1 %). `sha256`, the digest of the file's bytes,
-    identifies the version and represents the file in caches. `wall` is the thinnest wall, for the mesh (default: the shortest side). A
-    relative path is from the design file. In a file with several solids, `solid` is the name or the number (`#2`). `reflected`: the mirror
-    image of the file's solid across its x-z plane, with the specified middle, centre and inertia.
+    and `inertia` about the centre of mass. The solid model compares these values with the file (tolerance 0.1 %). `sha256` is the digest of
+    the file's bytes: it identifies the version, and caches use it instead of the file.
+
+    `wall` is the thickness of the thinnest wall, for the mesh (default: the shortest side). A relative path is relative to the design file.
+    If the file has several solids, `solid` is the name or the number (`#2`). `reflected`: use the mirror image of the file's solid across
+    its x-z plane, with the specified middle, centre and inertia.
     """
 
     material: str
@@ -327,52 +329,52 @@ class Imported(Solid):
 
     @property
     def sides(self) -> Array:
-        """Sides of the bounding box."""
+        """Side lengths (..., 3) [m] of the bounding box, as specified."""
         return stack(self.size)
 
     @property
     def frame(self) -> Frame:
-        """The file's axes, at the centre of the bounding box."""
+        """Frame with the file's axes, at the centre of the bounding box."""
         frame = Frame(axes(self.along, self.up), stack(self.at))
         return Frame(frame.rotation, frame.point(stack(self.middle)))
 
     @property
     def thinnest(self) -> Number:
-        """Thinnest wall, if specified."""
+        """Thickness of the thinnest wall [m] as specified, else the shortest side."""
         return super().thinnest if self.wall is None else self.wall
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: wall not thicker than the solid."""
+        """Order relation: the wall is not thicker than the solid."""
         for side in self.size:
             yield Order("wall", self.wall, side, "the sides of its bounding box", "Use the thinnest wall", strict=False)
 
 
 @dataclass(frozen=True, eq=False)
 class SolidWithHoles(Solid):
-    """A `solid` with `holes` by other solids of its body, in the frame of its centre."""
+    """Solid with `holes` cut by other solids of its body, in the frame of its centre."""
 
     solid: Solid
     holes: tuple[Solid, ...]
 
     @property
     def material(self) -> str:  # type: ignore[override]
-        """Equal to that of the solid."""
+        """Material of the `solid`."""
         return self.solid.material
 
     @property
     def sides(self) -> Array:
-        """Sides of the solid."""
+        """Side lengths (..., 3) [m] of the `solid`."""
         return self.solid.sides
 
     @property
     def frame(self) -> Frame:
-        """Equal to that of the solid."""
+        """Frame of the `solid`."""
         return self.solid.frame
 
     @property
     def thinnest(self) -> Number:
-        """Least of the solid and its holes."""
+        """Smallest dimension [m] of the solid and its holes."""
         return min(single(self.solid.thinnest), *(single(hole.thinnest) for hole in self.holes))
 
     @property
@@ -382,12 +384,12 @@ class SolidWithHoles(Solid):
 
     @property
     def drawn(self) -> Iterator[tuple[Solid, Frame]]:
-        """The solid and its holes, with their drawing frames."""
+        """The solid and its holes, each with its drawing frame."""
         yield self.solid, Frame(np.eye(3), np.zeros(3))
         yield from ((hole, self.solid.frame) for hole in self.holes)
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Mask of points in the solid, outside its holes."""
+        """Return a mask of the points in the solid, outside its holes."""
         inside = self.solid.contains(points, slack)
         return inside & ~np.any([_holds(hole, points, -slack) for hole in self.holes], axis=0)
 
@@ -400,9 +402,9 @@ def _holds(hole: Solid, points: Array, slack: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class PlacedSolid:
-    """A solid and its frame relative to its body or the stage.
+    """Solid with its frame relative to its body or the stage.
 
-    The frame's origin is the solid's centre, its axes a block's edges (z along its hole), or x a cylinder's axis.
+    The frame's origin is the solid's centre. Its axes are along a block's edges (z along the hole), or x is along a cylinder's axis.
     """
 
     solid: Solid
@@ -410,7 +412,7 @@ class PlacedSolid:
 
 
 def pierce(solids: Mapping[str, PlacedSolid]) -> dict[str, PlacedSolid]:
-    """Return solids of one body by name, with subtracted ones as holes in the others.
+    """Return the solids of one body by name; those that `subtract` become holes in the others.
 
     >>> plate, bolt = Block("steel", (0.1, 0.1, 0.01)), Cylinder("steel", 0.005, 0.02, subtract=True)
     >>> placed = {"plate": PlacedSolid(plate, plate.frame), "bolt": PlacedSolid(bolt, bolt.frame)}
@@ -486,7 +488,7 @@ def _ear(corners: Array, left: list[int], place: int) -> float:
 
 
 def within_polygon(points: Array, corners: Array, slack: float) -> Array:
-    """Return a mask of points (n, 2) in a polygon of corners (k, 2) by ray crossing, or within `slack` of one of its sides.
+    """Return a mask of the points (n, 2) inside a polygon of corners (k, 2), or within `slack` of one of its sides (ray crossing).
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     >>> within_polygon(np.array([[0.5, 0.5], [1.5, 0.5], [1.05, 0.5]]), square, 0.1).tolist()
@@ -504,20 +506,20 @@ def within_polygon(points: Array, corners: Array, slack: float) -> Array:
 
 
 SOLIDS: tuple[type[Solid], ...] = (Block, Cylinder, Extrusion, Sphere, Imported)
-"""Classes of solids of a body."""
+"""Classes of the solids of a body, by shape."""
 
 
 @dataclass(frozen=True, eq=False)
 class Body(Description):
-    """Rigid body: `solids` (outlines with materials), or a specified `mass`, `centre` of mass and `inertia`; named `points`.
+    """Rigid body with named `points`: either `solids` (outlines with materials), or a specified `mass`, `centre` of mass and `inertia`.
 
-    Solids that `subtract` are holes: they remove their volume from the body's other solids of their material. Specified mass properties and
-    solids exclude one another; a body with neither is massless. `point`: the specified mass is a point mass without inertia. `reference` is
-    the reference point of its twist (default: the centre of mass, or of a massless body the mean of its joints).
+    Solids with `subtract` are holes: they remove their volume from the body's other solids of the same material. Specify either solids or
+    mass properties; a body with neither is massless. `point`: the specified mass is a point mass without inertia. `reference` is the
+    reference point of the body's twist. Its default is the centre of mass; for a massless body, the mean position of its joints.
 
-    `of` names another body of the stage, or the ground, that owns these solids. Example: a lug of the platform drawn in a unit's frame,
-    placed with every instance. Such a body does not move independently: solids, mass and points belong to its owner, as do joints with
-    links. It has no specified mass and no reference.
+    `of` names another body of the stage, or the ground, that owns these solids. Example: a lug of the platform, drawn in a unit's frame and
+    placed with every instance. Such a body does not move independently: its solids, mass, points and joints belong to the owner. It has no
+    specified mass and no reference.
     """
 
     solids: Mapping[str, Solid] = field(default_factory=lambda: Table({}))
@@ -531,7 +533,7 @@ class Body(Description):
 
 
 def owner_of(bodies: Mapping[str, Body], name: str) -> str:
-    """Return the moving body of a named one: its owner if it is `of` another one, else itself.
+    """Return the name of the moving body to which a named body belongs: the owner named in `of`, else the body itself.
 
     >>> owner_of({"pad": Body(of="platform")}, "pad"), owner_of({}, "ground")
     ('platform', 'ground')

@@ -19,11 +19,11 @@ from flexstage.parts.shape import INNER_MODES, Order
 
 @dataclass(frozen=True, eq=False)
 class Cartwheel(Compound):
-    """Cartwheel hinge about z: four leaves of `length` as spokes, two from the first body to a hub and two from it to the second.
+    """Cartwheel hinge about z: four leaves of `length` as spokes, two from the first body to a hub, two from the hub to the second body.
 
-    The link's origin is the hub's centre; x points from the first body to the second and bisects both pairs. `angle` is between the leaves
-    of a pair. The leaves end on the hub's `hub_diameter`. The hub is rigid. Its `hub_mass` is of a disc of this diameter and the leaves'
-    width b: I_z = m d^2 / 8, I_x = I_y = m (d^2 / 16 + b^2 / 12).
+    The link's origin is the hub's centre. The x axis points from the first body to the second and bisects both pairs of leaves. `angle` is
+    the angle between the leaves of a pair. The leaves end at the circumference of the rigid hub, of `hub_diameter` d. The hub's inertia is
+    that of a disc of mass `hub_mass` m, diameter d and the leaves' width b: I_z = m d^2 / 8, I_x = I_y = m (d^2 / 16 + b^2 / 12).
     """
 
     kind: ClassVar[str] = "cartwheel"
@@ -39,12 +39,12 @@ class Cartwheel(Compound):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Rotation about z."""
+        """Ideal degree of freedom: rotation about z."""
         return (Freedom.RZ,)
 
     @property
     def composition(self) -> Composition:
-        """`first_left`, `first_right`, `second_left`, `second_right` (y is left) and the `hub`."""
+        """Leaves `first_left`, `first_right`, `second_left`, `second_right` (left is +y), and the body `hub`."""
         along, across = np.cos(0.5 * self.angle), np.sin(0.5 * self.angle)
         centre = 0.5 * (self.hub_diameter + self.length)
         leaf = Leaf(self.material, self.length, self.thickness, self.width, self.section, self.inner_modes)
@@ -68,6 +68,6 @@ class Cartwheel(Compound):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: leaves thinner than wide, angle of a pair below pi."""
+        """Order relations: leaves thinner than wide, angle of a pair below pi."""
         yield Order("angle", self.angle, np.pi, "a straight angle", "Use the angle between the leaves of a pair", ANGLE)
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")

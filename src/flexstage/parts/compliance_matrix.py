@@ -1,4 +1,4 @@
-"""Parts known by a 6x6 matrix (specified, measured or computed by FEA), and ideal joints."""
+"""Parts with a specified 6x6 matrix (given, measured or computed by FEA), and ideal joints."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from flexstage.spatial.frame import rigid_inertia
 
 
 class Origin(Enum):
-    """Origin of a compliance matrix."""
+    """Source of a compliance matrix."""
 
     STATED = "stated"
     MEASURED = "measured"
@@ -32,12 +32,12 @@ class Origin(Enum):
 
 @dataclass(frozen=True, eq=False)
 class ComplianceMatrix(Elastic):
-    """Part known by its 6x6 compliance matrix about its centre, in its link frame, SI: rows (x, y, z, rx, ry, rz).
+    """Part with a 6x6 compliance matrix about its centre, in its link frame [SI]: rows (x, y, z, rx, ry, rz).
 
-    Entries are m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` are its ideal degrees of
-    freedom. `replaces` names the drawn part of the matrix, with the shape for the solid model and the material for drift and structural
-    damping. `mass` is a point mass at the part's centre, half of it at each end. With `inertia` about its `centre` of mass (along the link
-    frame's axes), it is a rigid solid.
+    Entries are in m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` are the ideal degrees of
+    freedom. `replaces` names the drawn part that the matrix replaces. The drawn part supplies the shape for the solid model, and the
+    material for drift and structural damping. `mass` is a point mass at the part's centre, half of it on each end. With `inertia` about its
+    `centre` of mass, along the axes of the link frame, the mass is a rigid solid.
     """
 
     kind: ClassVar[str] = "compliance_matrix"
@@ -64,19 +64,19 @@ class ComplianceMatrix(Elastic):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors: inertia or centre without a mass."""
+        """Errors: an inertia or a centre without a mass."""
         for name in ("centre", "inertia"):
             if getattr(self, name) is not None and np.any(np.real(self.mass) == 0.0):
                 yield Finding(name, "specified without a mass", "Specify the mass too")
         yield from definite_findings("compliance", stack(self.compliance))
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Inverse of the compliance, and half of the mass, or of the specified rigid solid, at each end, both at the centre."""
+        """Return the inverse of the compliance, and half of the mass or of the rigid solid at each end, both at the centre."""
         return Stated(np.linalg.inv(stack(self.compliance)), self.carried)
 
     @property
     def carried(self) -> Array:
-        """Mass (..., 12, 12) over the twists of both ends at its centre, as the part has no length."""
+        """Mass matrix (..., 12, 12) for the twists of both ends at the centre, because the part has no length."""
         if self.inertia is None and self.centre is None:
             return point_masses(0.5 * self.mass, 0.5 * self.mass)
         inertia = np.zeros((3, 3)) if self.inertia is None else tensor(self.inertia)
@@ -90,17 +90,17 @@ class ComplianceMatrix(Elastic):
 
 @dataclass(frozen=True, eq=False)
 class Joint(Description):
-    """Ideal joint without elasticity or mass: degrees of freedom `free`, all others locked exactly. None free: a weld."""
+    """Ideal joint without elasticity or mass: `free` degrees of freedom; all others are locked exactly. With none free, it is a weld."""
 
     kind: ClassVar[str] = "joint"
     free: tuple[Freedom, ...] = ()
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Free degrees of freedom."""
+        """Ideal degrees of freedom: the free ones."""
         return self.free
 
     @property
     def mirrored(self) -> Joint:
-        """Itself, by symmetry."""
+        """The joint itself, by symmetry."""
         return self

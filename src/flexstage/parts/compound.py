@@ -1,6 +1,7 @@
-"""Compound hinges: assemblies of other parts, which replace them at expansion, without their own law and shape.
+"""Compound hinges: assemblies of other parts, which replace the compound at expansion.
 
-A new kind derives from `Compound` and returns its `composition`; models, analyses, pictures and finite elements use its members only.
+A new kind derives from `Compound` and returns its `composition`. Models, analyses, pictures and finite elements use only the members; the
+compound has no stiffness law or shape.
 """
 
 from __future__ import annotations
@@ -14,13 +15,13 @@ from flexstage.parts.leaf import Leaf
 from flexstage.parts.shape import Elastic
 
 FIRST, SECOND = "first", "second"
-"""Bodies joined by the link, as named in members."""
+"""Names, in members, of the two bodies joined by the link."""
 _Z = (0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Member:
-    """Member of a compound: its part, joined bodies (`first`, `second` or an inner body) and frame in the compound's, as for a link."""
+    """Member of a compound: part, joined bodies (`first`, `second` or an inner body), and pose in the compound's frame, as for a link."""
 
     part: Elastic
     joins: tuple[str, str]
@@ -31,27 +32,27 @@ class Member:
 
 @dataclass(frozen=True, eq=False)
 class Composition:
-    """Composition of a compound: `members`, and inner `bodies` in its frame, massless unless specified."""
+    """Composition of a compound: `members`, and inner `bodies` in the compound's frame. Bodies without a specified mass are massless."""
 
     members: Mapping[str, Member]
     bodies: Mapping[str, Body] = field(default_factory=dict)
 
 
 class Compound(Elastic):
-    """Compound part, replaced by its members at expansion: those of a link `B1/pivot` are named `B1/pivot.left`.
+    """Compound part, which its members replace at expansion: members of the link `B1/pivot` are named `B1/pivot.left`, ...
 
-    Its numbers have addresses as in any part; they may be arrays and complex. Equal members should be one object, to compute their law
-    once.
+    Its numbers have addresses as in any part; they may be arrays and complex. Equal members should be the same object, so that their
+    stiffness law is computed only once.
     """
 
     @property
     def is_axisymmetric(self) -> bool:
-        """False: its members are on different sides of its axis."""
+        """False: its members are on different sides of the x axis."""
         return False
 
     @property
     def mirrored(self) -> Compound:
-        """Itself: each member is mirrored individually."""
+        """The compound itself, because each member is mirrored individually."""
         return self
 
     @property
@@ -61,9 +62,9 @@ class Compound(Elastic):
 
 
 def radial_leaf(leaf: Leaf, joins: tuple[str, str], direction: tuple[Number, Number], *, centre: Number, height: Number = 0.0) -> Member:
-    """Return a leaf along a `direction` (x, y) from the compound's z axis, with its middle at distance `centre` and z = `height`.
+    """Return a leaf as member of a compound, along a unit `direction` (x, y) from the compound's z axis.
 
-    It bends about z. The direction is of unit length.
+    Its middle is at the distance `centre` [m] from the axis and at z = `height` [m]. It bends about z.
 
     >>> radial_leaf(Leaf("steel", 0.02, 0.001, 0.01), ("first", "second"), (0.0, 1.0), centre=0.015).at
     (0.0, 0.015, 0.0)

@@ -1,4 +1,4 @@
-"""Checks and Craig-Bampton reduction of superelements to ports and fixed-interface modes."""
+"""Check and Craig-Bampton reduction of superelements to ports and fixed-interface modes."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from flexstage.parts.superelement import FileUnits, Port, Superelement
 from flexstage.spatial.frame import Frame, axes, mirror, twist_transform
 
 SYMMETRIC = 1e-6
-"""Largest asymmetry of an entry relative to the largest entry."""
+"""Largest accepted asymmetry of an entry relative to the largest entry of the matrix."""
 RIGID = 1e-3
-"""Largest stiffness of a rigid motion relative to the softest elastic one, tolerated as rounding of the file."""
+"""Largest accepted stiffness of a rigid motion, as rounding of the file, relative to the softest elastic motion."""
 STATED = 1e-3
-"""Relative tolerance of specified mass, centre (of the distance of the ports) and inertia against the matrices."""
+"""Largest accepted relative deviation of specified mass, centre (over the distance of the ports) and inertia from the matrices."""
 _NEGATIVE = 1e-8
 _NOTHING = 1e-10
 _MASSLESS = 1e-13
@@ -34,12 +34,12 @@ MOST_MODES = 1000
 
 @dataclass(frozen=True, eq=False)
 class Condensed:
-    """Superelement over ports and fixed-interface modes, SI, each port's twist at its origin in its axes, ports in file order.
+    """Superelement reduced to p ports and m fixed-interface modes [SI]. A port's twist is at its origin in its axes; ports in file order.
 
-    `stiffness` (6 (p - 1), 6 (p - 1)) is of all ports but the first, which is fixed. `squares` (m,) are of the angular frequencies of the
-    mass-normalised modes. `inertia` (6 p + m, 6 p + m) is of all coordinates. `damping` (6 (p - 1) + m, 6 (p - 1) + m) is of the strained
-    ones (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3) about it, in the part's axes, are from rigid motions. `error` is the
-    removed stiffness of rigid motions over the softest elastic one.
+    `stiffness` (6 (p - 1), 6 (p - 1)) is for all ports except the first, which is fixed. `squares` (m,) are the squared angular frequencies
+    of the mass-normalised modes. `inertia` (6 p + m, 6 p + m) is for all coordinates. `damping` (6 (p - 1) + m, 6 (p - 1) + m) is for the
+    ports except the first, and the modes (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3) about it, in the part's axes, are
+    computed from rigid motions. `error` is the stiffness of rigid motions, which is removed, relative to the softest elastic motion.
     """
 
     stiffness: Array
@@ -53,7 +53,10 @@ class Condensed:
 
 
 def condense(part: Superelement, where: str = "superelement") -> Condensed:
-    """Read, check and reduce the part's matrices; cached. Raises `DesignError` with all errors, at keys below `where`."""
+    """Read, check and reduce the part's matrices; the result is cached.
+
+    Raises `DesignError` with all errors; their addresses begin with `where`.
+    """
     result = _condensed(part)
     if isinstance(result, DesignError):
         raise DesignError(_at(where, finding) for finding in result.findings)
@@ -61,7 +64,7 @@ def condense(part: Superelement, where: str = "superelement") -> Condensed:
 
 
 def superelement_findings(part: Superelement, where: str) -> Iterator[Finding]:
-    """Return the errors of a superelement, at keys below `where` (`parts.frame.ports.left.row`)."""
+    """Return the errors of a superelement. Their addresses begin with `where` (`parts.frame.ports.left.row`)."""
     result = _condensed(part)
     if isinstance(result, DesignError):
         yield from (_at(where, finding) for finding in result.findings)
@@ -404,9 +407,9 @@ def _dense(matrix: MatrixLike) -> Array:
 
 @check_arguments
 def superelement(part: Superelement) -> Superelement:
-    """Return the part with absolute paths and the current digest of its files. Raises `DesignError` as `condense` does.
+    """Return the part with absolute paths and the current digest of its files; raises `DesignError` as `condense`.
 
-    For parts created in Python from new files; a design file specifies the digest instead.
+    Use it for parts created in Python from new files. A design file specifies the digest.
     """
     whole = replace(
         part, **{key: str(Path(path).resolve()) for key in ("file", "stiffness_file", "mass_file") if (path := getattr(part, key))}

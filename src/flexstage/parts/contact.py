@@ -1,6 +1,6 @@
-"""Contacts: a ball in its seat under a preload, with linearised stiffness by Hertz and Mindlin.
+"""Contacts: a preloaded ball in its seat, with linearised stiffness by Hertz and Mindlin.
 
-After K. L. Johnson, Contact Mechanics (Cambridge, 1985), chapters 4 and 7.
+Reference: K. L. Johnson, Contact Mechanics (Cambridge, 1985), chapters 4 and 7.
 """
 
 from __future__ import annotations
@@ -34,9 +34,10 @@ class Seat(Enum):
 class Contact(Elastic):
     """Ball of a `radius` pressed on its `seat`: a flat normal to x, or a V groove along z with x as bisector.
 
-    The first body has the seat, the second the ball; the link's origin is the ball's centre, x points out of the seat. `material` is of the
-    ball, `counter` of the seat. `preload` is the initial compression force along x, required for stiffness. `half_angle` of the groove is
-    between a wall and x. `friction` is the coefficient for the slip check. The ball is massless: its mass belongs to its body.
+    The first body has the seat, the second body the ball. The link's origin is the ball's centre; x points out of the seat. `material` is
+    the ball's material, `counter` the seat's. `preload` is the initial compression force along x, required for a stiffness. `half_angle` is
+    the angle between a wall of the groove and x. `friction` is the friction coefficient for the slip check. The ball is massless: its mass
+    belongs to its body.
 
     Ideal degrees of freedom, without friction: along y and z on a flat, along z in a groove, and all rotations.
     """
@@ -52,31 +53,31 @@ class Contact(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Free degrees of freedom without friction."""
+        """Ideal degrees of freedom, without friction."""
         return others((Freedom.X,) if self.seat is Seat.FLAT else (Freedom.X, Freedom.Y))
 
     @property
     def is_axisymmetric(self) -> bool:
-        """True on a flat."""
+        """True for a flat seat."""
         return self.seat is Seat.FLAT
 
     @property
     def mirrored(self) -> Contact:
-        """Itself, by symmetry."""
+        """The contact itself, by symmetry."""
         return self
 
     def stated(self, material: Material | None) -> Stated | None:
-        """Stiffness linearised about the preload, for the materials of ball and seat; massless."""
+        """Return the stiffness linearised about the preload, for the materials of ball and seat, without mass."""
         return None if material is None else Stated(contact_stiffness(self, material), np.zeros((12, 12)))
 
     @property
     def push(self) -> Number | None:
-        """Preload: the seat pushes the ball away."""
+        """Preload [N] with which the seat pushes the ball away."""
         return self.preload
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors: preload missing, or groove angle inconsistent with the seat."""
+        """Errors: no preload, or a groove angle inconsistent with the seat."""
         if self.preload is None:
             what = "preload missing: a contact without preload has no stiffness"
             yield Finding("preload", what, 'Specify the compression force along x: preload = "10 N"')
@@ -88,10 +89,10 @@ class Contact(Elastic):
 
 @dataclass(frozen=True, eq=False)
 class Hertz:
-    """Hertzian contacts of a ball under the preload: `force` [N], `spot` radius a [m], `normal` and `tangential` stiffness [N/m].
+    """Hertzian contacts of a preloaded ball: `force` [N], contact radius `spot` [m], `normal` and `tangential` stiffness [N/m].
 
-    `normals` (..., c, 3) of the c contacts point from the seat to the ball. `motion` (..., c, 3, 6) is the contact motion per twist of the
-    ball's centre.
+    `normals` (..., c, 3) of the c contacts point from the seat to the ball. `motion` (..., c, 3, 6) maps the twist of the ball's centre to
+    the displacement at each contact.
     """
 
     force: Array
@@ -113,9 +114,10 @@ def hertz(part: Contact, material: Material) -> Hertz:
     """Compute Hertzian contacts of a ball: a flat carries the preload F, each wall of a groove of half angle h carries F / (2 sin h).
 
     1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, a = (3 F R / (4 E*))^(1/3), k_n = 2 E* a = (6 E*^2 R F)^(1/3) for the radius R. Without slip,
-    the tangential stiffness is k_t = 8 a G*, 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2. Isotropic materials, smooth faces, contact radius much
-    smaller than the ball.
-    Raises `DesignError` for a crystal, and without the seat's material.
+    the tangential stiffness is k_t = 8 a G*, 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2.
+
+    Assumptions: isotropic materials, smooth faces, contact radius much smaller than the ball. Raises `DesignError` for a crystal, or if the
+    seat's material is missing.
     """
     ball, counter = _both(part, material)
     normals = _normals(part)
@@ -129,7 +131,7 @@ def hertz(part: Contact, material: Material) -> Hertz:
 def contact_stiffness(part: Contact, material: Material) -> Array:
     """Compute the stiffness (..., 6, 6) about the ball's centre: the sum of its contacts, without contact moments.
 
-    Rolling and spinning about the contact of a flat are free; about the centre the stiffness has terms k_t R and k_t R^2.
+    On a flat, rolling and spinning about the contact point are free. About the ball's centre, the stiffness has terms k_t R and k_t R^2.
 
     >>> steel = Material(young=210e9, poisson=0.3, density=7850.0)
     >>> ball = Contact("steel", "steel", radius=0.005, preload=10.0)

@@ -20,9 +20,9 @@ from flexstage.parts.shape import INNER_MODES, Order
 class CrossHinge(Compound):
     """Cross-axis flexural pivot about z: two leaves that cross at an `angle`, each of `length` from body to body.
 
-    The link's origin is the crossing, x the bisector of both leaves. `crossing` is the distance from the first body to the crossing over
-    the length (Wittrick's lambda). `spacing` is the distance along z between the middle planes of adjacent leaves. With a `middle_width` it
-    has three leaves, symmetric about the middle: two of `width` on either side of one of that width.
+    The link's origin is the crossing, x the bisector of both leaves. `crossing` is the distance from the first body to the crossing divided
+    by the length (Wittrick's lambda). `spacing` is the distance along z between the middle planes of adjacent leaves. With a
+    `middle_width`, the pivot has three leaves: a middle leaf of this width, and a leaf of `width` on either side.
     """
 
     kind: ClassVar[str] = "cross_hinge"
@@ -39,12 +39,12 @@ class CrossHinge(Compound):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Rotation about z."""
+        """Ideal degree of freedom: rotation about z."""
         return (Freedom.RZ,)
 
     @property
     def composition(self) -> Composition:
-        """`left` and `right` of x; for three leaves `left_low`, `left_high` and `right` between them."""
+        """Leaves `left` and `right` of x; for three leaves, `left_low`, `left_high`, and `right` between them."""
         along, across = np.cos(0.5 * self.angle), np.sin(0.5 * self.angle)
         centre = (0.5 - self.crossing) * self.length
         leaf = Leaf(self.material, self.length, self.thickness, self.width, self.section, self.inner_modes)
@@ -60,7 +60,7 @@ class CrossHinge(Compound):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: leaves thinner than wide, crossing, without interference."""
+        """Order relations: leaves thinner than wide, crossing each other, without interference."""
         yield Order("angle", self.angle, np.pi, "a straight angle", "Use the angle between the leaves", ANGLE)
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
         middle = self.width if self.middle_width is None else self.middle_width

@@ -1,4 +1,4 @@
-"""Cruciform torsion hinges: two monolithic crossed leaves, a plus-shaped section along x."""
+"""Cruciform torsion hinges: two crossed leaves in one piece, with a plus-shaped section across x."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.parts.shape import Order, Shaped
 
 @dataclass(frozen=True, eq=False)
 class Cross(Section):
-    """Plus-shaped section of two equal leaves: `thickness` t, height and width b, sharp inner corners.
+    """Plus-shaped section of two equal leaves of `thickness` t and width b (`height` = `width`), with sharp inner corners.
 
     >>> section = cross(1e-3, 10e-3)
     >>> [round(float(value), 4) for value in (section.area * 1e6, section.inertia_y * 1e12, section.torsion * 1e12, section.shear)]
@@ -34,13 +34,13 @@ class Cross(Section):
 
     @cached_property
     def inertia_y(self) -> Number:
-        """(t b^3 + (b - t) t^3) / 12 [m^4]."""
+        """Second moment of area about y: (t b^3 + (b - t) t^3) / 12 [m^4]."""
         cubes = self.thickness * self.width**3 + (self.width - self.thickness) * self.thickness**3
         return cubes / 12.0
 
     @cached_property
     def inertia_z(self) -> Number:
-        """Equal to that about y [m^4]."""
+        """Second moment of area about z, equal to that about y [m^4]."""
         return self.inertia_y
 
     @cached_property
@@ -69,19 +69,19 @@ class Cross(Section):
         return self.thickness
 
     def outline(self, angles: Array) -> Array:  # noqa: ARG002
-        """Twelve corners."""
+        """Return the twelve corners (12, 2) [m]."""
         far, near = 0.5 * self.first.width, 0.5 * self.first.thickness
         quarter = np.array([(near, -far), (near, -near), (far, -near)])
         turn = np.array([[0.0, 1.0], [-1.0, 0.0]])
         return np.concatenate([quarter @ np.linalg.matrix_power(turn, count) for count in range(4)])
 
     def pieces(self, angles: Array) -> tuple[Array, ...]:
-        """The leaf along y, and both halves of the other leaf."""
+        """Return three convex polygons: the leaf along y, and both halves of the other leaf."""
         corners = self.outline(angles)
         return corners[[2, 3, 8, 9]], corners[[11, 0, 1, 10]], corners[[4, 5, 6, 7]]
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """T t / J on the faces of the leaves, and shear of bending strips; without stress concentration at the inner corner."""
+        """Return T t / J on the faces of the leaves plus the shear of bending strips; no stress concentration at the inner corner."""
         strips = 4.5 * magnitude(1.0 - uniform) / (self.width * self.width * self.thickness)
         return torque * (magnitude(uniform) * self.thickness / self.torsion + strips)
 
@@ -89,7 +89,7 @@ class Cross(Section):
 def cross(thickness: Number, width: Number) -> Cross:
     """Return the plus-shaped section of leaves of `thickness` and `width`.
 
-    Its shear factor k is from the energy of Jourawski's shear stress V Q(y) / (I b(y)): A / I^2 times the integral of Q^2 / b(y).
+    The shear factor k follows from the energy of Jourawski's shear stress V Q(y) / (I b(y)): k = A / I^2 times the integral of Q^2 / b(y).
     """
     half, near = 0.5 * width, 0.5 * thickness
     plain = Cross(width, width, thickness=thickness)
@@ -115,7 +115,7 @@ class Cruciform(Shaped):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Twist."""
+        """Ideal degree of freedom: rotation about x."""
         return (Freedom.RX,)
 
     @property
@@ -125,10 +125,10 @@ class Cruciform(Shaped):
 
     @property
     def throat(self) -> Cross:
-        """Constant section."""
+        """Cross-section, constant over the length."""
         return cross(self.thickness, self.width)
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: leaves thinner than wide."""
+        """Order relation: leaves thinner than wide."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them")

@@ -15,8 +15,8 @@ from flexstage.parts.gauge import Instrument
 class Encoder(Instrument):
     """Linear encoder: displacement of a scale on a body along the gauge's x axis, positive along +x.
 
-    `range` is the total travel of its scale, divided into periods `period` of `steps` each (one: the period is the step); white
-    `noise_density`, `bandwidth`. Rotation of the scale has no first-order effect.
+    `range` is the total travel of the scale. Each `period` of the scale is divided into `steps` (one: the period is the step).
+    `noise_density` is white noise; `bandwidth` is in Hz. Rotation of the scale has no first-order effect.
     """
 
     kind: ClassVar[str] = "encoder"

@@ -17,11 +17,11 @@ from flexstage.parts.shape import INNER_MODES, Order
 
 @dataclass(frozen=True, eq=False)
 class FoldedLeaf(Compound):
-    """Folded leaf at a right angle: it constrains only the translation along its fold, z.
+    """Folded leaf with a right angle: it constrains only the translation along its fold, z.
 
-    The link's origin is the fold. The first leaf of `length` is along x from the first body, the second of `second_length` (default: equal)
-    along y to the second body. Lengths are of the leaves; `corner` is the side of the solid square at their ends (default: a rigid,
-    massless fold).
+    The link's origin is the fold. The first leaf, of `length`, extends along x from the first body to the fold. The second leaf, of
+    `second_length` (default: equal), extends along y to the second body. `corner` is the side of the solid square at the fold, which is not
+    part of the two lengths (default: a rigid, massless fold).
     """
 
     kind: ClassVar[str] = "folded_leaf"
@@ -36,12 +36,12 @@ class FoldedLeaf(Compound):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """All except the translation along the fold."""
+        """Ideal degrees of freedom: all except the translation along the fold."""
         return others((Freedom.Z,))
 
     @property
     def composition(self) -> Composition:
-        """`inner` from the first body to the `fold`, `outer` from there to the second."""
+        """Leaves `inner`, from the first body to the body `fold`, and `outer`, from `fold` to the second body."""
         first = Leaf(self.material, self.length, self.thickness, self.width, self.section, self.inner_modes)
         second = first if self.second_length is None else replace(first, length=self.second_length)
         half = 0.0 if self.corner is None else 0.5 * self.corner
@@ -56,6 +56,6 @@ class FoldedLeaf(Compound):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: leaves thinner than wide, not thicker than the corner."""
+        """Order relations: leaves thinner than wide, and not thicker than the corner."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
         yield Order("thickness", self.thickness, self.corner, "the corner", "Make the corner larger", strict=False)

@@ -1,4 +1,4 @@
-"""Generic force actuators: a force between two bodies with a limit."""
+"""Generic force actuators: a force between two bodies, with a limit."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from flexstage.parts.stated import Stated, point_masses
 class ForceActuator(ThrustActuator):
     """Force actuator along x between two bodies, positive pushing them apart; without stiffness.
 
-    `maximum` is the largest force in either direction (default: unknown), `mass` its mass, half on each body.
+    `maximum` is the largest force in either direction [N] (default: unknown). Half of `mass` is on each body.
     """
 
     kind: ClassVar[str] = "force"
@@ -31,14 +31,14 @@ class ForceActuator(ThrustActuator):
 
     @property
     def thrust(self) -> Number:
-        """One: the input is the force."""
+        """Force per unit of input: 1 N/N, because the input is the force."""
         return 1.0
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """No stiffness, half of the mass on each body."""
+        """Return zero stiffness, and half of the mass on each body."""
         return Stated(np.zeros((6, 6)), point_masses(0.5 * self.mass, 0.5 * self.mass))
 
     @property
     def limits(self) -> Iterator[ForceLimit]:
-        """Largest force."""
+        """Limits of the input: the largest force."""
         yield ForceLimit("maximum force", self.maximum, self.maximum)

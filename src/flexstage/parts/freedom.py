@@ -30,7 +30,7 @@ ROTATIONS = (Freedom.RX, Freedom.RY, Freedom.RZ)
 
 
 def others(freedoms: tuple[Freedom, ...]) -> tuple[Freedom, ...]:
-    """Return the other degrees of freedom, in order.
+    """Return the degrees of freedom that are not in the given ones, in order.
 
     >>> [freedom.value for freedom in others(ROTATIONS)]
     ['x', 'y', 'z']

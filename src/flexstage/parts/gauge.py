@@ -16,7 +16,7 @@ from flexstage.parts.freedom import ROTATIONS, Freedom
 
 
 class SensorSense(Enum):
-    """Sense of a displacement sensor: its reading increases with an opening or a closing gap."""
+    """Sense of a displacement sensor: its reading increases when the gap opens or when the gap closes."""
 
     OPENS = "opens"
     CLOSES = "closes"
@@ -25,9 +25,10 @@ class SensorSense(Enum):
 class Instrument(Description):
     """Common properties of every `kind` of gauge; `parts.GAUGES` lists the kinds.
 
-    It measures one `freedom` of a body's motion against its base, in its frame: a displacement [m] or a rotation [rad]. `gap`: it faces a
-    target along x, and its sense (opening or closing gap) is specified. `inside`: it is on a link. Measuring `range` (total span) and
-    `resolution` (quantisation step) [m, rad], white `noise_density` [m/Hz^0.5, rad/Hz^0.5] and `bandwidth` [Hz], both `None` if unknown.
+    A gauge measures one `freedom` of a body's motion against its base, in the gauge's frame: a displacement [m] or a rotation [rad]. `gap`:
+    the gauge faces a target along x, and its sense (opening or closing gap) is specified. `inside`: the gauge is on a link. `range` is the
+    total measuring span, `resolution` the quantisation step [m, rad]. White `noise_density` [m/Hz^0.5, rad/Hz^0.5] and `bandwidth` [Hz] are
+    `None` if unknown.
     """
 
     kind: ClassVar[str]
@@ -50,7 +51,7 @@ class Instrument(Description):
 
 
 class DisplacementGauge(Instrument):
-    """Common properties of gauges of the gap to a target along their x axis."""
+    """Common properties of gauges that measure the gap to a target along their x axis."""
 
     gap: ClassVar[bool] = True
 
@@ -69,7 +70,7 @@ class Gauge(DisplacementGauge):
 
 @dataclass(frozen=True, eq=False)
 class Combination(Instrument):
-    """Equivalent gauge of a weighted sum, for the quantity `read`."""
+    """Single gauge equivalent to a weighted sum of gauges; `read` is the measured quantity."""
 
     kind: ClassVar[str] = "sum"
     read: Quantity
@@ -87,8 +88,8 @@ class Combination(Instrument):
 def combine_gauges(members: Sequence[tuple[Number, Instrument]]) -> Combination:
     """Combine weighted gauges with independent errors into one.
 
-    Range sum |w_i| r_i and resolution sum |w_i| q_i (worst signs). Noise density (sum w_i^2 n_i^2)^(1/2), unknown if one is. The members'
-    bandwidth if equal.
+    With weights w_i, the range is sum |w_i| r_i and the resolution sum |w_i| q_i (worst signs). The noise density is (sum w_i^2
+    n_i^2)^(1/2), or `None` if one is unknown. The bandwidth is that of the members if all are equal, else `None`.
 
     >>> pair = combine_gauges([(0.5, Gauge(range=1e-4, noise_density=3e-11)), (-0.5, Gauge(range=1e-4, noise_density=4e-11))])
     >>> round(1e6 * float(pair.range), 6), round(1e12 * float(pair.noise_density), 6)

@@ -22,7 +22,7 @@ class LeafSection(Enum):
 
 
 class LeafEnds(Enum):
-    """Warping at a leaf's ends in torsion: `CLAMPED` (prevented), or `FREE`."""
+    """Warping of a leaf's ends in torsion: `CLAMPED` (prevented) or `FREE`."""
 
     CLAMPED = "clamped"
     FREE = "free to warp"
@@ -32,12 +32,13 @@ class LeafEnds(Enum):
 class Leaf(Shaped):
     """Leaf spring: `length` along x, `thickness` along y, `width` along z.
 
-    Ideal degrees of freedom: translation along y, bending about z, twist about x. With `section` beam, its law omits plate action and
-    prevention of warping; for a plate, `ends` free omits the latter. `inner_modes` is the number of its bending and torsion modes in the
-    lumped model.
+    Ideal degrees of freedom: translation along y, bending about z, twist about x. With `section` beam, the stiffness law omits plate action
+    and restrained warping. For a plate, `ends` free omits only restrained warping. `inner_modes` is the number of bending modes and of
+    torsion modes in the lumped model.
 
-    If not straight when free: `curvature` is of its blank about z (positive: towards y), `face_temperature_difference` of its face at +y
-    relative to -y. It is mounted straight: large displacements include the mounting stress, other models assume a straight leaf.
+    A leaf that is not straight when free has an initial `curvature` about z (positive: towards y), or a `face_temperature_difference` (face
+    +y minus face -y). It is mounted straight. Models of large displacements include the mounting stress; other models assume a straight
+    leaf.
     """
 
     kind: ClassVar[str] = "leaf"
@@ -65,7 +66,7 @@ class Leaf(Shaped):
 
     @property
     def straight(self) -> Leaf:
-        """The leaf, straight when free."""
+        """The same leaf, straight when free."""
         return replace(self, curvature=None, face_temperature_difference=None)
 
     @property
@@ -85,10 +86,10 @@ class Leaf(Shaped):
 
     @property
     def throat(self) -> Rectangle:
-        """Constant section."""
+        """Cross-section, constant over the length."""
         return Rectangle(self.thickness, self.width)
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: thinner than wide."""
+        """Order relation: the leaf is thinner than wide."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")

@@ -26,10 +26,7 @@ class MassProperties:
 
 
 def mass_properties(body: Body, materials: Mapping[str, Material], name: str = "") -> MassProperties | None:
-    """Compute mass properties of a body; `None` without a specified mass and solids.
-
-    Solids add up by the parallel-axis theorem, J = sum J_i + m_i (|r|^2 I - r r^T); common volumes count once. Raises `DesignError`, with
-    the body's `name`, if a common volume cannot be computed.
+    """Compute mass properties of a body; `None` if it has neither a specified mass nor solids.
 
     >>> block = Block("steel", size=(0.1, 0.1, 0.01))
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
@@ -52,7 +49,7 @@ def _drawn_mass(body: Body, materials: tuple[tuple[str, Material], ...], name: s
 
 
 def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame: Frame) -> list[Drawn]:
-    """Return the solids of a body by address, with densities, drawn in a frame.
+    """Return the solids of a body with address and density, drawn in a `frame`.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> drawn_solids(Body(solids={"plate": Block("steel", size=(0.1, 0.1, 0.01))}), {"steel": steel}, "platform", identity())[0].name
@@ -63,9 +60,9 @@ def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame
 
 
 def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = None) -> MassProperties:
-    """Compute mass properties of the union of solids, in the frame of the solids' frames.
+    """Compute mass properties of the union of solids, in the frame in which the solids are drawn.
 
-    Common volumes are computed for the solids in `meant` positions, if specified.
+    If `meant` is specified, common volumes are computed for the solids at its (nominal) positions.
 
     >>> half = Block("steel", size=(1.0, 1.0, 1.0))
     >>> float(union_properties([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)
@@ -76,7 +73,7 @@ def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = No
 
 
 def of_moments(density: Number, moments: Moments) -> MassProperties:
-    """Compute mass properties of a region of density [kg/m^3] from its moments: J = rho (tr S I - S) about its centre.
+    """Compute mass properties of a region of uniform density [kg/m^3] from its moments: J = rho (tr S I - S) about its centre.
 
     >>> of_moments(3.0, Moments(np.array(2.0), np.zeros(3), np.eye(3))).inertia.diagonal().tolist()
     [6.0, 6.0, 6.0]
@@ -131,7 +128,7 @@ def tensor(inertia: Inertia) -> Array:
 
 
 def solid_properties(solid: Solid, density: Number) -> MassProperties:
-    """Compute mass properties of one outline of uniform `density` [kg/m^3]; those specified for an imported one.
+    """Compute mass properties of one outline of uniform `density` [kg/m^3]; an imported solid has its specified properties.
 
     >>> float(solid_properties(Cylinder("steel", diameter=2.0, length=1.0), 1.0).mass.round(12))
     3.14159265359

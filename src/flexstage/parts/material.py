@@ -34,10 +34,11 @@ _CUBIC = ("c11", "c12", "c44")
 class Material(Description):
     """Linear-elastic material.
 
-    Isotropic: `young` [Pa], and `poisson` [-] or `shear_modulus` [Pa] (or both, which must agree). A crystal of cubic symmetry: `c11`,
-    `c12`, `c44` [Pa] instead. `crystal` has its directions along the stage's x and z axes (default: 100 and 001). `density` [kg/m^3];
-    optional: `expansion` [1/K], `loss_factor` [-], and limits of stress [Pa]: `yield_stress`, `fatigue_limit`, `allowable_stress`; the
-    least governs.
+    An isotropic material has `young` [Pa], and `poisson` [-] or `shear_modulus` [Pa] (or both, if consistent). A crystal of cubic symmetry
+    has `c11`, `c12`, `c44` [Pa] instead. `crystal` are its directions along the stage's x and z axes (default: 100 and 001).
+
+    `density` [kg/m^3] is required. Optional: `expansion` [1/K], `loss_factor` [-], and the stress limits `yield_stress`, `fatigue_limit`,
+    `allowable_stress` [Pa]. The least limit governs.
 
     >>> Material(young=200e9, poisson=0.25, density=7750.0).shear
     80000000000.0
@@ -60,7 +61,7 @@ class Material(Description):
 
     @property
     def modulus(self) -> Number:
-        """Young's modulus [Pa]; NaN for a crystal, whose modulus depends on direction (`oriented`)."""
+        """Young's modulus [Pa]; NaN for a crystal, because its modulus depends on the direction (`oriented`)."""
         return np.nan if self.young is None else self.young
 
     @property
@@ -77,12 +78,12 @@ class Material(Description):
 
     @property
     def twist_ratio(self) -> Number:
-        """E / (2 G), equal to 1 + nu for an isotropic material: ratio in warping torsion."""
+        """Ratio E / (2 G) in warping torsion, equal to 1 + nu for an isotropic material."""
         return 1.0 + self.contraction
 
     @property
     def shear_across(self) -> Number | None:
-        """Shear modulus [Pa] in the plane of x and y, if unlike that of x and z; `None` for an isotropic material."""
+        """Shear modulus [Pa] in the x-y plane if it differs from the x-z plane; `None` for an isotropic material."""
         return None
 
     @property
@@ -98,7 +99,7 @@ class Material(Description):
 
     @property
     def limit(self) -> Number | None:
-        """Least stress limit [Pa]; `None` without any.
+        """Least specified stress limit [Pa]; `None` without any.
 
         >>> Material(young=200e9, poisson=0.3, density=7750.0, yield_stress=1e9, fatigue_limit=4e8).limit.item()
         400000000.0
@@ -149,13 +150,17 @@ class Material(Description):
         return c11, c12, c44
 
     def oriented(self, rotation: Array) -> Material:
-        """Return the material in a part's axes (x along it, z along its width), columns of `rotation` (..., 3, 3) in the stage.
+        """Return the material in the axes of a part: x along the part, z along its width.
+
+        The columns of `rotation` (..., 3, 3) are these axes in the stage. Isotropic materials are returned unchanged.
 
         A cubic crystal with S = C^-1, J = S11 - S12 - S44/2, and n, m two axes in the crystal, has 1/E = S11 - 2 J (n1^2 n2^2 + n2^2 n3^2 +
         n3^2 n1^2). Its strain ratio is -E (S12 + J sum n^2 m^2), and 1/G = S44 + 4 J sum n^2 m^2 (Nye 1957; Hopcroft, Nix & Kenny, J. MEMS
-        19 (2010) 229-238). Beams along x use E of x and G of the planes xy and xz. Wide leaves use -S13 / (S11 S33)^(1/2) for the plate
-        modulus E / (1 - nu^2). Coupling of tension or bending with shear and twist, in directions other than 100, 110 and 111, is omitted.
-        Isotropic materials are returned unchanged.
+        19 (2010) 229-238).
+
+        Beams along x use E along x, and G of the planes xy and xz. Wide leaves use -S13 / (S11 S33)^(1/2) as nu in the plate modulus E / (1
+        - nu^2). In directions other than 100, 110 and 111, tension and bending are coupled with shear and twist. This coupling is
+        neglected.
         """
         if not self.is_cubic:
             return self
@@ -178,10 +183,11 @@ class Material(Description):
         )
 
     def stiffness_tensor(self, rotation: Array) -> Array:
-        """Compute the stiffness (..., 6, 6) [Pa] of a crystal in axes `rotation` (..., 3, 3), columns in the stage.
+        """Compute the stiffness (..., 6, 6) [Pa] of a crystal in given axes: the columns of `rotation` (..., 3, 3) in the stage.
 
-        Order xx, yy, zz, yz, xz, xy, engineering shear strains. C_ijkl = C12 d_ij d_kl + C44 (d_ik d_jl + d_il d_jk) + (C11 - C12 - 2 C44)
-        sum_a q_ai q_aj q_ak q_al with q_a the crystal's axes (Nye 1957).
+        The order is xx, yy, zz, yz, xz, xy, with engineering shear strains. With the crystal's axes q_a (Nye 1957):
+
+        C_ijkl = C12 d_ij d_kl + C44 (d_ik d_jl + d_il d_jk) + (C11 - C12 - 2 C44) sum_a q_ai q_aj q_ak q_al.
 
         >>> silicon = Material(None, None, 2329.0, c11=165.64e9, c12=63.94e9, c44=79.51e9)
         >>> (silicon.stiffness_tensor(axes((1.0, 1.0, 0.0))).diagonal()[[0, 2, 5]] / 1e9).round(2).tolist()
@@ -194,7 +200,9 @@ class Material(Description):
         return isotropic + (c11 - c12 - 2.0 * c44) * (np.swapaxes(pairs, -1, -2) @ pairs)
 
     def turned(self, rotation: Array) -> Material:
-        """Return the material in another stage, with this stage's axes as columns of `rotation` (..., 3, 3): rotated crystal directions.
+        """Return the material for another stage, with its crystal directions rotated.
+
+        The columns of `rotation` (..., 3, 3) are the axes of this stage in the other stage.
 
         >>> silicon = Material(None, None, 2329.0, c11=166e9, c12=64e9, c44=80e9)
         >>> silicon.turned(np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])).crystal
@@ -228,34 +236,31 @@ _KEPT = ("density", "yield_stress", "expansion", "loss_factor", "source", "fatig
 
 @dataclass(frozen=True, eq=False)
 class Oriented(Material):
-    """Cubic crystal in a part's axes: `young` along x, `poisson` of a plate, `shear_modulus` of the plane xz, `other_shear` of xy.
-
-    `tensor` (..., 6, 6) is the full `stiffness_tensor`.
-    """
+    """Cubic crystal in the axes of a part: `young` along x, `poisson` of a plate, `shear_modulus` of plane xz, `other_shear` of xy."""
 
     other_shear: Annotated[Number, MODULUS, POSITIVE] = np.nan
     tensor: Array = field(default_factory=lambda: np.full((6, 6), np.nan))
 
     @property
     def twist_ratio(self) -> Number:
-        """E / (2 G) of the plane xz, for a leaf."""
+        """Ratio E / (2 G) with G of the x-z plane, for warping torsion of a leaf."""
         return self.modulus / (2.0 * self.shear)
 
     @property
     def shear_across(self) -> Number:
-        """Shear modulus in the plane of x and y [Pa]."""
+        """Shear modulus in the x-y plane [Pa]."""
         return self.other_shear
 
 
 @dataclass(frozen=True, eq=False)
 class Paired(Material):
-    """A part's material with the material of its contact partner, `counter`."""
+    """Material of a part together with `counter`, the material of its contact partner."""
 
     counter: Material = field(default_factory=lambda: _NOTHING)
 
     @classmethod
     def of(cls, material: Material, counter: Material) -> Paired:
-        """Pair of both materials."""
+        """Return a part's material paired with the material of its contact partner."""
         return cls(**{each.name: getattr(material, each.name) for each in fields(Material)}, counter=counter)
 
 

@@ -21,7 +21,7 @@ from flexstage.parts.superelement import Superelement
 MatrixLike: TypeAlias = Any
 """Dense array, or sparse array of scipy."""
 LARGEST_DENSE = 4000
-"""Largest number of rows of dense matrices."""
+"""Largest accepted number of rows of a dense matrix."""
 _COPIES = 8
 _LEAST_ENTRY = 2
 """Least bytes per entry of a text file: a digit and a space."""
@@ -31,9 +31,10 @@ _CHUNK = 2**20
 
 
 def read_matrices(part: Superelement) -> tuple[MatrixLike, ...]:
-    """Read stiffness, mass and optional damping of a superelement's files: real, in the files' units, of any shape.
+    """Read stiffness, mass and optional damping from a superelement's files: real matrices of any shape, in the files' units.
 
-    Raises `DesignError` for an unspecified, missing, damaged or too large file, another version, an unknown array, or other numbers.
+    Raises `DesignError` for an unspecified, missing, damaged or too large file, another version (digest), an unknown array, or complex
+    numbers.
     """
     require(_statement_findings(part))
     for path in map(Path, part.files):

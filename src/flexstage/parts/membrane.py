@@ -16,8 +16,9 @@ from flexstage.parts.shape import Elastic, Order
 class Membrane(Elastic):
     """Flat annular membrane normal to x, clamped to a hub of `inner` diameter (second body) and a rim of `outer` diameter (first body).
 
-    Hub and rim are rigid; both ends of the part are at its centre. Ideal degrees of freedom: along x, tilt about y and z. Half of `mass` is
-    at the hub, half at the rim. It has no shape for finite elements; use a `compliance_matrix` for a spiral or perforated membrane.
+    Hub and rim are rigid; both ends of the part are at its centre. Ideal degrees of freedom: translation along x, tilt about y and z. Half
+    of `mass` is at the hub, half at the rim. The solid model has no shape for this part. For a spiral or perforated membrane, use a
+    `compliance_matrix`.
     """
 
     kind: ClassVar[str] = "membrane"
@@ -29,15 +30,15 @@ class Membrane(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Translation along its normal, and both tilts."""
+        """Ideal degrees of freedom: translation along the normal x, and both tilts."""
         return (Freedom.X, Freedom.RY, Freedom.RZ)
 
     @property
     def mirrored(self) -> Membrane:
-        """Itself."""
+        """The membrane itself, by symmetry."""
         return self
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: hub smaller than the rim."""
+        """Order relation: the hub is smaller than the rim."""
         yield Order("inner", self.inner, self.outer, "the outer diameter", "Exchange them")

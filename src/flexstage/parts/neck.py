@@ -15,10 +15,11 @@ from flexstage.parts.shape import Profiled
 
 @dataclass(frozen=True, eq=False)
 class Neck(Profiled):
-    """Two-axis neck hinge: round (without `width`: `thickness` is the diameter; a toroid for a circular profile), or rectangular.
+    """Two-axis neck hinge, round or rectangular, with a thickness that varies by its profile.
 
-    A rectangular neck has `thickness` along y and `width` along z, both increased by the profile. Ideal degrees of freedom: the three
-    rotations (torsion is free although its stiffness is used; locked, it would transmit a couple).
+    Without `width` the neck is round: `thickness` is its smallest diameter, and a circular profile gives a toroid. A rectangular neck has
+    `thickness` along y and `width` along z; the profile increases both. Ideal degrees of freedom: the three rotations. Torsion is ideally
+    free, because locked torsion would transmit a couple; other models use its stiffness.
     """
 
     kind: ClassVar[str] = "neck"
@@ -33,6 +34,6 @@ class Neck(Profiled):
         return ROTATIONS
 
     def grown(self, up: Number) -> Section:
-        """Section at a profile height `up` [m], on all sides."""
+        """Return the section at a profile height `up` [m], which is added on all sides."""
         height = self.thickness + 2.0 * up
         return circle(height) if self.width is None else Rectangle(height, self.width + 2.0 * up)

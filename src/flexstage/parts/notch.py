@@ -16,10 +16,7 @@ from flexstage.parts.shape import Order, Profiled
 
 @dataclass(frozen=True, eq=False)
 class Notch(Profiled):
-    """One-axis notch hinge: link frame x along the hinge, y across the thin neck (`thickness`), z along the `width`; it bends about z.
-
-    Ideal degree of freedom: rotation about z.
-    """
+    """One-axis notch hinge that bends about z: x along the hinge, y across the thin neck (`thickness`), z along the `width`."""
 
     kind: ClassVar[str] = "notch"
     material: str
@@ -33,11 +30,11 @@ class Notch(Profiled):
         return (Freedom.RZ,)
 
     def grown(self, up: Number) -> Rectangle:
-        """Section at a profile height `up` [m], of constant width."""
+        """Return the section at a profile height `up` [m]; the width is constant."""
         return Rectangle(self.thickness + 2.0 * up, self.width)
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: thinner than wide."""
+        """Order relation: the neck is thinner than wide."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
         yield from super().orders

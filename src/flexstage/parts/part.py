@@ -1,4 +1,4 @@
-"""Parts of links, and their restriction to some degrees of freedom."""
+"""Parts of links, and parts restricted to some degrees of freedom."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from flexstage.parts.superelement import Port
 class Restricted(Description):
     """Restricted part: `elastic` degrees of freedom keep their compliance, `free` ones have no stiffness, all others are locked.
 
-    It is massless. For comparison of models: the hinge assumptions of the paper's equations.
+    It is massless. It reproduces the hinge assumptions of a paper's equations, for comparison of models.
     """
 
     kind: ClassVar[str] = "restricted"
@@ -30,7 +30,7 @@ class Restricted(Description):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Ideal degrees of freedom of the part, except for locked ones."""
+        """Ideal degrees of freedom of the part, without the locked ones."""
         left = self.elastic + self.free
         return tuple(freedom for freedom in self.part.intended if freedom in left)
 
@@ -45,7 +45,7 @@ Part: TypeAlias = Elastic | Joint | Restricted
 
 
 def inner(part: Part) -> Elastic | Joint:
-    """Return the part, or the part within a restriction."""
+    """Return the part; for a restricted part, the part inside it."""
     return part.part if isinstance(part, Restricted) else part
 
 
@@ -69,7 +69,7 @@ def imposes_stroke(part: Part) -> bool:
 
 
 def actuator_of(part: Part) -> Actuator:
-    """Return the actuator of a part or a restricted part; refuses parts without an input.
+    """Return the actuator of a part or a restricted part; raises `DesignError` for a part without an input.
 
     >>> from flexstage.parts.force_actuator import ForceActuator
     >>> actuator_of(Restricted(ForceActuator(), ())).input.si
@@ -119,7 +119,7 @@ def push_of(part: Part) -> Number | None:
 
 
 def strut_of(part: Part) -> Number | None:
-    """Return the length [m] between the pivots of a part without a shape; `None` if it acts in one point.
+    """Return the length [m] between the pivots of a part without a shape; `None` if the part acts at one point.
 
     >>> strut_of(Joint()) is None
     True

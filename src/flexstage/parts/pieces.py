@@ -1,6 +1,6 @@
 """Convex decomposition of solids: polytopes inside the material.
 
-Flat faces are exact. Arcs are approximated within `SAGITTA` from inside, so that pieces touch only if the forms do.
+Flat faces are exact. Polygons inside the round faces deviate by at most `SAGITTA`: pieces touch only if the solids touch.
 """
 
 from __future__ import annotations
@@ -17,13 +17,15 @@ from flexstage.parts.profile import single
 from flexstage.spatial.convex import Convex, cuboid, frustum
 
 SAGITTA = 2e-5
-"""Largest distance of a piece inside a round face [m]."""
+"""Largest distance [m] between a round face and the faces of the pieces inside it."""
 MOST = 96
-"""Largest number of sides of a round outline."""
+"""Largest number of sides of the polygon for a round outline."""
 
 
 def solid_pieces(form: Solid) -> tuple[Convex, ...]:
-    """Return the convex pieces of a solid in its frame, of the first design; none for an imported shape, without holes by other solids.
+    """Return the convex pieces of a solid in its frame, of the first design; none for an imported solid.
+
+    Holes cut by other solids are ignored.
 
     >>> len(solid_pieces(Block("steel", (0.1, 0.1, 0.1)))), len(solid_pieces(Block("steel", (0.1, 0.1, 0.1), hole=(0.05, 0.05))))
     (1, 4)
@@ -63,7 +65,7 @@ def _ball(form: Sphere) -> Iterator[Convex]:
 
 
 def corner_count(radius: float) -> int:
-    """Return the number of sides of a polygon within `SAGITTA` of a circle.
+    """Return the number of sides of an inscribed polygon within `SAGITTA` of a circle of `radius` [m].
 
     >>> corner_count(0.01)
     52

@@ -30,11 +30,12 @@ from flexstage.parts.shape import Order, Shaped
 
 @dataclass(frozen=True, eq=False)
 class Piezo(ChargedActuator, Shaped):
-    """Piezo stack along x: an axial spring with an imposed free stroke u (u > 0 expands); other stiffness by its section.
+    """Piezo stack along x: an axial spring with an imposed free stroke u (u > 0 expands). Its section gives the other stiffness terms.
 
-    `stroke` is the full free stroke over the voltage range; `stiffness` the axial stiffness; `diameter` is of the ceramic. The effective
-    modulus of the ceramic is E = k L / A. `bending_rigidity` is the EI of a stack stiffened by its casing (default: of the ceramic).
-    Blocked force = stroke x stiffness. `maximum_load` is compressive, `tensile_limit` without preload.
+    `stroke` is the full free stroke over the voltage range, `stiffness` the axial stiffness k, and `diameter` the diameter of the ceramic.
+    The effective modulus of the ceramic is E = k L / A. `bending_rigidity` is the EI of a stack stiffened by its casing (default: the EI of
+    the ceramic). The blocked force is stroke x stiffness. `maximum_load` is the largest compression, `tensile_limit` the largest tension,
+    both without preload.
     """
 
     kind: ClassVar[str] = "piezo"
@@ -73,11 +74,11 @@ class Piezo(ChargedActuator, Shaped):
 
     @property
     def throat(self) -> Circle:
-        """Section of the ceramic."""
+        """Cross-section of the ceramic."""
         return circle(self.diameter)
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: preload within the maximum load, bias within the voltage range."""
+        """Order relations: the preload is within the maximum load, the bias within the voltage range."""
         yield Order("preload", self.preload, self.maximum_load, "the maximum load", "Use a smaller preload", FORCE, strict=False)
         yield from super().orders

@@ -1,6 +1,6 @@
-"""Plausibility: usual ranges of numbers of materials, stacks, gauges and hinges (`plausible.toml`).
+"""Plausibility check: usual ranges of the numbers of materials, stacks, gauges and hinges (`plausible.toml`).
 
-A value outside its range is a warning, not an error: usually the unit is wrong.
+A value outside its range is a warning, not an error. The usual cause is a wrong unit.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def _finding(rule: Mapping[str, Any], where: str, item: Any) -> Finding | None:
 
 
 def implausible(items: Iterable[tuple[str, Any]]) -> Iterator[Finding]:
-    """Return warnings for numbers of named items outside the table, one per number.
+    """Return a warning for each number of the named items that is outside its usual range.
 
     >>> [finding.where for finding in implausible([("materials.steel", Material(young=200e6, poisson=0.3, density=7800.0))])]
     ['materials.steel.young']

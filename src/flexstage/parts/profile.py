@@ -1,7 +1,7 @@
 """Profiles of flexure hinges: thickness of the cross-section along the hinge.
 
-A profile has the half length a of the hinge and the added height w(s) >= 0 on each side. The station is s in [-1, 1], x = a s. The
-section's thickness there is t + 2 w. Stations concentrate the quadrature in the thin region.
+A profile has the half length a of the hinge and the added height w(s) >= 0 on each side. The station s in [-1, 1] is at x = a s. The
+thickness at the station is t + 2 w.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from flexstage.base.units.quantity import ANGLE, LENGTH, NOT_NEGATIVE, POSITIVE,
 
 @dataclass(frozen=True, eq=False)
 class Circular(Description):
-    """Circular profile: two half-circle cuts of equal radius, x = R sin p, w = R (1 - cos p), p in [-90, 90] degrees."""
+    """Circular profile of two half-circle cuts of equal radius R: x = R sin p, w = R (1 - cos p), p from -90 to 90 degrees."""
 
     radius: Annotated[Number, LENGTH, POSITIVE]
 
 
 @dataclass(frozen=True, eq=False)
 class Elliptic(Description):
-    """Elliptic profile of two half-ellipse cuts, x = a sin p, w = c (1 - cos p), `along` = a, `across` = c; c -> 0 is a leaf."""
+    """Elliptic profile of two half-ellipse cuts: x = a sin p, w = c (1 - cos p), with `along` = a, `across` = c; c -> 0 is a leaf."""
 
     along: Annotated[Number, LENGTH, POSITIVE]
     across: Annotated[Number, LENGTH, POSITIVE]
@@ -49,9 +49,9 @@ class Straight(Description):
 
 
 class Contour(Description):
-    """Profile by the height of its cuts over the station, symmetric about the middle.
+    """Profile specified by the height of its cuts as a function of the station, symmetric about the middle.
 
-    `TOLD_BY` is its key in files. Its ends are corners: it meets the adjacent blocks at an angle.
+    `TOLD_BY` is its key and name in files. At both ends, the profile meets the adjacent blocks at an angle.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]]
@@ -68,21 +68,21 @@ class Contour(Description):
 
     @property
     def radius_at_throat(self) -> Number | None:
-        """Radius of curvature at the thinnest point [m]; `None` if not unique."""
+        """Radius of curvature at the thinnest point [m]; `None` if it is not unique."""
         return None
 
     @property
     def has_arc(self) -> bool:
-        """Whether only the middle is thinnest."""
+        """Whether the thickness is smallest only in the middle."""
         return True
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """Stations [m] from the middle to an end (inclusive) between which it is smooth, of the first design."""
+        """Boundaries [m] of the smooth pieces of the profile, from the middle to an end, of the first design; both are included."""
         return 0.0, 0.5 * single(self.span)
 
     def height(self, station: Array) -> Array:
-        """Height of the cuts at stations [m] from the middle, zero beyond the ends, of the first design."""
+        """Return the height of the cuts [m] at stations [m] from the middle, of the first design; zero beyond the ends."""
         raise NotImplementedError
 
 
@@ -116,11 +116,11 @@ class Parabolic(_Conic):
 
     @property
     def radius_at_throat(self) -> Number:
-        """a^2 / 2c [m]."""
+        """Radius of curvature at the thinnest point, a^2 / 2c [m]."""
         return self.along * self.along / (2.0 * self.across)
 
     def height(self, station: Array) -> Array:
-        """c (x/a)^2 [m]."""
+        """Return the height of the cuts, c (x/a)^2 [m]."""
         return single(self.across) * self._share(station) ** 2
 
 
@@ -128,8 +128,8 @@ class Parabolic(_Conic):
 class Hyperbolic(_Conic):
     """Hyperbolic profile, w = (q^2 + c (c + 2 q) (x/a)^2)^1/2 - q: `along` = a is half the length, `across` = c, `semi_axis` = q.
 
-    The semi-axis is across the hinge. With q half the thickness, both cuts are branches of one hyperbola (Lobontiu et al., Precision
-    Engineering 26, 2002). Large q: a parabola; small q: straight flanks with a corner.
+    The semi-axis is across the hinge. If q is half the thickness, both cuts are branches of one hyperbola (Lobontiu et al., Precision
+    Engineering 26, 2002). A large q gives a parabola, a small q straight flanks with a corner.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "hyperbolic")
@@ -139,17 +139,17 @@ class Hyperbolic(_Conic):
 
     @property
     def steepness(self) -> Number:
-        """c (c + 2 q) / q^2: the square of a over the semi-axis along the hinge."""
+        """Square of a over the semi-axis along the hinge: c (c + 2 q) / q^2."""
         share = self.across / self.semi_axis
         return share * (share + 2.0)
 
     @property
     def radius_at_throat(self) -> Number:
-        """a^2 q / (c (c + 2 q)) [m]."""
+        """Radius of curvature at the thinnest point, a^2 q / (c (c + 2 q)) [m]."""
         return self.along * self.along / (self.semi_axis * self.steepness)
 
     def height(self, station: Array) -> Array:
-        """q ((1 + c (c + 2 q) / q^2 (x/a)^2)^1/2 - 1) [m]."""
+        """Return the height of the cuts, q ((1 + c (c + 2 q) / q^2 (x/a)^2)^1/2 - 1) [m]."""
         inside = single(self.steepness) * self._share(station) ** 2
         return single(self.semi_axis) * inside / (np.sqrt(1.0 + inside) + 1.0)
 
@@ -158,8 +158,8 @@ class Hyperbolic(_Conic):
 class Power(_Conic):
     """Power-function profile, w = c |x/a|^n: `along` = a is half the length, `across` = c, `exponent` = n.
 
-    Linss, Henning & Zentner (Modeling and design of flexure hinge-based compliant mechanisms, in Kinematics, 2019). n = 1: straight flanks
-    with a corner, 2: a parabola, large: a leaf.
+    n = 1 gives straight flanks with a corner, n = 2 a parabola, a large n a leaf. Reference: Linss, Henning & Zentner (Modeling and design
+    of flexure hinge-based compliant mechanisms, in Kinematics, 2019).
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "power")
@@ -168,15 +168,16 @@ class Power(_Conic):
     exponent: Annotated[Number, RATIO, Bound(low=1.0, high=16.0)]
 
     def height(self, station: Array) -> Array:
-        """c |x/a|^n [m]."""
+        """Return the height of the cuts, c |x/a|^n [m]."""
         return single(self.across) * self._share(station) ** single(self.exponent)
 
 
 @dataclass(frozen=True, eq=False)
 class Vee(Contour):
-    """V-shaped profile: flanks at an `angle` to one another, rounded at the tip by a `radius`; `length` from end to end.
+    """V-shaped profile: straight flanks at an `angle` to one another, with a tip of `radius` r; `length` from end to end.
 
-    A flank's slope is e = (180 degrees - angle)/2. The arc is x = r sin p, w = r (1 - cos p) up to p = e, then the flank is straight.
+    The slope of a flank is e = (180 degrees - angle)/2. The arc of the tip is x = r sin p, w = r (1 - cos p) up to p = e; from there the
+    flank is straight.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "v")
@@ -191,32 +192,32 @@ class Vee(Contour):
 
     @property
     def tip(self) -> Number:
-        """End of the arc, r sin e from the middle [m]."""
+        """Distance of the end of the tip's arc from the middle, r sin e [m]."""
         return self.radius * np.sin(self.slope)
 
     @property
     def span(self) -> Number:
-        """`length` [m]."""
+        """Total length [m]."""
         return self.length
 
     @property
     def rise(self) -> Number:
-        """r (1 - cos e) plus the height of the flank [m]."""
+        """Height of the cuts at both ends: r (1 - cos e) plus the height of the flank [m]."""
         return 2.0 * self.radius * np.sin(0.5 * self.slope) ** 2 + (0.5 * self.length - self.tip) * np.tan(self.slope)
 
     @property
     def radius_at_throat(self) -> Number:
-        """`radius` [m]."""
+        """Radius of curvature at the thinnest point [m]: the radius of the tip."""
         return self.radius
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """Ends of the arc, and of the flank if present."""
+        """Boundaries [m] of the smooth pieces: the middle, the end of the arc, and the end of the flank if there is one."""
         tip, half = single(self.tip), 0.5 * single(self.length)
         return (0.0, tip, half) if tip < half else (0.0, half)
 
     def height(self, station: Array) -> Array:
-        """Height of the arc, or of the flank [m]."""
+        """Return the height of the cuts [m], on the arc or the flank."""
         radius, tip, slope = single(self.radius), single(self.tip), np.tan(single(self.slope))
         on_arc = np.minimum(np.abs(station), tip)
         return radius - np.sqrt(radius * radius - on_arc * on_arc) + slope * (np.abs(station) - on_arc)
@@ -224,10 +225,10 @@ class Vee(Contour):
 
 @dataclass(frozen=True, eq=False)
 class FreeForm(Contour):
-    """Free-form profile by a table: `heights` added on each side at `stations` from the middle to an end; the least height is zero.
+    """Free-form profile by a table of `heights`, added on each side, at `stations` from the middle to an end. The least height is zero.
 
-    Between stations it is a cubic Hermite spline with the slopes of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 1984), as in PCHIP for
-    the table and its mirror image: smooth, and within the interval between two heights.
+    Between stations, the profile is a cubic Hermite spline with the slopes of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 1984). The
+    spline equals PCHIP for the table and its mirror image: it is smooth, and stays between adjacent heights.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "free")
@@ -236,12 +237,12 @@ class FreeForm(Contour):
 
     @property
     def span(self) -> Number:
-        """Twice the last station [m]."""
+        """Total length: twice the last station [m]."""
         return 2.0 * self.stations[-1]
 
     @property
     def rise(self) -> Number:
-        """The last height [m]."""
+        """Height at both ends: the last height [m]."""
         return self.heights[-1]
 
     @property
@@ -251,25 +252,25 @@ class FreeForm(Contour):
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """Stations."""
+        """Boundaries [m] of the smooth pieces: the stations."""
         return tuple(single(station) for station in self.stations)
 
     @property
     def slopes(self) -> tuple[Number, ...]:
-        """Slope at every station: zero in the middle and at extremes, else a weighted harmonic mean of the adjacent ones."""
+        """Slope at every station: zero in the middle and at extremes, else a weighted harmonic mean of the two adjacent secant slopes."""
         steps = [right - left for left, right in pairwise(self.stations)]
         rates = [(high - low) / step for (low, high), step in zip(pairwise(self.heights), steps, strict=True)]
         inner = [_mean_slope(*each) for each in zip(pairwise(steps), pairwise(rates), strict=True)]
         return 0.0, *inner, _end_slope(steps, rates)
 
     def pieces(self) -> Iterator[tuple[Number, Number, tuple[Number, Number, Number, Number]]]:
-        """By piece: start, length, and height as a cubic of the normalised length, constant term first."""
+        """Yield start [m], length [m] and coefficients of each piece: a cubic of the normalised length, constant term first."""
         for (left, right), (low, high), (start, end) in zip(*map(pairwise, (self.stations, self.heights, self.slopes)), strict=True):
             step, change = right - left, high - low
             yield left, step, (low, step * start, 3.0 * change - step * (2.0 * start + end), step * (start + end) - 2.0 * change)
 
     def height(self, station: Array) -> Array:
-        """Height of the piece at a station [m]."""
+        """Return the height of the cuts [m] at stations [m] from the middle."""
         result, away = np.zeros(np.shape(station)), np.abs(station)
         for left, step, cubic in self.pieces():
             share = (away - single(left)) / single(step)
@@ -304,7 +305,7 @@ Profile: TypeAlias = Circular | Elliptic | Filleted | Straight | Parabolic | Hyp
 
 
 def length(profile: Profile) -> Number:
-    """Return the total length of the hinge between the ends of its arcs [m].
+    """Return the total length of the hinge from end to end of the profile [m].
 
     >>> length(Circular(0.005)), length(Straight(0.013))
     (0.01, 0.013)
@@ -332,7 +333,9 @@ def rise(profile: Profile) -> Number:
 
 
 def closing(profile: Profile, thickness: Number) -> float:
-    """Return the angle [rad] at which the faces of a cut touch, with the hinge's length as width and the profile's height as depth.
+    """Return the angle [rad] of rotation at which the faces of a cut touch, 2 atan(a / (w + t/2)); infinite for a straight profile.
+
+    a is half the hinge's length, w the height of the cuts at the ends, t the `thickness`.
 
     >>> round(closing(Circular(0.005), 0.0) / np.pi, 9), closing(Straight(0.005), 0.001)
     (0.5, inf)
@@ -371,7 +374,7 @@ def stations_of(profile: Profile) -> tuple[Array, Array]:
 
 
 def single(value: Number) -> float:
-    """Return a number of the first design.
+    """Return the number of the first design, as a float.
 
     >>> single(np.array([1.0, 2.0]))
     1.0

@@ -20,10 +20,10 @@ _ARC = np.linspace(0.0, 0.5 * np.pi, 9)
 
 @dataclass(frozen=True, eq=False)
 class ReinforcedLeaf(Leaf):
-    """Leaf spring with a reinforced middle: thin over the `flexure_length` at both ends, `reinforced_thickness` between them.
+    """Leaf spring with a reinforced middle: thin over the `flexure_length` at each end, `reinforced_thickness` between them.
 
-    The step is square, or has a quarter-circle fillet of radius `fillet` at its foot, within the flexure's length. Ideal degrees of freedom
-    equal those of a leaf.
+    The step is square, or has a quarter-circle fillet of radius `fillet` at its foot, within the flexure length. The ideal degrees of
+    freedom are the same as for a leaf.
     """
 
     kind: ClassVar[str] = "reinforced_leaf"
@@ -43,7 +43,7 @@ class ReinforcedLeaf(Leaf):
 
     @property
     def silhouette(self) -> tuple[tuple[float, Section], ...]:
-        """Stations of ends, steps and fillets, and the sections there."""
+        """Stations x [m] of ends, steps and fillets, with the section at each station."""
         half, radius = 0.5 * single(self.length), 0.0 if self.fillet is None else single(self.fillet)
         start = half - single(self.flexure_length)
         arc = [(start + radius * (1.0 - np.sin(p)), radius * (1.0 - np.cos(p))) for p in (_ARC[::-1] if radius else _ARC[:1])]
@@ -53,7 +53,7 @@ class ReinforcedLeaf(Leaf):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: thinner than wide, flexures within the length, fillets within flexures, middle thicker."""
+        """Order relations: thinner than wide, flexures within the length, fillets within the flexures, middle thicker."""
         yield from super().orders
         half, advice = 0.5 * self.length, "Make it longer or the flexures shorter"
         yield Order("flexure_length", self.flexure_length, half, "half the length", advice)

@@ -16,8 +16,8 @@ from flexstage.parts.shape import INNER_MODES, Shaped, reversed_or_none
 class Rod(Shaped):
     """Round rod (wire flexure) of constant diameter, `length` along x. Ideal degrees of freedom: all except translation along x.
 
-    `inner_modes` is the number of its bending modes in y and z, and of its torsion modes, in the lumped model. `curvature` of its blank is
-    about z, as for a leaf.
+    `inner_modes` is the number of bending modes in y, of bending modes in z, and of torsion modes in the lumped model. `curvature` is the
+    initial curvature about z of the free rod, as for a leaf.
     """
 
     kind: ClassVar[str] = "rod"
@@ -40,7 +40,7 @@ class Rod(Shaped):
 
     @property
     def straight(self) -> Rod:
-        """The rod, straight when free."""
+        """The same rod, straight when free."""
         return replace(self, curvature=None)
 
     @property

@@ -33,11 +33,11 @@ from flexstage.parts.voice_coil import DUTY, Coil, CoilSide, Supply
 
 @dataclass(frozen=True, eq=False)
 class RotaryCoil(Coil):
-    """A coil that drives a rotation about x: torque = `torque_constant` x current on the second body, the opposite on the first.
+    """Rotary voice coil about x: torque = `torque_constant` x current on the second body, the opposite torque on the first.
 
-    Positive turns the second body in the positive sense about x; a negative `torque_constant` turns it the other way. `stiffness` and
-    `damping` are the magnets' and the coil's own about x, `angular_travel` the whole angle for which the torque constant holds. All other
-    numbers are as for a `VoiceCoil`; masses count as points, so that moments of inertia belong to the bodies.
+    A positive torque turns the second body in the positive sense about x; a negative `torque_constant` reverses it. `stiffness` is the
+    magnets' stiffness about x, `damping` the coil's damping about x. `angular_travel` is the whole angle over which the torque constant is
+    valid. All other numbers are as for a `VoiceCoil`. The masses are point masses: specify moments of inertia in the bodies.
     """
 
     kind: ClassVar[str] = "rotary_coil"
@@ -63,22 +63,22 @@ class RotaryCoil(Coil):
 
     @property
     def thrust(self) -> Number:
-        """The torque constant [N m/A]."""
+        """Torque per unit of input [N m/A]: the torque constant."""
         return self.torque_constant
 
     @property
     def travel(self) -> Number | None:  # type: ignore[override]
-        """Its angular travel [rad]."""
+        """Angular travel [rad]."""
         return self.angular_travel
 
     @property
     def maximum(self) -> Number | None:
-        """Its largest torque [N m]."""
+        """Largest torque [N m]."""
         return self.maximum_torque
 
     @property
     def mirrored(self) -> RotaryCoil:
-        """Turning the other way: a torque is an axial vector.
+        """The coil with the opposite torque constant, because a torque is an axial vector.
 
         >>> RotaryCoil(torque_constant=0.2).mirrored.torque_constant
         -0.2
@@ -87,7 +87,7 @@ class RotaryCoil(Coil):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Its torque constant is not zero."""
+        """Errors: a torque constant of zero, and errors of a coil."""
         yield from super().faults
         if not np.all(self.torque_constant):
             yield Finding("torque_constant", "it is zero", 'Give for example "0.2 N m/A"')

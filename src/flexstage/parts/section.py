@@ -16,7 +16,7 @@ from flexstage.base.number import Array, Number, magnitude, with_step
 from flexstage.parts.profile import single
 
 PARABOLIC = 6.0 / 5.0
-"""Shear factor of a rectangle from the energy of parabolic shear stress (Castigliano), as in the notch formulas."""
+"""Shear factor k = 6/5 of a rectangle, from the energy of parabolic shear stress (Castigliano), as in the notch formulas."""
 ROUND = 10.0 / 9.0
 """Shear factor of a circle from the energy of parabolic shear stress."""
 _ODD = np.arange(1.0, 8.0, 2.0)
@@ -28,8 +28,8 @@ _ODD_FIFTH_POWERS = 1.00452376279513961613
 class Section:
     """Cross-section: overall `height` along y and `width` along z [m], factor `shear` k of the shear flexibility k / (G A).
 
-    A form of section is a dataclass of its dimensions, which may be arrays and complex. It implements `area`, `inertia_y`, `inertia_z`,
-    `torsion` and `outline`, and overrides other properties.
+    Each form of section is a dataclass with its dimensions, which may be arrays and complex. A form implements `area`, `inertia_y`,
+    `inertia_z`, `torsion` and `outline`, and may override other properties.
     """
 
     height: Number
@@ -38,7 +38,7 @@ class Section:
     is_axisymmetric: ClassVar[bool] = False
     """Whether the outline is a circle about x."""
     shear_peak: ClassVar[float] = 1.5
-    """Ratio of largest to mean shear stress of a shear force."""
+    """Ratio of the largest to the mean shear stress of a transverse force."""
 
     @cached_property
     def area(self) -> Number:
@@ -86,34 +86,34 @@ class Section:
         return np.minimum(self.height, self.width)
 
     def outline(self, angles: Array) -> Array:
-        """Corners (n, 2) of the outline, counter-clockwise, of the first design [m]; for a curve, points at `angles` [rad] from y."""
+        """Return the corners (n, 2) [m] of the outline, counter-clockwise (first design); for a curve, points at `angles` [rad] from y."""
         raise NotImplementedError
 
     def pieces(self, angles: Array) -> tuple[Array, ...]:
-        """Convex polygons (n, 2) of the outline, equal in number in each design."""
+        """Return convex polygons (n, 2) [m] that form the outline; their number is the same in every design."""
         return (self.outline(angles),)
 
     def normal_stress(self, axial: Array, about_y: Array, about_z: Array) -> Array:
-        """Upper bound of the normal stress due to an `axial` stress and bending by |M_y| / I_y and |M_z| / I_z [Pa/m]."""
+        """Return an upper bound of the normal stress [Pa] for an `axial` stress [Pa] and bending |M_y| / I_y and |M_z| / I_z [Pa/m]."""
         return axial + 0.5 * self.height * about_z + 0.5 * self.width * about_y
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Largest shear stress [Pa] of a torque, with a share `uniform` of Saint-Venant torsion, the other part by warping."""
+        """Return the largest shear stress [Pa] of a torque [N m]; `uniform` is the fraction of Saint-Venant torsion, not of warping."""
         raise NotImplementedError
 
     def each(self, function: Callable[[Number], Any]) -> Self:
-        """The section with a function applied to each of its numbers."""
+        """Return the section with a function applied to each of its numbers."""
         return type(self)(**{item.name: function(getattr(self, item.name)) for item in fields(self)})
 
     @property
     def first(self) -> Self:
-        """Section of the first design, in floats."""
+        """The section of the first design, with floats."""
         return self.each(single)
 
 
 @dataclass(frozen=True, eq=False)
 class Rectangle(Section):
-    """Rectangle `height` x `width`.
+    """Rectangular section: `height` t along y, `width` b along z.
 
     >>> section = Rectangle(0.001, 0.01)
     >>> round(section.area, 12), round(section.inertia_z * 12e12, 9)
@@ -127,12 +127,12 @@ class Rectangle(Section):
 
     @cached_property
     def inertia_y(self) -> Number:
-        """A b^2 / 12 [m^4]."""
+        """Second moment of area A b^2 / 12 [m^4]."""
         return self.area * self.width * self.width / 12.0
 
     @cached_property
     def inertia_z(self) -> Number:
-        """A t^2 / 12 [m^4]."""
+        """Second moment of area A t^2 / 12 [m^4]."""
         return self.area * self.height * self.height / 12.0
 
     @cached_property
@@ -142,16 +142,16 @@ class Rectangle(Section):
 
     @cached_property
     def warping(self) -> Number:
-        """Warping constant of the shape y z, b^3 t^3 / 144 [m^6] (see `beams.torsion`)."""
+        """Warping constant b^3 t^3 / 144 [m^6] for the warping shape y z (see `beams.torsion`)."""
         return self.area * self.area * self.area / 144.0
 
     def outline(self, angles: Array) -> Array:  # noqa: ARG002
-        """Four corners."""
+        """Return the four corners (4, 2) [m]."""
         section = self.first
         return 0.5 * np.array([section.height, section.width]) * [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Saint-Venant stress in the middle of the longer sides, and shear of bending strips."""
+        """Return the Saint-Venant stress in the middle of the longer sides plus the shear of bending strips [Pa]."""
         short, long = np.minimum(self.height, self.width), np.maximum(self.height, self.width)
         ratio = 0.5 * np.pi * (long / short)[..., None] * _ODD
         crest = 1.0 - 8.0 / np.pi**2 * np.sum(2.0 * np.exp(-ratio) / (1.0 + np.exp(-2.0 * ratio)) / _ODD**2, axis=-1)
@@ -173,34 +173,34 @@ class Circle(Section):
 
     @cached_property
     def area(self) -> Number:
-        """Pi d^2 / 4 [m^2]."""
+        """Area pi d^2 / 4 [m^2]."""
         return 0.25 * np.pi * self.height * self.height
 
     @cached_property
     def inertia_y(self) -> Number:
-        """A d^2 / 16 [m^4]."""
+        """Second moment of area A d^2 / 16 [m^4]."""
         return self.area * self.height * self.height / 16.0
 
     @cached_property
     def inertia_z(self) -> Number:
-        """Equal to that about y [m^4]."""
+        """Second moment of area about z, equal to that about y [m^4]."""
         return self.inertia_y
 
     @cached_property
     def torsion(self) -> Number:
-        """Polar second moment [m^4]."""
+        """Torsion constant J: the polar second moment [m^4]."""
         return 2.0 * self.inertia_y
 
     def outline(self, angles: Array) -> Array:
-        """Points at the angles."""
+        """Return the points (n, 2) [m] of the outline at the angles."""
         return 0.5 * single(self.height) * np.column_stack([np.cos(angles), np.sin(angles)])
 
     def normal_stress(self, axial: Array, about_y: Array, about_z: Array) -> Array:
-        """Vector sum of bending about both axes."""
+        """Return the axial stress plus the resultant bending stress of both axes [Pa]."""
         return axial + 0.5 * self.height * np.sqrt(about_y * about_y + about_z * about_z)
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:  # noqa: ARG002  (it does not warp)
-        """Torque times radius over J [Pa]."""
+        """Return the shear stress at the surface: torque times radius over J [Pa]."""
         return torque * 0.5 * self.height / self.torsion
 
 

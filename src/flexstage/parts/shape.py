@@ -1,6 +1,6 @@
 """Interface of parts: kind, degrees of freedom and, for parts with a shape, geometry.
 
-Outlines, pictures, contact, columns and finite elements use this interface, independent of the class. A new kind of part derives from
+Outlines, pictures, contact, buckling and finite elements use only this interface, for any class of part. A new kind of part derives from
 `Shaped`, or from `Profiled` if cuts reduce its thickness towards the middle.
 """
 
@@ -41,7 +41,10 @@ from flexstage.parts.stated import Stated
 
 @dataclass(frozen=True, eq=False)
 class Order:
-    """Order relation: the `small` number of a `field` is below the `large` one (named `other`), or, if not `strict`, at most equal."""
+    """Order relation of two numbers of a part: `small`, in the `field`, must be below `large`, named `other`.
+
+    If not `strict`, the numbers may be equal.
+    """
 
     field: str
     small: Number | None
@@ -53,15 +56,15 @@ class Order:
 
 
 INNER_MODES = Bound(0.0, 20.0)
-"""Largest number of internal modes of a part per degree of freedom."""
+"""Allowed number of internal modes of a part per degree of freedom."""
 
 
 class Elastic(Description):
-    """Elastic part, of a `kind` for files. `parts.PARTS` lists the kinds."""
+    """Elastic part; `kind` is its name in files. `parts.PARTS` lists the kinds."""
 
     kind: ClassVar[str]
     inner_modes: int = 0
-    """Number of fixed-interface modes in each ideal degree of freedom."""
+    """Number of fixed-interface modes for each ideal degree of freedom."""
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
@@ -80,21 +83,21 @@ class Elastic(Description):
 
     @property
     def strut(self) -> Number | None:
-        """Length [m] between the pivots of a part without a shape; `None`: it acts in one point."""
+        """Length [m] between the pivots of a part without a shape; `None` if the part acts at one point."""
         return None
 
     def stated(self, material: Material | None) -> Stated | None:  # noqa: ARG002  (kinds that are known by a material need it)
-        """Specified matrices between its ends; `None` for a part with a shape."""
+        """Return the specified matrices between its ends; `None` for a part with a shape."""
         return None
 
     @property
     def is_axisymmetric(self) -> bool:
-        """Whether it is axisymmetric, so that links require no `bends`."""
+        """Whether the part is axisymmetric, so that its links require no `bends`."""
         return True
 
     @property
     def mirrored(self) -> Elastic | None:
-        """Mirror image across y; `None` if undefined for a kind, whose instances then cannot be mirrored."""
+        """Mirror image across y; `None` for a kind without one. Instances with such a part cannot be mirrored."""
         return None
 
     @property
@@ -104,15 +107,15 @@ class Elastic(Description):
 
 
 def reversed_or_none(value: Number | None) -> Number | None:
-    """Return the negative of a number, if specified (a mirror across y)."""
+    """Return the negative of a number (mirror across y), or `None` for an unspecified number."""
     return None if value is None else -value
 
 
 class Shaped(Elastic):
     """Part with a shape: x along it, centre at the origin, symmetric about the three coordinate planes.
 
-    A kind implements `span` and `throat`. Defaults are for a constant section; `Profiled` parts override them. `slender` parts bend along
-    their whole length, so that their ends may shift sideways.
+    A kind implements `span` and `throat`. Defaults are for a constant section; `Profiled` parts override them. A `slender` part bends along
+    its whole length: its ends may shift sideways.
     """
 
     material: str
@@ -120,7 +123,7 @@ class Shaped(Elastic):
 
     @property
     def is_axisymmetric(self) -> bool:
-        """Whether its throat is axisymmetric."""
+        """Whether its thinnest section is axisymmetric."""
         return self.throat.is_axisymmetric
 
     @property
@@ -130,7 +133,7 @@ class Shaped(Elastic):
 
     @property
     def mirrored(self) -> Elastic | None:
-        """Itself, by symmetry."""
+        """The part itself, by symmetry."""
         return self
 
     @property
@@ -140,7 +143,7 @@ class Shaped(Elastic):
 
     @property
     def throat(self) -> Section:
-        """Thinnest section."""
+        """Thinnest cross-section."""
         raise NotImplementedError
 
     @property
@@ -160,41 +163,41 @@ class Shaped(Elastic):
 
     @property
     def closing(self) -> float:
-        """Angle [rad] at which the faces of its cut touch, of the first design; infinite without a cut."""
+        """Angle [rad] at which the faces of its cuts touch, of the first design; infinite without a cut."""
         return np.inf
 
     @property
     def silhouette(self) -> tuple[tuple[float, Section], ...]:
-        """Stations x [m] from end to end, at least two, and the sections there, of the first design."""
+        """Stations x [m] from end to end, at least two, with the section at each station, of the first design."""
         half = 0.5 * single(self.span)
         ends = ((-half, self.end.first), (half, self.end.first))
         return ends if self.is_prismatic else (ends[0], (0.0, self.throat.first), ends[1])
 
     def section_at(self, stations: Array) -> Section:
-        """Section at stations [m], of the first design, linearly interpolated between those of its silhouette."""
+        """Return the section at stations [m], linearly interpolated between the sections of `silhouette`, of the first design."""
         places, sections = zip(*self.silhouette, strict=True)
         names = [item.name for item in fields(sections[0])]
         return replace(sections[0], **{name: np.interp(stations, places, [getattr(each, name) for each in sections]) for name in names})
 
 
 class Profiled(Shaped):
-    """Part with a `profile` of cuts on both sides of its height, and of its width depending on the kind (`grown`)."""
+    """Part with a `profile` of cuts that reduce its height on both sides, and for some kinds also its width (see `grown`)."""
 
     thickness: Number
     profile: Profile
 
     def grown(self, up: Number) -> Section:
-        """Section at a profile height `up` [m]."""
+        """Return the section at a profile height `up` [m]."""
         raise NotImplementedError
 
     @property
     def span(self) -> Number:
-        """Length between the ends of its arcs [m]."""
+        """Length from end to end of the profile [m]."""
         return length(self.profile)
 
     @property
     def throat(self) -> Section:
-        """Section at the deepest cut, for arcs in the middle."""
+        """Section at the deepest point of the cuts."""
         return self.grown(0.0)
 
     @property
@@ -209,7 +212,7 @@ class Profiled(Shaped):
 
     @property
     def has_arc(self) -> bool:
-        """Whether its profile is an arc."""
+        """Whether the profile is thinnest at a single station."""
         return self.profile.has_arc if isinstance(self.profile, Contour) else isinstance(self.profile, (Circular, Elliptic))
 
     @property
@@ -219,12 +222,12 @@ class Profiled(Shaped):
 
     @property
     def silhouette(self) -> tuple[tuple[float, Section], ...]:
-        """Stations x [m] from end to end, more of them on arcs, and the sections there."""
+        """Stations x [m] from end to end, denser on arcs, with the section at each station."""
         return tuple((float(x), self.grown(float(up)).first) for x, up in zip(*stations_of(self.profile), strict=True))
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: fillets and tip arc within the length; a table ascends from the middle."""
+        """Order relations: fillets and the arc of the tip are within the length; the stations of a table increase from the middle."""
         if isinstance(self.profile, Filleted):
             advice = "Two fillets take 2 r of the length: make it longer or the radius smaller"
             yield Order("profile.radius", self.profile.radius, 0.5 * self.profile.length, "half the length", advice, strict=False)

@@ -32,11 +32,11 @@ from flexstage.parts.stated import Stated, point_masses
 
 @dataclass(frozen=True, eq=False)
 class ShearPiezo(ChargedActuator):
-    """Shear piezo actuator: a block of plates along x; its second face moves along y by the stroke u against the first.
+    """Shear piezo actuator: a block of plates along x. The stroke u moves its second face along y against the first face.
 
-    `length` along x, `width` along y, `depth` along z. `stiffness` is along y with parallel faces, `axial_stiffness` along x. They
-    determine the modulus E = k_a L / A and the shear compliance 1/k - L^3 / (12 E I_z); other degrees of freedom are as for a uniform
-    block. Blocked force = stroke x stiffness. Half of `mass` is at each face.
+    The block has `length` L along x, `width` along y and `depth` along z. `stiffness` k is the stiffness along y with parallel faces,
+    `axial_stiffness` k_a along x. They determine the modulus E = k_a L / A and the shear compliance 1/k - L^3 / (12 E I_z). Other degrees
+    of freedom are as for a uniform block. The blocked force is stroke x stiffness. Half of `mass` is at each face.
     """
 
     kind: ClassVar[str] = "shear_piezo"
@@ -60,7 +60,7 @@ class ShearPiezo(ChargedActuator):
 
     @property
     def free_deformation(self) -> Array:
-        """Along y."""
+        """Free deformation (6,) per unit of stroke: along y."""
         return np.eye(6)[1]
 
     @property
@@ -81,14 +81,15 @@ class ShearPiezo(ChargedActuator):
 
     @property
     def shear_compliance(self) -> Number:
-        """Shear compliance along y [m/N]: total minus bending between parallel faces."""
+        """Shear compliance along y [m/N]: total compliance minus the bending compliance between parallel faces."""
         return 1.0 / self.stiffness - self.length**3 / (12.0 * self.bending[1])
 
     @property
     def compliance(self) -> Array:
-        """Compliance (..., 6, 6) about its centre: 1/k_a along x, 1/k along y, similar along z, rotational L/(E I) and L/(G J).
+        """Compliance (..., 6, 6) about the centre: 1/k_a along x, 1/k along y, similarly along z; rotational L/(E I) and L/(G J).
 
-        G follows from the shear compliance L / (k G A) with k = 5/6 (parabolic); Saint-Venant torsion. Both faces stay plane.
+        G follows from the shear compliance L / (k_s G A) with k_s = 5/6 (parabolic shear stress). Torsion is Saint-Venant's. Both faces
+        remain plane.
         """
         about_y, about_z = self.bending
         shear = self.shear_compliance
@@ -99,12 +100,12 @@ class ShearPiezo(ChargedActuator):
         return diagonal[..., None] * np.eye(6)
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Inverse of the compliance, and half of the mass at each face."""
+        """Return the inverse of the compliance, and half of the mass at each face."""
         return Stated(np.linalg.inv(self.compliance), point_masses(0.5 * self.mass, 0.5 * self.mass))
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors: bending compliance above the total."""
+        """Errors: a bending compliance above the total compliance."""
         if np.any(np.real(self.shear_compliance) <= 0.0):
             what = "too large for a block of these dimensions and axial stiffness: its bending compliance exceeds the total"
             yield Finding("stiffness", what, "Check length, width and both stiffnesses")

@@ -1,4 +1,4 @@
-"""Springs without a drawn shape, by stiffness (also negative): coil springs, magnets, cables, membranes."""
+"""Springs without a drawn shape, specified by stiffness (also negative): coil springs, magnets, cables, membranes."""
 
 from __future__ import annotations
 
@@ -33,14 +33,15 @@ _About: TypeAlias = Annotated[Number, ROTATIONAL_STIFFNESS]
 
 @dataclass(frozen=True, eq=False)
 class Spring(Elastic):
-    """Spring along x, without a drawn shape, with specified stiffness; zero in other degrees of freedom.
+    """Spring along x without a drawn shape, with a specified stiffness.
 
-    One of: `stiffness` along its axis, `diagonal` (x, y, z, rx, ry, rz), `matrix`, a symmetric 6x6 about its centre. Any of them may be
-    negative (magnets); only the whole stage must be stable. `free` are the free degrees of freedom of the ideal model (default: all).
+    Specify exactly one of `stiffness` along x, `diagonal` (x, y, z, rx, ry, rz), and `matrix`, a symmetric 6x6 about the centre. With
+    `stiffness`, the other degrees of freedom have zero stiffness. The stiffness may be negative (magnets); only the whole stage must be
+    stable. `free` are the free degrees of freedom of the ideal model (default: all).
 
-    With a `length` it pivots at both ends, so that its force stiffens it across its axis by F / L. Without, it acts in one point. `preload`
-    is its initial force that pushes the ends apart (negative: pulls), or with `free_length`, k (free_length - length). It has no stroke.
-    `mass` is uniform over its length.
+    With a `length` L, the spring pivots at both ends: a tension F adds the transverse stiffness F / L. Without a length, it acts at one
+    point. `preload` is the initial force that pushes the ends apart (negative: pulls). With `free_length`, the preload is k (free_length -
+    length). `mass` is uniform over the length.
     """
 
     kind: ClassVar[str] = "spring"
@@ -57,7 +58,7 @@ class Spring(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Free degrees of freedom."""
+        """Ideal degrees of freedom: the free ones."""
         return self.free
 
     @property
@@ -79,28 +80,28 @@ class Spring(Elastic):
 
     @property
     def mirrored(self) -> Spring:
-        """Mirror image of its stiffness across y."""
+        """Mirror image across y: the spring with mirrored stiffness."""
         return self if self.matrix is None else replace(self, matrix=mirror_rows(self.matrix))
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Stiffness, and mass along its length."""
+        """Return the stiffness, and the mass distributed along the length."""
         return Stated(self.whole, line_mass(self.mass, 0.0 if self.length is None else self.length))
 
     @property
     def push(self) -> Number | None:
-        """Preload, as specified or by its free length."""
+        """Preload [N], as specified or computed from the free length."""
         if self.free_length is None or self.length is None:
             return self.preload
         return self.whole[..., 0, 0] * (self.free_length - self.length)
 
     @property
     def strut(self) -> Number | None:
-        """Length."""
+        """Length between the pivots [m]."""
         return self.length
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors: stiffness not specified exactly once or not symmetric, preload without a length."""
+        """Errors: a stiffness not specified exactly once, an asymmetric matrix, or a preload without a length."""
         stated = [name for name in ("stiffness", "diagonal", "matrix") if getattr(self, name) is not None]
         if len(stated) != 1:
             what = f"both {' and '.join(stated)} specified" if stated else "stiffness missing"

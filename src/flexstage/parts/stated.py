@@ -20,8 +20,8 @@ _QUARTER: Array = np.kron(np.eye(2), np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]
 class Stated:
     """Specified matrices of a part without a shape, about its centre and in its frame, SI.
 
-    `stiffness` (..., 6, 6) of the second end against the first, `mass` (..., 12, 12) over the twists of both, optional viscous `damping`
-    (..., 6, 6). Data only, without a theory of elastic parts.
+    `stiffness` (..., 6, 6) and the optional viscous `damping` (..., 6, 6) are for motion of the second end against the first. `mass` (...,
+    12, 12) is for the twists of both ends.
     """
 
     stiffness: Array
@@ -30,7 +30,7 @@ class Stated:
 
 
 def point_masses(first: Number, second: Number) -> Array:
-    """Return point masses (..., 12, 12) on the two bodies at a part's centre [kg], without rotary inertia.
+    """Return the mass matrix (..., 12, 12) of point masses [kg] on the two bodies, at a part's centre, without rotary inertia.
 
     >>> point_masses(1.0, 2.0).diagonal().tolist()
     [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 0.0, 0.0, 0.0]
@@ -41,7 +41,7 @@ def point_masses(first: Number, second: Number) -> Array:
 
 
 def halves(inertia: Array) -> Array:
-    """Distribute a rigid solid's 6x6 (..., 6, 6) equally to both ends (..., 12, 12).
+    """Distribute the inertia (..., 6, 6) of a rigid solid equally to both ends (..., 12, 12).
 
     >>> halves(4.0 * np.eye(6)).diagonal()[5:7].tolist()
     [2.0, 2.0]
@@ -53,8 +53,8 @@ def halves(inertia: Array) -> Array:
 def line_mass(mass: Number, length: Number) -> Array:
     """Compute the consistent mass (..., 12, 12) of a line of uniform mass between its ends, at +-L/2 from the centre.
 
-    Linear interpolation v = (1 - s) v_a + s v_b: m/3 at each end, m/6 coupling. A spring fixed at one end thus adds a third of its mass to
-    the other.
+    Linear interpolation v = (1 - s) v_a + s v_b gives m/3 at each end and m/6 coupling. A spring fixed at one end thus adds a third of its
+    mass to its other end.
 
     >>> line_mass(6.0, 0.0)[0, [0, 6]].tolist()
     [2.0, 1.0]
@@ -75,7 +75,7 @@ def _end(arm: Array) -> Array:
 
 
 def is_even(freedoms: tuple[Freedom, ...]) -> bool:
-    """Return whether degrees of freedom along and about y equal those of z.
+    """Return whether the degrees of freedom along and about y equal those along and about z.
 
     >>> is_even((Freedom.RZ,)), is_even((Freedom.RY, Freedom.RZ))
     (False, True)
@@ -94,7 +94,7 @@ def turns_into_itself(matrix: Array) -> bool:
 
 
 def mirror_rows(rows: tuple[tuple[Number, ...], ...]) -> tuple[tuple[Number, ...], ...]:
-    """Return the mirror image of a 6x6 across y: entries that couple y, rx or rz with other motions are reversed.
+    """Return the mirror image of a 6x6 across y: entries that couple y, rx or rz with x, z or ry change sign.
 
     >>> mirror_rows(tuple(map(tuple, np.ones((6, 6)).tolist())))[0]
     (1.0, -1.0, 1.0, -1.0, 1.0, -1.0)
@@ -104,7 +104,7 @@ def mirror_rows(rows: tuple[tuple[Number, ...], ...]) -> tuple[tuple[Number, ...
 
 
 def symmetry_findings(where: str, matrix: Array) -> Iterator[Finding]:
-    """Return an error if a 6x6 (..., 6, 6) is not symmetric, with entries of the first design.
+    """Return an error if a 6x6 (..., 6, 6) is not symmetric; the message contains entries of the first design.
 
     >>> [each.what for each in symmetry_findings("parts.a.matrix", np.eye(6) + np.eye(6, k=1))]
     ['not symmetric: 1 and 0 SI']
@@ -122,7 +122,7 @@ def symmetry_findings(where: str, matrix: Array) -> Iterator[Finding]:
 
 
 def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
-    """Return errors of a 6x6 that is not symmetric, or not positive definite.
+    """Return an error if a 6x6 is not symmetric, or not positive definite.
 
     >>> [each.what[:28] for each in definite_findings("matrix", np.diag([1.0, 1.0, 1.0, 1.0, 1.0, -1.0]))]
     ['not positive definite: the l']
@@ -138,7 +138,9 @@ def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
 
 
 def negative_part(matrix: Array, lengths: Array) -> Array:
-    """Return the negative part of a stiffness (..., 6, 6) as a positive semidefinite matrix (first design), scaled by `lengths` (6,).
+    """Return the negative part of a stiffness (..., 6, 6) as a positive semidefinite matrix (6, 6), of the first design.
+
+    `lengths` (6,) scale the coordinates.
 
     >>> negative_part(np.diag([-2.0, 1.0, 0.0, 0.0, 0.0, 0.0]), np.ones(6)).diagonal()[:2].tolist()
     [2.0, 0.0]

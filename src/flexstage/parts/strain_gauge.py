@@ -13,10 +13,10 @@ from flexstage.parts.gauge import Instrument
 
 @dataclass(frozen=True, eq=False)
 class StrainGauge(Instrument):
-    """Strain gauge on a link: elongation between its faces, including the free stroke of a stack.
+    """Strain gauge on a link: elongation between the link's faces, including the free stroke of a stack.
 
-    Its numbers are elongations, not strains: measuring `range` (total span) and `resolution` (quantisation step) [m], white
-    `noise_density` [m/Hz^0.5], `bandwidth` [Hz].
+    Its numbers are elongations, not strains: measuring `range` (total span) and `resolution` (quantisation step) [m], white `noise_density`
+    [m/Hz^0.5]; `bandwidth` is in Hz.
     """
 
     kind: ClassVar[str] = "strain"

@@ -1,4 +1,4 @@
-"""Superelements: parts with stiffness and mass matrices of a finite-element code, and any number of ports."""
+"""Superelements: parts with stiffness and mass matrices from a finite-element code, and any number of ports."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class FileUnits(Enum):
 class Port(Description):
     """Port (interface frame) of a superelement, in the part's axes: origin `at`, x along `along`, z along `up` (perpendicular to it).
 
-    Its six coordinates (x, y, z, rx, ry, rz) are its twist at its origin, in its axes. They are in the file's matrices from `row`, counted
-    from 1.
+    The six coordinates (x, y, z, rx, ry, rz) of a port are its twist at its origin, in its axes. In the file's matrices, they begin at
+    `row`, counted from 1.
     """
 
     row: Annotated[int, Bound(1, 2**31)]
@@ -49,16 +49,18 @@ class MatrixNames(Description):
 class Superelement(Elastic):
     """Superelement: stiffness K and mass M over the twists of its `ports` and internal coordinates, from files in `units`.
 
-    Either `file` is a MAT or NPZ file of both (named in `arrays`), or `stiffness_file` and `mass_file` are Matrix Market files. A viscous
-    damping matrix D is optional (`arrays`, or `damping_file`). All other coordinates are internal: nodal degrees of freedom or modal
-    amplitudes. `sha256` is the digest of the bytes of the file, or of all files in order (stiffness, mass, damping). It identifies the
-    version and represents the matrices in caches. A relative path is from the design file.
+    Either `file` is a MAT or NPZ file with both matrices (named in `arrays`), or `stiffness_file` and `mass_file` are Matrix Market files.
+    A viscous damping matrix D is optional (`arrays`, or `damping_file`). Coordinates that do not belong to a port are internal: nodal
+    degrees of freedom or modal amplitudes. `sha256` is the digest of the bytes of the file, or of all files in order (stiffness, mass,
+    damping). It identifies the version, and caches use it instead of the matrices. A relative path is relative to the design file.
 
-    Internal coordinates are reduced to fixed-interface modes (Craig and Bampton, AIAA J. 6, 1313, 1968), which preserves statics and total
-    mass: `modes` of them (0: Guyan condensation, AIAA J. 3, 380, 1965), those `below` a frequency, or all. `mass`, `centre` of mass and
-    `inertia` about it, in the part's axes, are for a check against the matrices. `loss_factor` is of its stiffness. `reflected`: the mirror
-    image of the file's part across its x-z plane, with ports, mass, centre and inertia. Linear: small motions, no buckling, unknown thermal
-    expansion.
+    The internal coordinates are reduced to fixed-interface modes (Craig and Bampton, AIAA J. 6, 1313, 1968). This reduction preserves
+    statics and total mass. Either a number of `modes` is kept (0: Guyan condensation, AIAA J. 3, 380, 1965), or the modes `below` a
+    frequency, or all modes.
+
+    `mass`, `centre` of mass and `inertia` about it, in the part's axes, are compared with the matrices. `loss_factor` is the loss factor of
+    the stiffness. `reflected`: use the mirror image of the file's part across its x-z plane, with ports, mass, centre and inertia. The
+    model is linear: small motions, no buckling, unknown thermal expansion.
     """
 
     kind: ClassVar[str] = "superelement"
@@ -81,12 +83,12 @@ class Superelement(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """None, as for a rigid body; a link may specify others."""
+        """Ideal degrees of freedom: none, as for a rigid body; a link may specify others."""
         return ()
 
     @property
     def is_axisymmetric(self) -> bool:
-        """False: its axes belong to its file."""
+        """False: its file determines its axes."""
         return False
 
     @property
@@ -99,7 +101,7 @@ class Superelement(Elastic):
 
     @property
     def files(self) -> tuple[str, ...]:
-        """Its files, in the order of the digest."""
+        """Names of its files, in the order of the digest."""
         return (self.file,) if self.file else tuple(each for each in (self.stiffness_file, self.mass_file, self.damping_file) if each)
 
     @property

@@ -1,9 +1,11 @@
 """Mass of the union of a body's outlines: common volumes count once.
 
-The union of solids follows by inclusion and exclusion from their intersections, each solid being its outer form minus its hole. An
-intersection is computed for prisms along one axis: blocks along any edge, extrusions along their height, cylinders along their axis. It is
-also computed for balls within these sections. Its section is a polygon clipped by half-planes, its moments are line integrals (Green's
-theorem): closed formulas, valid for batches and complex steps. Other overlaps are refused.
+The mass of the union follows from the intersections of the solids by inclusion and exclusion. Each solid is its outer form minus its hole.
+An intersection can be computed for prisms along one common axis: blocks along any edge, extrusions along their height, cylinders along
+their axis. It can also be computed for balls within the section of a prism.
+
+The section of an intersection is a polygon clipped by half-planes. Its moments are line integrals (Green's theorem): closed formulas, valid
+for batches and complex steps. Other overlaps raise an error.
 """
 
 from __future__ import annotations
@@ -36,7 +38,7 @@ _SQUARE = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """Solid of a body: name, density [kg/m^3], and drawing frame."""
+    """Solid of a body: name, solid, density [kg/m^3], and frame in which it is drawn."""
 
     name: str
     solid: Solid
@@ -45,15 +47,15 @@ class Drawn:
 
     @cached_property
     def placed(self) -> Frame:
-        """Frame of the solid."""
+        """Frame of the solid, relative to the outer frame of the drawing."""
         return self.solid.frame.within(self.frame)
 
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """Volume (...) [m^3], its first moment (..., 3) [m^4] and second moment (..., 3, 3), the integral of r r^T [m^5].
+    """Volume (...) [m^3] of a region, first moment (..., 3) [m^4] and second moment (..., 3, 3), the integral of r r^T [m^5].
 
-    Of a region in a plane: area (...) [m^2], (..., 2) and (..., 2, 2).
+    For a plane region: area (...) [m^2], first moment (..., 2) and second moment (..., 2, 2).
     """
 
     volume: Array
@@ -64,18 +66,18 @@ class Moments:
         return Moments(self.volume + other.volume, self.first + other.first, self.second + other.second)
 
     def times(self, weight: Number) -> Moments:
-        """The moments times a factor."""
+        """Return the moments multiplied by a factor."""
         weight = np.asarray(weight)
         return Moments(weight * self.volume, weight[..., None] * self.first, weight[..., None, None] * self.second)
 
     def shift(self, by: Array) -> Moments:
-        """Moments of the region translated by a vector (..., 3), or (..., 2)."""
+        """Return the moments of the region translated by a vector (..., 3) or (..., 2)."""
         cross = self.first[..., :, None] * by[..., None, :]
         moved = self.second + cross + np.swapaxes(cross, -1, -2) + self.volume[..., None, None] * by[..., :, None] * by[..., None, :]
         return Moments(self.volume, self.first + self.volume[..., None] * by, moved)
 
     def within(self, frame: Frame) -> Moments:
-        """Moments in the parent frame of `frame`."""
+        """Return the moments in the frame in which `frame` is described."""
         turn = frame.rotation
         second = turn @ self.second @ np.swapaxes(turn, -1, -2)
         return Moments(self.volume, (turn @ self.first[..., None])[..., 0], second).shift(frame.position)
@@ -97,10 +99,10 @@ class _Prism:
 
 
 def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
-    """Compute densities and moments to add for common volumes of a body's solids (most are negative).
+    """Yield densities and moments that correct the sum over a body's solids for their common volumes (most are negative).
 
-    Subtracted solids remove their intersection with others of their material: P minus H is the union of both minus H. Raises `DesignError`
-    if the common volume cannot be computed: of several materials, or of outlines other than prisms along one axis.
+    A subtracted solid removes its intersection with other solids of its material: P minus H is the union of P and H, minus H. Raises
+    `DesignError` if a common volume cannot be computed: of several materials, or of outlines other than prisms along one axis.
 
     >>> from flexstage.parts.body import Block
     >>> from flexstage.spatial.frame import identity

@@ -39,21 +39,21 @@ DUTY = Bound(low=0.0, high=1.0, open_low=True)
 
 
 class Supply(Enum):
-    """Amplifier output: current, or voltage with the back-EMF k_f v of the coil's motion."""
+    """Drive of the coil: a current amplifier, or a voltage amplifier with the back-EMF k_f v of the coil's motion."""
 
     CURRENT = "current"
     VOLTAGE = "voltage"
 
 
 class CoilSide(Enum):
-    """First or second body of a link, in the order of its `joins`."""
+    """Body of a link that has the coil: the first or the second of its `joins`."""
 
     FIRST = "first"
     SECOND = "second"
 
 
 class Coil(ThrustActuator):
-    """Coil in the field of a magnet, driven by a current: limits, heat and damping, along or about x."""
+    """Current-driven coil in the field of a magnet, along or about x: limits, heat and damping."""
 
     input = CURRENT
     peak_current: Number | None
@@ -78,7 +78,7 @@ class Coil(ThrustActuator):
 
     @property
     def viscous_damping(self) -> Number:
-        """Damping along or about x, with the back-EMF term k_f^2 / R for a voltage drive [N s/m, N m s/rad].
+        """Damping along or about x [N s/m, N m s/rad]; a voltage drive adds the back-EMF term k_f^2 / R.
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, damping=1.0, drive=Supply.VOLTAGE).viscous_damping
         21.0
@@ -88,7 +88,7 @@ class Coil(ThrustActuator):
         return self.damping + self.thrust**2 / self.resistance
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Magnets' stiffness and damping along or about x, masses of both sides."""
+        """Return the magnets' stiffness and the damping along or about x, and the masses of coil and magnet."""
         sides = (self.mass, self.magnet_mass)
         mass = point_masses(*(sides if self.coil is CoilSide.FIRST else sides[::-1]))
         own = np.diag(np.eye(6)[self.axis])
@@ -97,7 +97,7 @@ class Coil(ThrustActuator):
 
     @property
     def limits(self) -> Iterator[ForceLimit]:
-        """Current limits by name: continuous, and in short use."""
+        """Current limits, each for continuous and for short use."""
         yield ForceLimit("peak current", self.peak_current, self.peak_current)
         rested = self.duty**-0.5
         if self.continuous_current is not None:
@@ -112,7 +112,7 @@ class Coil(ThrustActuator):
 
     @property
     def cutoff(self) -> Number | None:
-        """R / (2 pi L) of a voltage drive [Hz]; none for a current drive.
+        """Cut-off frequency R / (2 pi L) of a voltage drive [Hz]; None for a current drive.
 
         >>> round(VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, drive=Supply.VOLTAGE).cutoff, 1)
         954.9
@@ -122,7 +122,7 @@ class Coil(ThrustActuator):
         return self.resistance / (2.0 * np.pi * self.inductance)
 
     def slew(self, limit: Number) -> Number | None:
-        """Mean slew rate (V - R i) / L from zero current to a `limit` [A/s], without back-EMF.
+        """Return the mean slew rate (V - R i) / L from zero current to a `limit` i [A/s], without back-EMF.
 
         >>> VoiceCoil(force_constant=10.0, resistance=6.0, inductance=1e-3, voltage=24.0).slew(2.0)
         18000.0
@@ -132,7 +132,7 @@ class Coil(ThrustActuator):
         return (self.voltage - 0.5 * (self.resistance or 0.0) * limit) / self.inductance
 
     def in_series(self, count: int) -> Self:
-        """Identical coils in series: resistance, inductance and heat add up.
+        """Return the coil equivalent to `count` identical coils in series: resistance, inductance and heat add up.
 
         >>> pair = VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0, temperature_rise=80.0).in_series(2)
         >>> pair.loss(1.0), pair.heat_current
@@ -143,11 +143,11 @@ class Coil(ThrustActuator):
         return replace(self, **total, thermal_resistance=thermal)  # type: ignore[type-var]
 
     def loss(self, rms: Number) -> Number | None:
-        """i^2 R [W]; None without a resistance."""
+        """Return the dissipated power i^2 R [W]; None without a resistance."""
         return None if self.resistance is None else rms**2 * self.resistance
 
     def warming(self, rms: Number) -> Number | None:
-        """i^2 R times the thermal resistance [K]; None if a number is missing.
+        """Return the temperature rise [K], i^2 R times the thermal resistance; None if a number is missing.
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0).warming(2.0)
         80.0
@@ -156,7 +156,7 @@ class Coil(ThrustActuator):
 
     @property
     def heat_current(self) -> Number | None:
-        """Direct current at the limit of temperature rise by i^2 R [A]; None if a number is missing.
+        """Direct current [A] whose heat i^2 R reaches the limit of temperature rise; None if a number is missing.
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0, temperature_rise=80.0).heat_current
         2.0
@@ -167,13 +167,13 @@ class Coil(ThrustActuator):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order: continuous current at most equal to peak current."""
+        """Order relation: the continuous current does not exceed the peak current."""
         advice = "Exchange them"
         yield Order("continuous_current", self.continuous_current, self.peak_current, "the peak current", advice, CURRENT, strict=False)
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors: voltage drive or voltage limit without a resistance."""
+        """Errors: a voltage drive or a voltage limit without a resistance."""
         for name, asked in (("drive", self.drive is Supply.VOLTAGE), ("voltage", self.voltage is not None)):
             if asked and self.resistance is None:
                 what = "resistance missing, required for the current of a voltage"
@@ -184,11 +184,13 @@ class Coil(ThrustActuator):
 class VoiceCoil(Coil):
     """Voice coil along x: force = `force_constant` x current between two bodies, positive pushing them apart.
 
-    `mass` is of the coil, on the body named by `coil`, `magnet_mass` of the magnet, on the other body. Both are at the link's centre,
-    without rotary inertia. `stiffness` is of the magnets along x (negative: unstable about the middle), `damping` of the coil (eddy
-    currents of its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the whole range of motion along x of
-    constant `force_constant`, half to either side. `temperature_rise` is the coil's limit, through `thermal_resistance` to its
-    surroundings; `duty` is the duty cycle of the current in short use. The input is the static current: V/R for a voltage drive.
+    `mass` is the coil's mass, on the body selected by `coil`; `magnet_mass` is the magnet's mass, on the other body. Both are point masses
+    at the link's centre. `stiffness` is the magnets' stiffness along x (negative: unstable about the middle). `damping` is the coil's
+    damping (eddy currents in its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the whole range of
+    motion along x with a constant `force_constant`, half to either side.
+
+    `temperature_rise` is the coil's limit relative to its surroundings, and `thermal_resistance` the thermal resistance between them.
+    `duty` is the duty cycle of the current in short use. The input is the static current: V/R for a voltage drive.
 
     Not modelled: change of R with temperature, saturation, and the current lag L/R under a voltage drive, significant above R / (2 pi L).
     """

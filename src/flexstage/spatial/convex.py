@@ -18,14 +18,14 @@ _PARALLEL = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Convex:
-    """A convex polytope: its corners `points` (n, 3) [m], the directions of its face `normals` (k, 3) and of its `edges` (m, 3), unit."""
+    """Convex polytope: corners `points` (n, 3) [m], unit vectors normal to its faces, `normals` (k, 3), and along its `edges` (m, 3)."""
 
     points: Array
     normals: Array
     edges: Array
 
     def within(self, frame: Frame) -> Convex:
-        """Return the same polytope in the outer frame of `frame`."""
+        """Return this polytope in the frame in which `frame` is described."""
         turn = frame.rotation.T
         return Convex(frame.position + self.points @ turn, self.normals @ turn, self.edges @ turn)
 
@@ -47,19 +47,21 @@ def cuboid(low: Sequence[float], high: Sequence[float]) -> Convex:
 
 @dataclass(frozen=True)
 class Boxes:
-    """Boxes by `turns` (..., 3, 3), rotations whose columns are their axes, `centres` and half sizes `halves` (..., 3) [m]."""
+    """Boxes: rotation matrices `turns` (..., 3, 3) with the box axes as columns, `centres` and half sizes `halves` (..., 3) [m]."""
 
     turns: Array
     centres: Array
     halves: Array
 
     def pick(self, which: Array) -> Boxes:
-        """Select boxes by index, in that order."""
+        """Return the boxes at the indices `which`, in that order."""
         return Boxes(self.turns[which], self.centres[which], self.halves[which])
 
 
 def frustum(low: float, high: float, one: Array, other: Array) -> Convex:
-    """Build the hull of two polygons (n, 2) in the planes x = `here` and x = `there`, counter-clockwise in (y, z) with parallel sides.
+    """Build the convex hull of two polygons: `one` (n, 2) in the plane x = `low`, `other` (n, 2) in the plane x = `high`.
+
+    The corners are (y, z), counter-clockwise; corresponding sides are parallel.
 
     >>> square = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
     >>> frustum(0.0, 2.0, square, square).points.max(axis=0).tolist()
@@ -82,8 +84,8 @@ def _unit(vectors: Array) -> Array:
 def separation(first: Convex, second: Convex) -> tuple[float, Array, float]:
     """Return the largest gap of two polytopes over all directions [m], its direction, and the second largest gap.
 
-    The unit direction is from the first to the second; a negative gap is the penetration depth. Exact for polytopes that intersect, a lower
-    bound of the distance otherwise.
+    The unit direction is from the first to the second; a negative gap is the penetration depth. The gap is exact for polytopes that
+    intersect; for others it is a lower bound of the distance.
 
     >>> gap, direction, other = separation(cuboid((0, 0, 0), (1, 1, 1)), cuboid((0.9, 0.2, 0.0), (2, 1, 1)))
     >>> round(gap, 9), direction.tolist(), round(other, 9)
@@ -103,7 +105,7 @@ def separation(first: Convex, second: Convex) -> tuple[float, Array, float]:
 
 
 def polytope_corners(normals: Array, offsets: Array) -> Array:
-    """Compute the corners (n, 3) of the polytope of all r with `normals` (k, 3) r <= `offsets` (k,); empty if infeasible.
+    """Compute the corners (n, 3) of the polytope of all r with `normals` (k, 3) . r <= `offsets` (k,); empty if infeasible.
 
     >>> len(polytope_corners(np.concatenate([np.eye(3), -np.eye(3)]), np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])))
     8
@@ -116,11 +118,10 @@ def polytope_corners(normals: Array, offsets: Array) -> Array:
 
 
 def distance(first: Array, second: Array) -> float:
-    """Compute the distance of the hulls of two sets of points (n, 3) [m], 0 if they intersect.
+    """Compute the distance [m] between the convex hulls of two point sets (n, 3); 0 if the hulls intersect.
 
-    The separating plane w . r = c has w . (b - a) >= 1 and the shortest w: the distance is 1 / |w|.
-
-    This is a least-distance problem, solved by non-negative least squares (Lawson and Hanson 1974, chapter 23).
+    Among the planes w . r = c with w . (b - a) >= 1, the shortest w gives the distance 1 / |w|. This least-distance problem is solved by
+    non-negative least squares (Lawson and Hanson 1974, chapter 23).
 
     >>> round(distance(cuboid((0, 0, 0), (1, 1, 1)).points, cuboid((2, 2, 0), (3, 3, 1)).points), 9)
     1.414213562
@@ -140,7 +141,9 @@ def distance(first: Array, second: Array) -> float:
 
 
 def separations(ones: Boxes, others: Boxes) -> Array:
-    """Compute lower bounds (k,) [m] of the distances of k boxes from k others; negative if they intersect. Shared turns are (1, 3, 3).
+    """Compute lower bounds (k,) [m] of the distances between k boxes and k other boxes, pair by pair; negative if they intersect.
+
+    A rotation matrix common to all boxes has shape (1, 3, 3).
 
     >>> box = Boxes(np.eye(3)[None], np.zeros((1, 3)), np.full((1, 3), 0.5))
     >>> other = Boxes(np.eye(3)[None], np.array([[2.0, 0.0, 0.0]]), np.full((1, 3), 0.5))

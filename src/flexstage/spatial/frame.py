@@ -1,7 +1,7 @@
 """Frames, twists and wrenches: component order, reference point and 6x6 transport are defined here only.
 
 Twists and wrenches are 6-vectors (x, y, z, rx, ry, rz): translations then rotations, forces then moments, at a named reference point.
-Small motions. All arrays may carry leading batch axes and may be complex.
+Motions are small. All arrays may have leading batch axes and may be complex.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ TWIST_UNITS = ("m", "m", "m", "rad", "rad", "rad")
 WRENCH_UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
 MOTION = UnitOf(lambda name: TWIST_UNITS[COMPONENTS.index(name)])
-"""Annotation of twists by coordinate: x in m, rz in rad."""
+"""Annotation of twists, with the unit of each coordinate: x in m, rz in rad."""
 
 WRENCH = UnitOf(lambda name: WRENCH_UNITS[COMPONENTS.index(name)])
-"""Annotates loads by the coordinate they work along: x in N, rz in N m."""
+"""Annotation of loads, with the unit of each coordinate: force x in N, moment rz in N m."""
 
 _UNIT = np.eye(6)
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """A frame relative to another: `rotation` (..., 3, 3) has its axes as columns, `position` (..., 3) is its origin.
+    """Frame relative to an outer frame: `rotation` (..., 3, 3) has its axes as columns, `position` (..., 3) [m] is its origin.
 
-    `mirrored`: left-handed axes, as of a frame seen in a mirror. Points, directions and inertias transform as usual; twists do not, so that
-    their frame is made `right_handed` first.
+    `mirrored`: the axes are left-handed, as of a frame seen in a mirror. Points, directions and inertias transform as usual. Twists do not:
+    convert their frame with `right_handed` first.
     """
 
     rotation: Array
@@ -40,7 +40,7 @@ class Frame:
     mirrored: bool = False
 
     def within(self, outer: Frame) -> Frame:
-        """Return the same frame in the outer frame of `outer`.
+        """Return this frame relative to the frame in which `outer` is described.
 
         >>> inner = Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))
         >>> inner.within(Frame(turn_z(np.pi / 2), np.zeros(3))).position.round(12).tolist()
@@ -50,7 +50,7 @@ class Frame:
 
     @property
     def right_handed(self) -> Frame:
-        """Return the same frame, with the y axis reversed if it is mirrored.
+        """This frame if it is right-handed; a mirrored frame with its y axis reversed.
 
         >>> reflection(0).right_handed.rotation.diagonal().tolist()
         [-1.0, -1.0, 1.0]
@@ -76,7 +76,7 @@ def identity() -> Frame:
 
 
 def reflection(axis: int) -> Frame:
-    """Return the left-handed frame of the mirror plane through the origin across an axis (0, 1, 2).
+    """Return the left-handed frame that reflects the given axis (0, 1, 2) in the plane through the origin.
 
     >>> reflection(1).point(np.array([1.0, 2.0, 3.0])).tolist()
     [1.0, -2.0, 3.0]
@@ -114,7 +114,9 @@ def transport(arm: Array) -> Array:
 
 
 def mirror(axis: int) -> Array:
-    """Build the 6x6 that mirrors a twist across an axis (0, 1, 2) at the origin: v reversed along it, w reversed across it.
+    """Build the 6x6 that mirrors a twist in the plane through the origin normal to an axis (0, 1, 2).
+
+    It reverses the translation along the axis and the rotations about the two other axes.
 
     >>> mirror(0).diagonal().tolist()
     [-1.0, 1.0, 1.0, 1.0, -1.0, -1.0]
@@ -124,7 +126,7 @@ def mirror(axis: int) -> Array:
 
 
 def spatial_rotation(rotation: Array) -> Array:
-    """Build the 6x6 diag(R, R) that rotates twists and wrenches from a frame of axes R to the outer axes.
+    """Build the 6x6 diag(R, R) that rotates twists and wrenches from a frame with the axes R (columns) to the outer axes.
 
     >>> spatial_rotation(np.eye(3)).shape
     (6, 6)
@@ -136,7 +138,7 @@ def spatial_rotation(rotation: Array) -> Array:
 
 
 def twist_transform(frame: Frame, reference: Array) -> Array:
-    """Build the 6x6 from a body's twist at `reference` (outer axes) to the twist at the frame's origin, in the frame's axes.
+    """Build the 6x6 that transforms a body's twist at the point `reference`, in outer axes, to the frame's origin and axes.
 
     >>> twist_transform(identity(), np.zeros(3)).tolist() == np.eye(6).tolist()
     True
@@ -151,7 +153,7 @@ def twist_transform(frame: Frame, reference: Array) -> Array:
 
 
 def turn_z(angle: Number) -> Array:
-    """Build the rotation matrix by `angle` [rad] about z.
+    """Build the rotation matrix about z by `angle` [rad].
 
     >>> turn_z(0.0).tolist()
     [[1.0, -0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
@@ -162,7 +164,7 @@ def turn_z(angle: Number) -> Array:
 
 
 def normalise(vector: Array) -> Array:
-    """Normalise a vector to unit length (complex-analytic: no conjugates).
+    """Normalise a vector (..., 3) to unit length, without conjugation of complex numbers, so that complex steps remain valid.
 
     >>> normalise(np.array([3.0, 0.0, 4.0])).tolist()
     [0.6, 0.0, 0.8]
@@ -171,9 +173,9 @@ def normalise(vector: Array) -> Array:
 
 
 def axes(along: Vector | Array, up: Vector | Array | None = None) -> Array:
-    """Build the rotation matrix with x axis `along` and z axis `up`, made unit and exactly perpendicular to x.
+    """Build the rotation matrix with the x axis `along` and the z axis `up`. Both become unit vectors; z is made perpendicular to x.
 
-    Without `up`: the stage's z axis made perpendicular, or the y axis if `along` is within 5 degrees of z.
+    Without `up`, z is the stage's z axis made perpendicular to x, or its y axis if `along` is within 5 degrees of z.
 
     >>> axes((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)).tolist()
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]

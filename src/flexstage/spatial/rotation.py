@@ -34,9 +34,7 @@ def exponential(vector: Array) -> Array:
 
 
 def logarithm(rotation: Array) -> Array:
-    """Compute the rotation vector (..., 3) [rad] of a rotation matrix (..., 3, 3), for angles below pi (3.1 is safe).
-
-    With s = sin t and c = cos t from the antisymmetric part and the trace, t = 2 atan(s / (1 + c)).
+    """Compute the rotation vector (..., 3) [rad] of a rotation matrix (..., 3, 3), for angles below pi (accurate up to 3.1).
 
     >>> logarithm(exponential(np.array([0.1, -0.2, 0.3]))).round(12).tolist()
     [0.1, -0.2, 0.3]
@@ -118,10 +116,10 @@ GAUSS_THREE: Array = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])
 
 
 def magnus(step: Array, first: Array, middle: Array, last: Array) -> Array:
-    """Compute the rotation vector (..., 3) of the step of R' = R [k]x over the length `step` (...), from k (..., 3) at three Gauss points.
+    """Compute the rotation vector W (..., 3) [rad] of one integration step of R' = R [k]x: R becomes R exp(W).
 
-    Order 6 (Blanes, Casas, Oteo and Ros, Physics Reports 470, 2009, 5.2; their Y' = A Y, so that all brackets change sign): R becomes R
-    exp(W).
+    `step` (...) is the step length; k (..., 3) is given at the three Gauss points `first`, `middle`, `last`. Order 6 (Blanes, Casas, Oteo
+    and Ros, Physics Reports 470, 2009, 5.2; for their Y' = A Y, the signs of all brackets are opposite).
 
     >>> magnus(np.array(2.0), *np.tile([0.1, 0.0, 0.3], (3, 1))).round(12).tolist()
     [0.2, 0.0, 0.6]

@@ -1,4 +1,4 @@
-"""Error budget of a stage, composed from its results."""
+"""Computation of the error budget of a stage from its other results."""
 
 from __future__ import annotations
 
@@ -46,18 +46,24 @@ def budget(
 ) -> ErrorBudget:
     """Compute the error budget at a platform point for a box of commands (half widths [m, rad]) and a temperature change [K].
 
-    Lost motion and drift (strokes fixed) are by the lumped model, of the loaded stage if its permanent load is significant. Default
-    `drifted`: the ground of the description (`ground_of`). A temperature change of `None` means 1 K if drift is known. With 0 or `None`,
-    missing expansion coefficients omit drift, with a note in `reasons`.
+    Lost motion and drift (strokes fixed) are computed by the lumped model, of the loaded stage if its permanent load is significant. By
+    default, drift is for the ground material of the description (`ground_of`). A temperature change of `None` means 1 K if drift is known.
+    With 0 or `None`, drift is omitted if expansion coefficients are missing, with a note in `reasons`.
 
-    Lost motion J diag(Lambda) R_a xi, crosstalk J (Lambda - diag) R_a xi with the motion outside the ideal ones. With the gains a = (R_a
-    V^+ T)^-1 R_a xi, only the residual T a - V xi remains, as crosstalk. Linear map: finite minus linear kinematics at the corners. Noise:
-    `coverage` standard deviations. Quantisation: half a step of every gauge with the worst signs. Stepping actuators: half a step of each
-    in the same direction, in a separate column (uniformly distributed, its standard deviation is step/sqrt(12)). Largest absolute values.
+    All errors are largest absolute values:
 
-    Of a force-driven stage in open loop: forces u = (V^+ C)^+ xi by the static gain C of the elastic model, in the place of lost motion,
-    crosstalk and linear map the parasitic motion C u - V xi. `noise` are one-sided densities of actuator inputs (current, force, stroke) or
-    wrenches, and of the ground's motion; rms values over the `band` [Hz] (absent: that of `response`), of the floor against the ground.
+    - lost motion: J diag(Lambda) R_a xi;
+    - crosstalk: J (Lambda - diag) R_a xi, with the motion outside the ideal motions;
+    - with the gains a = (R_a V^+ T)^-1 R_a xi: only the residual T a - V xi, as crosstalk;
+    - linear map: finite minus linear kinematics at the corners;
+    - gauge noise: `coverage` standard deviations;
+    - quantisation: half a step of every gauge with the worst signs;
+    - stepping actuators: half a step of each in the same direction (standard deviation: step/sqrt(12)).
+
+    For a force-driven stage in open loop, the forces are u = (V^+ C)^+ xi with the static gain C of the elastic model. The parasitic motion
+    C u - V xi replaces lost motion, crosstalk and linear map. `noise` are one-sided densities of actuator inputs (current, force, stroke)
+    or wrenches, and of ground motion. Their rms values are over the `band` [Hz] (default: the band of `response`); for ground motion,
+    relative to the ground.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = budget(double_triangle(), {"x": 50e-6}, temperature=0.1)

@@ -26,7 +26,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS, WRENCH_UNIT
 
 @dataclass(frozen=True)
 class KeyFigure:
-    """Key figure: name, SI unit and value."""
+    """Key figure of a stage: name, SI unit and value."""
 
     name: str
     unit: str
@@ -57,7 +57,7 @@ class Change:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Effect of set values: the original description `stated`, the `addresses` set, the key `figures` before and after."""
+    """Effect of changed values: the original description `stated`, the changed `addresses`, the key `figures` before and after."""
 
     stated: Mechanism
     addresses: tuple[str, ...]
@@ -65,7 +65,7 @@ class Comparison:
 
 
 def set_values(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> tuple[Change, ...]:
-    """Return set values before and after; only single numbers.
+    """Return the changed values before and after the change; only single numbers.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.addresses.address import set_value
@@ -82,7 +82,7 @@ def set_values(before: Mechanism, after: Mechanism, addresses: Iterable[str]) ->
 
 
 def difference(before: Analysis, after: Analysis) -> tuple[Change, ...]:
-    """Compare every key figure of two analyses, old and new.
+    """Compare the key figures of two analyses, before and after a change.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -121,7 +121,7 @@ def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
 
 
 def requirement_figures(verdicts: Iterable[Verdict]) -> Iterator[KeyFigure]:
-    """Return the known values of requirements."""
+    """Yield the key figures of requirements with a known value."""
     for verdict in verdicts:
         if verdict.value is not None:
             requested = verdict.requirement
@@ -130,7 +130,7 @@ def requirement_figures(verdicts: Iterable[Verdict]) -> Iterator[KeyFigure]:
 
 
 def frequency_figures(found: Modes | None) -> Iterator[KeyFigure]:
-    """Return the platform's frequencies."""
+    """Yield the platform frequencies as key figures."""
     if found is None:
         return
     for number, index in enumerate(found.platform, start=1):
@@ -138,7 +138,7 @@ def frequency_figures(found: Modes | None) -> Iterator[KeyFigure]:
 
 
 def stiffness_figures(found: Statics | None) -> Iterator[KeyFigure]:
-    """Return the platform's stiffness along and about each axis, all other degrees of freedom free."""
+    """Yield the platform's stiffness along and about each axis as key figures, with all other degrees of freedom free."""
     if found is None:
         return
     compliance = np.diag(found.compliance.values)
@@ -148,7 +148,7 @@ def stiffness_figures(found: Statics | None) -> Iterator[KeyFigure]:
 
 
 def loss_figures(found: LostMotion | None) -> Iterator[KeyFigure]:
-    """Return the lost motion of each actuator."""
+    """Yield the lost motion of each actuator as key figures."""
     if found is None:
         return
     for name in found.loss.rows:
@@ -161,7 +161,7 @@ def _workspace_figures(reach: Workspace | None) -> Iterator[KeyFigure]:
 
 
 def reach_figures(strokes: SingleAxis | None, stress: HingeStress | None, buckling: Buckling | None) -> Iterator[KeyFigure]:
-    """Return platform strokes, and safety factors of hinges and columns."""
+    """Yield platform strokes, and safety factors of hinges and columns, as key figures."""
     if strokes is not None:
         for name, value in zip(strokes.coordinates, strokes.symmetric, strict=True):
             yield KeyFigure(f"stroke.{name}", MOTION.unit(name), float(value))

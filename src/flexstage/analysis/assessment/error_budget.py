@@ -20,7 +20,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 STEPS = "actuator steps"
 PARASITIC = "parasitic motion"
-"""Parasitic motion of a force-driven stage under the forces of the elastic model, instead of lost motion and crosstalk."""
+"""Source name for the parasitic motion of a force-driven stage, which replaces lost motion and crosstalk."""
 NOISES = ("actuator noise", "floor vibration")
 SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisation", "drift")
 
@@ -28,9 +28,9 @@ SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisatio
 class ErrorBudget(Result):
     """Largest errors by axis (rows) and source (columns) [m, rad], commanded by the ideal mapping, and with the lost-motion gains.
 
-    `missing` names unknown sources (unspecified gauge noise): they are NaN and omitted from the sums. `ground` is the ground material
-    assumed for drift, `coverage` the number of standard deviations of gauge noise. `reasons` explain unknown sources. Of a force-driven
-    stage both commands are equal: the forces that the elastic model gives for the command.
+    `missing` names unknown sources (e.g. unspecified gauge noise), which are NaN and omitted from the sums. `ground` is the ground material
+    assumed for drift, `coverage` the number of standard deviations of gauge noise. `reasons` explain unknown sources. For a force-driven
+    stage, both commands are the forces computed by the elastic model.
     """
 
     ideal: Matrix
@@ -50,7 +50,7 @@ class ErrorBudget(Result):
 
     @property
     def sums(self) -> Annotated[Matrix, VIEW]:
-        """Rows are the axes; columns the linear and root-sum-square sums of both commands."""
+        """Sums by axis (rows); columns are the linear and root-sum-square sums for both commands."""
         columns = [
             function(matrix.values)
             for matrix in (self.ideal, self.corrected)
@@ -80,7 +80,7 @@ def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> li
 def command_strokes(kinematics: Kinematics, command: Mapping[str, Number], *, depth: int = 0) -> Array:
     """Compute strokes (2^c, ..., n) [m] at the corners of a box of commands over c coordinates, a = R_a xi.
 
-    `depth` is the least number of batch axes between.
+    `depth` is the least number of batch axes between the corners and the strokes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -19,7 +19,7 @@ from flexstage.models.linear.model import LinearModel
 
 @dataclass(frozen=True)
 class Estimate:
-    """Values of requirements [SI] by their keys, with estimated relative errors where these are known."""
+    """Values of requirements [SI] by key, and their estimated relative errors if known."""
 
     values: Mapping[str, float]
     errors: Mapping[str, float] = field(default_factory=dict)
@@ -28,8 +28,9 @@ class Estimate:
 def judge(mechanism: Mechanism, bench: StageResults | None = None) -> tuple[Verdict, ...]:
     """Evaluate every `[requirements]` line of a description by the lumped model; reuse the results of `bench` if present.
 
-    Stiffness, frequencies, lost motion, corrected strokes and drift are for the loaded stage if its permanent load is significant (1 %). An
-    unknown value (a safety factor without yield stress) is a failed verdict with its reason. Raises `DesignError` for unreadable lines.
+    Stiffness, frequencies, lost motion, corrected strokes and drift are for the loaded stage if its permanent load is significant (1 %).
+    For an unknown value (a safety factor without yield stress), the verdict is failed, with the reason. Raises `DesignError` for unreadable
+    lines.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [bool(verdict.passed) for verdict in judge(double_triangle())]
@@ -41,7 +42,7 @@ def judge(mechanism: Mechanism, bench: StageResults | None = None) -> tuple[Verd
 
 
 def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array | str, ...]:
-    """Compute SI values (...) of measures by the lumped model, for one design or a batch; the reason if there is none.
+    """Compute SI values (...) of measures by the lumped model, for one design or a batch; for a missing value, a text with the reason.
 
     Measures of simultaneous required strokes (corner, gauge.range) use the strokes in the `[requirements]` lines.
 
@@ -56,7 +57,9 @@ def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Ar
 
 
 def bench_of(mechanism: Mechanism) -> StageResults:
-    """Create a bench for one design or a batch; measures of simultaneous strokes use the strokes in `[requirements]`.
+    """Create the results collector (bench) of one design or a batch.
+
+    Measures of simultaneous strokes use the strokes in `[requirements]`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> bench_of(double_triangle()).command["x"]
@@ -66,7 +69,7 @@ def bench_of(mechanism: Mechanism) -> StageResults:
 
 
 def required_values(mechanism: Mechanism, model: LinearModel | None = None) -> dict[str, float]:
-    """Return the values of a stage's requirements [SI] by a linear model; the default is the lumped one. Unknown ones are left out.
+    """Return the values of a stage's requirements [SI], computed by a linear model (default: lumped). Unknown values are omitted.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> {key: round(value) for key, value in required_values(parallelogram()).items() if key.startswith("frequency")}
@@ -84,7 +87,7 @@ def _required_strokes(lines: tuple[Requirement, ...]) -> dict[str, float]:
 
 
 def value_or_reason(bench: StageResults, asked: Measure) -> Array | str:
-    """Compute the value (...) of one measure; the reason if there is none.
+    """Compute the value (...) of one measure; for a missing value, return a text with the reason.
 
     >>> from flexstage.analysis.assessment.requirements import measure
     >>> from flexstage.cases.double_triangle import double_triangle

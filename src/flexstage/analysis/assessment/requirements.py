@@ -39,7 +39,7 @@ _SLACK = 1e-9
 
 
 class Sense(Enum):
-    """Sense of a limit."""
+    """Sense of a limit: at least or at most."""
 
     AT_LEAST = "at least"
     AT_MOST = "at most"
@@ -66,7 +66,7 @@ class Verdict:
     def margin(self) -> Array:
         """Relative margin (...) to the limit: 0.1 is 10 % reserve, negative fails; NaN without a value.
 
-        For a limit of zero, the absolute margin in SI.
+        For a limit of zero, it is the absolute margin in SI.
         """
         if self.value is None:
             return np.asarray(np.nan)
@@ -76,12 +76,12 @@ class Verdict:
 
     @property
     def passed(self) -> Array:
-        """Whether the requirement is met (...), within a relative rounding of 1e-9; a missing value is not."""
+        """Whether the requirement is met (...), within a relative rounding of 1e-9; false for a missing value."""
         return np.nan_to_num(self.margin, nan=-np.inf) >= -_SLACK
 
 
 def asked_factor(mechanism: Mechanism) -> float:
-    """Return the required load factor: the largest of the lines `buckling.factor` and `buckling`, else of `safety`, else 1.
+    """Return the required load factor: the largest limit in the lines `buckling.factor` and `buckling`, else in `safety`, else 1.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> asked_factor(parallelogram())
@@ -93,7 +93,7 @@ def asked_factor(mechanism: Mechanism) -> float:
 
 
 def known_keys(mechanism: Mechanism) -> tuple[str, ...]:
-    """Return every requirement key of this stage (frequencies up to the sixth; higher numbers are valid too).
+    """Return the requirement keys of this stage, with frequencies up to the sixth (higher numbers are also valid keys).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [key for key in known_keys(double_triangle()) if key.startswith("loss")][:3]
@@ -106,8 +106,8 @@ def known_keys(mechanism: Mechanism) -> tuple[str, ...]:
 def requirements(mechanism: Mechanism) -> tuple[Requirement, ...]:
     """Read all `[requirements]` lines of a description.
 
-    A line is `at least` or `at most`, a value with its unit, and for some keys `at` a named point. Raises `DesignError` with every unknown
-    key (and the nearest ones), unreadable line, wrong unit and unknown point.
+    A line contains `at least` or `at most`, a value with its unit, and for some keys `at` and a named point. Raises `DesignError` with all
+    unknown keys (and the nearest known keys), unreadable lines, wrong units and unknown points.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> read = requirements(double_triangle())[0]

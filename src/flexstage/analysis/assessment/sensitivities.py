@@ -1,7 +1,7 @@
 """Exact sensitivities of frequencies and gains to every number of a description.
 
-Derivatives of K, M and the gains are by complex step through the models' formulas, one batch axis per parameter. Eigenvalue derivatives are
-analytic, d lambda = phi^T (dK - lambda dM) phi.
+Derivatives of K, M and the gains are computed by complex steps through the models' formulas; each parameter is one design of a batch.
+Eigenvalue derivatives are analytic: d lambda = phi^T (dK - lambda dM) phi.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ _CHUNK = 24
 class Sensitivities(Result):
     """Derivatives of modes and gains with respect to P parameters at one design.
 
-    `frequency` (P, k) [Hz per SI unit of the parameter]: for the modes of a cluster it is the derivative of the cluster's mean. `clusters`
-    lists the groups of modes. `one_sided` has, per cluster, the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi as frequency slopes. They
-    are for single parameters (not additive over parameters). `gain` and `loss` (P, n) belong to each actuator; n = 0 if the strokes do
-    not determine the platform. `missing` has the reasons for absent results.
+    `frequency` (P, k) is in Hz per SI unit of the parameter; for the modes of a cluster, it is the derivative of the mean frequency.
+    `clusters` lists the groups of modes. `one_sided` has, per cluster of c modes, the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi,
+    converted to frequency slopes. They are valid for changes of a single parameter and cannot be added. `gain` and `loss` (P, n) are for
+    the n actuators; n = 0 if the strokes do not determine the platform. `missing` has the reasons for absent results.
     """
 
     parameters: tuple[str, ...]
@@ -101,9 +101,9 @@ def sensitivities(
 ) -> Sensitivities:
     """Compute derivatives of the lowest `modes` frequencies and of all gains with respect to addressed numbers (default: all).
 
-    Modes closer than `cluster` (relative gap) are repeated: only the derivative of their mean is smooth, and a cluster is listed
-    completely. Gains require strokes that determine the platform; else `missing` has the reason. Raises `DesignError` for unknown addresses
-    and for addresses of anything but a single number in the description.
+    Modes closer than `cluster` (relative gap) are repeated modes. Only the derivative of their mean is smooth. A cluster is listed
+    completely. Gains require strokes that determine the platform; otherwise `missing` has the reason. Raises `DesignError` for unknown
+    addresses, and for addresses that are not a single number in the description.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = sensitivities(double_triangle(), ("materials.steel.density",), modes=6)
@@ -164,9 +164,9 @@ def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findin
 
 
 def override_level(mechanism: Mechanism, name: str) -> int:
-    """Return the override level of an address: 0 none, 1 a part in all instances of a unit, 2 in a single instance.
+    """Return the override level of an address: 0 no override, 1 in all instances of a unit, 2 in a single instance.
 
-    Higher levels are named numbers, each after those it depends on, as formulas compute other numbers from them.
+    Named numbers have higher levels. A number that depends on others has a higher level than these.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [override_level(double_triangle(), f"{place}.thickness") for place in ("parts.neck", "horizontal/front", "B1/front")]
@@ -178,9 +178,10 @@ def override_level(mechanism: Mechanism, name: str) -> int:
 
 
 def steppable(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[list[int]]:
-    """Yield indices of parameters that can be stepped together.
+    """Yield groups of parameter indices that can be stepped in one batch.
 
-    An override hides the number that it replaces, and a result of a formula hides its named numbers: each level is stepped separately.
+    An override hides the number that it replaces, and a formula's result hides its named numbers. Therefore, each level is stepped
+    separately.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(steppable(double_triangle(), ("parts.neck.thickness", "horizontal/front.thickness", "materials.steel.young")))
@@ -242,7 +243,7 @@ def project(contributions: Contributions, shapes: Array) -> Array:
 
 
 def slope(values: Array) -> Array:
-    """Return derivatives from the values of a stepped description.
+    """Return derivatives from the values of a description with complex steps.
 
     >>> slope(np.array([1.0 + 2e-20j])).round(9).tolist()
     [2.0]

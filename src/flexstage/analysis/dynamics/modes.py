@@ -34,10 +34,10 @@ _NUMBERED = re.compile(r"([^\d/]+)(0|[1-9]\d*)(|/.*| \(link\))")
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """One mode: the platform's kinetic-energy fraction, and whether it is a `platform` mode or a `local` one near these.
+    """One mode: the platform's kinetic-energy fraction, and whether it is a `platform` mode or a `local` mode near a platform mode.
 
-    `compliance_share` is its share of the platform's static compliance along the mode's platform motion. `energy_share` is the
-    kinetic-energy fraction of every body and link from one per cent, largest first.
+    `compliance_share` is the mode's fraction of the platform's static compliance along its platform motion. `energy_share` lists the bodies
+    and links with a kinetic-energy fraction of at least 1 %, largest first.
     """
 
     TABLE: ClassVar[Layout] = Layout("Modes", "number frequency name platform_share compliance_share plane role")
@@ -54,7 +54,7 @@ class Mode:
 
     @property
     def plane(self) -> Annotated[str, INNER]:
-        """In-plane or out-of-plane motion."""
+        """Whether the motion is in plane or out of plane."""
         return "in plane" if self.in_plane else "out of plane"
 
     @property
@@ -66,12 +66,14 @@ class Mode:
 class Modes(Result):
     """Undamped natural modes of a stage, ascending.
 
-    `frequencies` (..., k) [Hz]; `shapes` (..., n, k) mass-normalised; `platform_shapes` (..., 6, k) the platform's twist. `share` (..., k)
-    is the kinetic-energy fraction of the platform body, `compliance_share` (..., k) the fraction of its static compliance. `bodies` names
-    the rows of `energies` (..., b, k), the fraction of every body and link. `chosen` (..., k) are the modes of the platform frequencies.
-    `names`, `in_plane` and `platform` (indices of the chosen modes) belong to the first design. A mode with equal fractions of several
-    bodies is named after all of them; repeated modes likewise. `limit` determines only the number of listed modes. A large stage has only
-    the lowest modes, `partial`, including those of the platform among them.
+    `frequencies` (..., k) are in Hz, `shapes` (..., n, k) are mass-normalised, `platform_shapes` (..., 6, k) are the platform's twists.
+    `share` (..., k) is the kinetic-energy fraction of the platform body, `compliance_share` (..., k) the fraction of the platform's static
+    compliance. `bodies` names the rows of `energies` (..., b, k), the kinetic-energy fractions of bodies and links. `chosen` (..., k) are
+    the modes of the platform frequencies.
+
+    `names`, `in_plane` and `platform` (indices of the chosen modes) are for the first design. A mode with equal fractions of several bodies
+    is named after all of them. `limit` determines only the number of listed modes. If `partial`, the stage is large and only its lowest
+    modes were computed.
     """
 
     frequencies: Array
@@ -96,7 +98,7 @@ class Modes(Result):
         return tuple(map(self.mode, range(self.listed)))
 
     def mode(self, index: int) -> Mode:
-        """One mode of the first design."""
+        """Return one mode of the first design."""
         values = (self.frequencies, self.share, self.compliance_share)
         frequency, share, compliance = (float(first_design(each, 1)[index]) for each in values)
         energies = first_design(self.energies, 2)[:, index]
@@ -117,7 +119,7 @@ class Modes(Result):
         return len(self.names)
 
     def dominant_bodies(self, index: int) -> tuple[str, float]:
-        """Body or link with the largest kinetic-energy fraction in a mode of the first design (all equal ones), and the fraction."""
+        """Return the body or link with the largest kinetic-energy fraction in a mode (several if equal), and the fraction; first design."""
         shares = first_design(self.energies, 2)[:, index]
         most = np.flatnonzero(shares >= np.max(shares) - _EQUAL)
         return _set([self.bodies[place] for place in most]), float(np.sum(shares[most]))
@@ -157,11 +159,10 @@ class Modes(Result):
 def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
     """Compute the undamped natural modes of a model (Eq. 28 of Shin & Moon).
 
-    At each platform mode, one more direction of the platform reaches a tenth of its static compliance (`models.batch.choice`). Modes closer
-    than `cluster` (relative) form a cluster. Its basis is rotated so that shapes align with the platform's axes, and those without platform
-    motion with the coordinates that move most. Modes below `limit` [Hz] are listed.
-
-    Small motions. A large stage (`LinearModel.is_sparse`, above 900 degrees of freedom) has only the lowest 30 modes or so.
+    At each platform mode, the modes reach a tenth of the platform's static compliance in one more direction (`models.batch.choice`). Modes
+    closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that shapes align with the platform's axes. Shapes
+    without platform motion align with the coordinates that move most. Modes below `limit` [Hz] are listed. Motions are small. For a large
+    stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes are computed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -208,7 +209,7 @@ def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEAT
 
 
 def clusters(values: Array, gap: float) -> list[list[int]]:
-    """Group ascending values whose relative gap to the next is below `gap`.
+    """Return groups of indices of ascending values; in a group, each relative gap to the next value is below `gap`.
 
     >>> clusters(np.array([1.0, 1.0 + 1e-9, 2.0]), 1e-6)
     [[0, 1], [2]]
@@ -217,9 +218,10 @@ def clusters(values: Array, gap: float) -> list[list[int]]:
 
 
 def repeated_groups(values: Array, gap: float = _REPEATED) -> list[list[int]]:
-    """Group ascending eigenvalues omega^2 whose frequencies agree within `gap`, or within rounding.
+    """Return groups of indices of ascending eigenvalues omega^2 whose frequencies agree within `gap` or rounding.
 
-    Solved by 1/lambda, an eigenvalue has a relative error of eps times its ratio to the least one, times a rounding factor.
+    Rounding: the eigenvalues are computed as 1/lambda, with a relative error of eps times the ratio to the least eigenvalue, times a
+    factor.
 
     >>> repeated_groups(np.array([1.0, 1.0 + 1e-9, 2.0]))
     [[0, 1], [2]]
@@ -374,9 +376,9 @@ def _range(key: tuple[str, ...], numbers: list[int]) -> list[str]:
 def modal_assurance(first: Array, second: Array, weight: Array | None = None) -> Matrix:
     """Compute the modal assurance criterion (MAC) |a^T W b|^2 / (a^T W a)(b^T W b) of shapes (n, k) and (n, m).
 
-    W (n, n) defaults to the unit matrix.
+    The `weight` W (n, n) defaults to the unit matrix.
 
-    Allemang & Brown 1982. Shapes that mix translations and rotations need a weight (the inertia matrix).
+    Shapes with both translations and rotations need a weight, e.g. the inertia matrix. Reference: Allemang & Brown 1982.
 
     >>> modal_assurance(np.eye(2), np.array([[1.0], [1.0]])).values.round(12).ravel().tolist()
     [0.5, 0.5]

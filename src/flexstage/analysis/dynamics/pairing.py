@@ -1,4 +1,4 @@
-"""Pairing of two models' modes by modal assurance of all common motions."""
+"""Pairing of the modes of two models by the modal assurance criterion (MAC) of all common motions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _UNSEEN = 1e-9
 
 @dataclass(frozen=True)
 class Pair:
-    """Paired mode of another model: its index, frequency [Hz] and modal assurance (0 to 1)."""
+    """Mode of another model that is paired with a mode: its index, frequency [Hz] and modal assurance (0 to 1)."""
 
     index: int
     frequency: float
@@ -37,7 +37,7 @@ class Pair:
 
 @dataclass(frozen=True, eq=False)
 class Moving:
-    """Modes and their model."""
+    """Modes together with their linear model."""
 
     modes: Modes
     model: LinearModel
@@ -46,10 +46,12 @@ class Moving:
 def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
     """Pair each platform mode, by index, with the most similar mode of another model.
 
-    Modal assurance (Allemang and Brown 1982) weighted by kinetic energy. The common motion outputs determine the coordinates of the smaller
-    model by least squares, weighted by its inertia. Rotations are multiplied by the platform's radius of gyration. The share is of each
-    mode's total kinetic energy, including motion without an output. Any mode of the other model may be a partner, also local ones. Modes
-    closer than 1 % are compared as a subspace, in ascending order. A pair below `RELIABLE` is the best one, but not a match.
+    The modal assurance (Allemang and Brown 1982) is weighted by kinetic energy. The common motion outputs determine the coordinates of the
+    smaller model by least squares, weighted by its inertia. Rotations are multiplied by the platform's radius of gyration. The modal
+    assurance is relative to each mode's total kinetic energy, including motion without an output.
+
+    Any mode of the other model can be paired, also a local mode. Modes closer than 1 % are compared as a subspace and paired in ascending
+    order. If the modal assurance is below `RELIABLE`, the pair is the most similar one, but not a match.
 
     >>> from flexstage.analysis.dynamics.modes import modes
     >>> from flexstage.cases.double_triangle import double_triangle

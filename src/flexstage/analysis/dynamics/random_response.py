@@ -29,7 +29,7 @@ _PANELS_PER_DECADE = 6
 
 
 class Rate(Enum):
-    """Quantity of a spectrum: the input, its velocity or its acceleration (e.g. of the floor)."""
+    """Quantity of a spectrum: the value of the input, its velocity or its acceleration (e.g. floor acceleration)."""
 
     VALUE = 0
     VELOCITY = 1
@@ -40,8 +40,9 @@ class Rate(Enum):
 class Spectrum(CheckedFields):
     """One-sided power spectral density of an input.
 
-    `density` in (unit of the input, with `rate` its rate)^2/Hz: one number (white), or a table (f,) over `frequencies` (f,) in Hz. A table
-    is log-log interpolated and zero outside. Floor acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
+    `density` is one number (white), or a table (f,) over `frequencies` (f,) in Hz. Its unit is (unit of the input)^2/Hz; for the `rate`
+    velocity or acceleration, the unit of this rate squared per Hz. A table is log-log interpolated, and zero outside. Example for floor
+    acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
     """
 
     density: float | Array
@@ -65,8 +66,8 @@ class Spectrum(CheckedFields):
 class RandomResponse(Result):
     """One-sided densities (..., f, p) [unit^2/Hz] and rms values (..., p) [unit] of outputs, with the share of each input.
 
-    `shares` (..., p, m) are the mean squares from each input (uncorrelated inputs: their sum is rms^2). `method` is the method of
-    integration.
+    `shares` (..., p, m) are the mean squares due to each input. The inputs are uncorrelated, so the sum of mean squares is rms^2. `method`
+    is the method of integration.
     """
 
     frequencies: Annotated[Array, FREQUENCY, Called("frequency")]
@@ -104,12 +105,12 @@ def random_response(
     *,
     damping: Damping | None = None,
 ) -> RandomResponse:
-    """Compute densities S_yy = sum_j |H_ij|^2 S_j and rms = (integral of S_yy over `band`)^(1/2), inputs uncorrelated.
+    """Compute densities S_yy = sum_j |H_ij|^2 S_j and rms = (integral of S_yy over `band`)^(1/2) for uncorrelated inputs.
 
-    `spectra` maps input names (as for `response`; groups not allowed, `ground.z` is floor motion) to one-sided densities; `band` (low,
-    high) in Hz, low > 0. Gauss-Legendre integration, 8 nodes per panel. Panels end at multiples of each resonance's half width, at the
-    tables' points and six times a decade. The rule thus resolves every peak (tested against the Lyapunov equation to 1e-8). Raises
-    `DesignError` for unknown names, an empty band, or non-positive densities.
+    `spectra` maps input names to one-sided densities. The names are as for `response` without groups (`ground.z` is floor motion). `band`
+    is (low, high) in Hz, with low > 0. The integration is by Gauss-Legendre quadrature with 8 nodes per panel. Panels end at multiples of
+    each resonance's half width, at the tables' points and six times a decade. The rule thus resolves every peak (error 1e-8, compared with
+    the Lyapunov equation). Raises `DesignError` for unknown names, an empty band, or non-positive densities.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

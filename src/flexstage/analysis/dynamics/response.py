@@ -34,10 +34,16 @@ def response(
 ) -> Response:
     """Compute the frequency response H (..., f, p, m) of named outputs to named inputs.
 
-    Names are channels (`platform.x`, gauge `S1`, stroke `B1`, `chuck.fz`), wrench components on any body (`B4/lever.fz`), the ground's
-    motion (`ground.x` ... `ground.rz`, absolute displacement) or groups (`platform`, `ground`: six components). `frequencies` (f,) in Hz;
-    default: `default_frequencies`. `damping` replaces the damping law of the design. Raises `DesignError` for unknown names and unspecified
-    damping. Structural damping requires one solution per frequency, other laws a single eigenvalue problem.
+    Names can be:
+
+    - channels (`platform.x`, gauge `S1`, stroke `B1`, `chuck.fz`);
+    - wrench components on any body (`B4/lever.fz`);
+    - the ground's motion (`ground.x` ... `ground.rz`, absolute displacement);
+    - groups of six components (`platform`, `ground`).
+
+    `frequencies` (f,) are in Hz (default: `default_frequencies`). `damping` replaces the damping law of the design. Structural damping
+    requires one solution per frequency, other laws a single eigenvalue problem. Raises `DesignError` for unknown names and unspecified
+    damping.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -57,8 +63,8 @@ def transmissibility(
 ) -> Response:
     """Compute the transmissibility (..., f, p, 6): absolute motion of outputs over ground motion, at the platform's reference.
 
-    T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b. Damping acts on motion relative to the ground. T of the platform's twist tends
-    to the unit matrix at low frequency. Gauges and stress resultants depend on relative motion only and tend to zero.
+    T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b. Damping acts on motion relative to the ground. At low frequency, T of the
+    platform's twist tends to the unit matrix. Gauges and stress resultants depend only on relative motion: their T tends to zero.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -70,10 +76,10 @@ def transmissibility(
 
 
 def default_frequencies(model: LinearModel, band: tuple[float, float] | None = None, *, damping: Damping | None = None) -> Array:
-    """Return a frequency grid (f,) in Hz: 40 points a decade, 25 across every resonance f_r (1 + zeta_r tan theta), |theta| < 83 degrees.
+    """Return a frequency grid (f,) in Hz: 40 points per decade, and 25 additional points across every resonance.
 
-    Default `band`: from f_1/50 to twice the twelfth natural frequency. Resonances belong to the first design of a batch; repeated modes
-    at their mean.
+    The points across a resonance are f_r (1 + zeta_r tan theta), |theta| < 83 degrees. The default `band` is from f_1/50 to twice the
+    twelfth natural frequency. Resonances are those of the first design of a batch; repeated modes are at their mean frequency.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

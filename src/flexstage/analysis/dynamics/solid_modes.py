@@ -12,7 +12,7 @@ from flexstage.models.linear.model import LinearModel
 class FeaModes:
     """Finite-element modes of a stage, its reduced model, and estimated relative errors of the platform frequencies.
 
-    `errors` is empty without a coarser mesh, and `None` for a mode missing from the coarser result.
+    `errors` is empty if there is no coarser mesh. An error is `None` if the mode is missing from the result of the coarser mesh.
     """
 
     modes: Modes

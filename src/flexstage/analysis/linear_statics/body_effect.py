@@ -16,13 +16,13 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
 
 SIGNIFICANT = 0.05
-"""Relative change of a stiffness or frequency above which rigid bodies are doubtful."""
+"""Relative change of a stiffness or frequency above which the assumption of rigid bodies is doubtful."""
 _FREQUENCIES = 6
 
 
 @dataclass(frozen=True)
 class BodyEffect:
-    """A `quantity` with `rigid` and with `flexible` bodies, in SI; the `body`, or all equal ones, that changes it most."""
+    """Value of a `quantity` [SI] with `rigid` and with `flexible` bodies; `body` names the body or bodies with the largest effect."""
 
     quantity: str
     rigid: float
@@ -31,15 +31,15 @@ class BodyEffect:
 
     @property
     def change(self) -> float:
-        """Relative change by the flexibility."""
+        """Relative change of the quantity due to flexible bodies."""
         return self.flexible / self.rigid - 1.0
 
 
 def body_effects(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None = None) -> tuple[BodyEffect, ...]:
     """Compare a lumped model of one design with rigid and with flexible bodies.
 
-    Quantities are the stiffness of the platform along each ideal motion of `kinematics`, strokes fixed, and the first six natural
-    frequencies. Empty where no body has an estimate, for batches and for stages that are kept sparse.
+    The quantities are the stiffness of the platform along each ideal motion of `kinematics`, with strokes fixed, and the first six natural
+    frequencies. The result is empty if no body has an estimated flexibility, for batches, and for large (sparse) stages.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -77,7 +77,10 @@ def _quantities(model: LinearModel, kinematics: Kinematics | None) -> dict[str, 
 
 
 def body_findings(effects: Sequence[BodyEffect]) -> Iterator[Finding]:
-    """One warning for each body that changes quantities by more than `SIGNIFICANT`; it names the two that change most."""
+    """Yield one warning for each body whose flexibility changes quantities by more than `SIGNIFICANT`.
+
+    It names the two quantities that change most.
+    """
     large = sorted((each for each in effects if abs(each.change) > SIGNIFICANT), key=lambda each: -abs(each.change))
     for body in dict.fromkeys(each.body for each in large):
         worst = [each for each in large if each.body == body][:2]

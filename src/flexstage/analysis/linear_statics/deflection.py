@@ -18,7 +18,8 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 class Deflection(Result):
     """Twist (..., 6, causes) of the platform's reference, or of a named point, by cause: own weight, each payload, each specified force.
 
-    In closed loop the gauges measure it and the strokes compensate it; in open loop it is the load term of Eq. 11.
+    In closed loop, the gauges measure the deflection and the strokes compensate for it. In open loop, it is the load term of Eq. 11 (Shin &
+    Moon).
     """
 
     point: str

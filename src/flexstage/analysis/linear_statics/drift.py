@@ -1,7 +1,8 @@
 """Thermal drift: motion due to uniform and linear temperature changes, per kelvin.
 
-Every body and part expands freely with the field T(r). A linear field causes no stress in a free body. The displacement is u = alpha [T r +
-(g . r) r - g r^2 / 2] and the rotation alpha g x r at r from its reference. Incompatible expansion is imposed on the links.
+Every body and part expands freely with the temperature field T(r). A linear field with gradient g causes no stress in a free body. At r
+from the body's reference point, the displacement is u = alpha [T r + (g . r) r - g r^2 / 2], the rotation alpha g x r. Incompatible
+expansion is imposed on the links.
 """
 
 from __future__ import annotations
@@ -40,9 +41,10 @@ _FITS = 1e-7
 class Drift(Result):
     """Motion and forces per unit of a temperature field: uniform [per K], linear along x, y and z [per K/m].
 
-    `motion` is at the platform and named points (six components each), `gauges` the readings, `forces` six per elastic link. `ground` is
-    the assumed material of the ground (`None`: no expansion) and its source. `datum` (..., 3) [m] is the fixed point of the ground, where
-    gradients are zero. `taken` is each body's material, `bodies` the twists (..., 6, 4) of all bodies at their references.
+    `motion` is at the platform and named points (six components each). `gauges` are the readings, `forces` the six stress resultants of
+    each elastic link. `ground` is the assumed material of the ground (`None`: no expansion) and its source. `datum` (..., 3) [m] is the
+    fixed point of the ground, where linear fields are zero. `taken` is each body's material, `bodies` are the twists (..., 6, 4) of all
+    bodies at their reference points.
     """
 
     motion: Matrix
@@ -55,7 +57,7 @@ class Drift(Result):
     bodies: Annotated[Mapping[str, Array], INNER] = field(default_factory=dict[str, Array])
 
     def of(self, point: str = PLATFORM) -> Matrix:
-        """Six rows of one point."""
+        """Return the six rows of `motion` for one point."""
         return self.motion.part(tuple(f"{point}.{name}" for name in COMPONENTS), FIELDS)
 
 
@@ -96,11 +98,11 @@ def drift(mechanism: Mechanism, model: LinearModel, *, ground: str | None = None
     """Compute the thermal drift of a stage: free expansion of bodies and parts, redistributed elastically by the links, strokes fixed.
 
     `ground` names the ground's material (default: from `ground_of`; `none`: no expansion). Motions are relative to the ground's `datum`. A
-    stage of one material, including the ground, expands without stress. For a model about a state link by link (`linearise(state,
-    inner=False)`), expansion is that of the nominal stage and stiffness that of the loaded one.
+    stage of one material, including the ground, expands without stress. For a model linearised about a state, `linearise(state,
+    inner=False)`, the expansion is for the nominal stage and the stiffness for the loaded stage.
 
     Raises `DesignError` for missing expansion coefficients, an unknown ground material, or locked degrees of freedom that block expansion.
-    It also refuses models with other stiffness than that of links: mapped models, or states with internal modes of flexures.
+    Also for models whose stiffness is not assembled from links: mapped models, and linearised models with `inner` coordinates.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

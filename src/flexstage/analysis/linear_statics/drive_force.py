@@ -1,4 +1,4 @@
-"""Drive force: the force per displacement of force-driven stages by flexure, compared with the ideal guide."""
+"""Drive force of stages that flexures guide and forces drive: force per displacement, compared with the ideal guide."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
 class DriveForce(Result):
     """Force per displacement along each coordinate, compared with the ideal guide.
 
-    The ideal guide has the same stiffness in the intended DOFs of its flexures, and is rigid in the others. `force` (coordinates x
-    elastic, ideal) is the generalised force of the actuators per displacement. `shares` (links x coordinates) are the parts of the elastic
-    displacement, which add up to 1. `excess` (links x coordinates) are the parts of the relative excess of the force.
+    The ideal guide has the same stiffness in the ideal DOFs of its flexures, and is rigid in all others. `force` (coordinates x elastic,
+    ideal) is the generalised force of the actuators per displacement. `shares` (links x coordinates) are the links' fractions of the
+    elastic displacement, which add up to 1. `excess` (links x coordinates) are the links' contributions to the relative excess of the
+    force.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -44,7 +45,7 @@ class DriveForce(Result):
 
     @property
     def total(self) -> Array:
-        """Force over that of the ideal guide, less 1 (f,)."""
+        """Relative excess (f,) of the force over the ideal guide's force."""
         return np.sum(self.excess.values, axis=-2)
 
     @property
@@ -58,9 +59,9 @@ class DriveForce(Result):
 def drive_force(kinematics: Kinematics, model: LinearModel, workspace: ForceWorkspace) -> DriveForce:
     """Compare the elastic stage with its ideal guide under the inputs that move the platform along each coordinate.
 
-    By reciprocity x_j = sum over the links of g_j^T k g_u: g_j are their deformations under a unit load of the platform along j, g_u those
-    under the inputs u. With the locked DOFs of the ideal joints prevented, the same sum is the displacement of the ideal guide. One
-    design.
+    By reciprocity, x_j = sum over the links of g_j^T k g_u. g_j are the link deformations under a unit load on the platform along j, g_u
+    the link deformations under the inputs u. If only the free DOFs of the ideal joints deform, the same sum is the displacement of the
+    ideal guide. Only for a single design.
 
     >>> import flexstage as fs
     >>> stage = fs.case("voice-coil-stage")

@@ -22,12 +22,13 @@ from flexstage.spatial.frame import COMPONENTS
 def amplified(mechanism: Mechanism) -> Amplified:
     """Condense a stage into one part: its ground is the first face, its platform the second.
 
-    From the lumped model: compliance of the platform at its reference point with the stroke fixed, and its motion at full stroke. The
-    part's centre is that reference point, with the stage's axes: a link has `along` in the stage's x and `bends` in its z. Voltages, bias
-    and capacitance belong to the single actuator. Half of the mass of all bodies and links is at each face.
+    The lumped model gives the platform's compliance at its reference point with the stroke fixed, and its motion at full stroke. The part's
+    centre is the platform's reference point, and its axes are the stage's axes. A link with this part has `along` in the stage's x and
+    `bends` in the stage's z direction. Voltages, bias and capacitance are those of the stage's single actuator. Half of the mass of all
+    bodies and links is at each face.
 
-    Exact in statics, without internal modes: valid well below the first internal mode with both faces fixed. Loads and preload of the inner
-    stack are ignored. Raises `DesignError` for a stage without exactly one actuator.
+    The part is exact in statics, without internal modes: valid well below the first internal mode with both faces fixed. Loads and preload
+    of the actuator are ignored. Raises `DesignError` for a stage without exactly one actuator.
 
     >>> from flexstage.cases.registry import case
     >>> part = amplified(case("bridge"))

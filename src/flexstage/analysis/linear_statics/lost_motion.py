@@ -24,7 +24,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
 INTERNAL = "internal stress"
 LOADED = "geometric"
-"""Budget share of the geometric stiffness of a loaded or displaced stage."""
+"""Name of the budget share due to the geometric stiffness of a loaded or displaced stage."""
 
 
 class Shares(dict[str, Array]):
@@ -46,7 +46,7 @@ class Shares(dict[str, Array]):
 
 @dataclass(frozen=True, eq=False)
 class ActuatorLoss:
-    """Transmission `gain` of an actuator (1: ideal) and its `loss`; `budget` has the shares of the loss by link and axis."""
+    """Transmission `gain` of an actuator (1: ideal) and its `loss`; `budget` has the fractions of the loss by link and axis."""
 
     gain: Annotated[Array, RATIO]
     loss: Annotated[Array, RATIO]
@@ -65,10 +65,10 @@ class ActuatorLoss:
 class LostMotion(Result):
     """Lost motion of a stage with n strokes and f ideal motions.
 
-    `gain` is T = dx/da elastic (..., 6, n). `transfer` is R_a V^+ T (..., n, n), with the transmission of each actuator on its diagonal,
-    and `loss` is Lambda = I - transfer. `parasitic` is the part of T outside the ideal motions. `budget` has every link's and axis' share
-    of each entry of Lambda (with sum Lambda). `correction` has the gains a = (R_a V^+ T)^-1 R_a xi. `energy` is the strain energy by part
-    per squared unit stroke.
+    `gain` is the elastic T = dx/da (..., 6, n). `transfer` is R_a V^+ T (..., n, n), with the transmission of each actuator on its
+    diagonal. `loss` is Lambda = I - transfer. `parasitic` is the part of T outside the ideal motions. `budget` has the contribution of
+    every link and axis to each entry of Lambda; their sum is Lambda. `correction` has the corrected command gains, a = (R_a V^+ T)^-1 R_a
+    xi. `energy` is the strain energy by part, per squared stroke.
     """
 
     gain: Matrix
@@ -87,7 +87,7 @@ class LostMotion(Result):
         return {name: ActuatorLoss(self.transfer.at(name, name), self.loss.at(name, name), self.of(name)) for name in self.loss.rows}
 
     def of(self, actuator: str) -> Shares:
-        """Budget of an actuator's diagonal loss by part: shares with the loss as sum."""
+        """Return the budget of an actuator's own (diagonal) loss by part: shares whose sum is the loss."""
         index = self.loss.rows.index(actuator)
         return Shares({name: share.values[..., index, index] for name, share in self.budget.items()})
 
@@ -96,14 +96,14 @@ class LostMotion(Result):
 def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     """Compute lost motion from an elastic model and the ideal kinematics of the same stage.
 
-    Lambda = I - R_a V^+ T. Its budget is exact for any graph. Here f_e^(i) is link e's force under the platform wrench (R_a V^+)^T e_i with
-    zero strokes, and gamma_e^(j) its deformation in the ideal motion of stroke j. By virtual work and reciprocity, Lambda_ij = sum_e
-    f_e^(i) . gamma_e^(j). For one unloaded lever the diagonal is eps / (1 + eps), eps = K_theta2 / (r_1^2 K_1) (Eq. 11 of Shin & Moon).
-    Small motions.
+    Lost motion is Lambda = I - R_a V^+ T. Its budget by link is exact for any graph. By virtual work and reciprocity, Lambda_ij = sum_e
+    f_e^(i) . gamma_e^(j). Here f_e^(i) is the force of link e under the platform wrench (R_a V^+)^T e_i with zero strokes, and gamma_e^(j)
+    the deformation of link e in the ideal motion of stroke j. For one unloaded lever, the diagonal is eps / (1 + eps), eps = K_theta2 /
+    (r_1^2 K_1) (Eq. 11 of Shin & Moon). Motions are small.
 
-    For a model about a displaced state, the ideal motion is that of the nominal position. Its budget requires a model link by link
-    (`linearise(state, inner=False)`) and has one more share, `geometric`: geometric stiffness. Raises `DesignError` if the strokes do not
-    determine the platform.
+    For a model about a displaced state, the ideal motion is that of the nominal position. The budget then requires the model
+    `linearise(state, inner=False)`, and has the additional share `geometric` for the geometric stiffness. Raises `DesignError` if the
+    strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -1,4 +1,4 @@
-"""Model error of a simpler theory: effect of every degree of freedom of a part that it locks or frees."""
+"""Model error of a simpler theory: the effect of each degree of freedom of a part that the theory locks or frees."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Restrictions = Mapping[str, tuple[Freedoms, Freedoms]]
 
 @dataclass(frozen=True)
 class Omitted:
-    """Responses of a simple and the full theory, and the effect of each omitted degree of freedom.
+    """Responses of a simple theory and the full theory, and the effect of each omitted degree of freedom.
 
     `changes` is the change of the simple response if one degree of freedom (`lever_notch.x`) regains its elasticity.
     `interaction` = full - simple - sum of changes: the effect of combinations.
@@ -47,8 +47,8 @@ class Omitted:
 def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
     """Compare the static response of an output to an input, `channel` = (output, input), between restricted and full parts.
 
-    Each degree of freedom that `simple` locks or frees (by part, or by link: `vertical/pivot`) regains its elasticity individually. One
-    design.
+    `simple` locks or frees degrees of freedom, by part or by link (`vertical/pivot`). Each of them regains its elasticity individually.
+    Only for a single design.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.cases.double_triangle import EQUATION_3
@@ -72,7 +72,7 @@ def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]
 
 
 def lever_theory(mechanism: Mechanism, name: str) -> Restrictions:
-    """Return the terms of Eq. 3 of Shin & Moon for a lever unit, by link: axial springs, and the rotation of the ground pivot.
+    """Return the restrictions of Eq. 3 of Shin & Moon for a lever unit, by link: only axial springs and the rotation of the ground pivot.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [freedom.value for freedom in lever_theory(double_triangle(), "vertical")["vertical/pivot"][0]]

@@ -50,11 +50,11 @@ class DirectionalStiffness:
 
     @property
     def spread(self) -> Annotated[Array, INNER, SHARE, Heading(digits=3)]:
-        """Relative difference of the principal stiffnesses (...)."""
+        """Difference of the principal stiffnesses (...), relative to the larger one."""
         return 1.0 - self.softest / self.stiffest
 
     def along(self, angle: Number) -> Array:
-        """Stiffness along directions at `angle` [rad] from x: force over displacement in the same direction, 1 / (n^T K^-1 n)."""
+        """Return the stiffness along directions at `angle` [rad] from x: force over displacement in this direction, 1 / (n^T K^-1 n)."""
         direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
         if not self.tensor.values.any(axis=-1).all():  # an axis without stiffness
             return np.zeros(direction.shape[:-1])
@@ -65,9 +65,9 @@ class DirectionalStiffness:
 class Statics(Result):
     """Static behaviour of the platform at a point.
 
-    `compliance` (..., 6, 6) is from a wrench at `load_point` to the twist at `read_point`, `stiffness` its inverse. `held` is the in-plane
-    tensor with all other degrees of freedom fixed, `free` with all others free (as in a push test). `centre` (..., 3) is the centre of
-    stiffness relative to the load point [m].
+    `compliance` (..., 6, 6) is from a wrench at `load_point` to the twist at `read_point`; `stiffness` is its inverse. `held` is the
+    in-plane stiffness tensor with all other degrees of freedom fixed, `free` with all others free (as in a push test). `centre` (..., 3) is
+    the centre of stiffness relative to the load point [m].
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a result of statics", "fs.statics(fs.lumped(stage))")
@@ -91,9 +91,9 @@ class Statics(Result):
 def statics(model: LinearModel, *, load_point: str = "platform", read_point: str = "platform") -> Statics:
     """Compute platform compliance and stiffness at named load and read-out points (`platform`: its reference point).
 
-    C = C_read K^-1 C_load^T, strokes fixed. Small displacements. If the model leaves the platform fewer than six degrees of freedom (the
-    mapped model of a guide), the stiffness is infinite along the others. The stiffness and tensors derived from it are then NaN (by the
-    first design). Along an axis without stiffness the compliance is infinite.
+    The compliance is C = C_read K^-1 C_load^T, with strokes fixed and small displacements. If the platform has fewer than six degrees of
+    freedom in the model (the mapped model of a guide), the stiffness is infinite along the others. The stiffness, and tensors derived from
+    it, are then NaN (decided by the first design). Along an axis without stiffness, the compliance is infinite.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -127,8 +127,8 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
 class FreedomStiffness(Result):
     """Stiffness of each degree of freedom at a point [N/m, N m/rad], strokes fixed: with the others free, and with them fixed.
 
-    `motions` are the coordinates of the platform's ideal motions, `constraints` those constrained by its links. The free stiffness is the
-    result of a push test at the point; it includes coupling of an ideal motion into other axes.
+    `motions` are the coordinates of the platform's ideal motions, `constraints` the coordinates that its links constrain. The free
+    stiffness is the result of a push test at the point. It includes the coupling of an ideal motion into other axes.
     """
 
     point: str
@@ -146,8 +146,8 @@ class FreedomStiffness(Result):
 def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffness | None:
     """Compute stiffness by degree of freedom for fewer than six ideal motions: along ideal motions, and along constraints.
 
-    The statics are at a point of the platform. 1 / C_ii with the other degrees of freedom free, K_ii with them fixed; NaN for a locked one.
-    Returns None for six ideal motions, or for different read-out and load points.
+    The statics `found` are at a point of the platform. The stiffness is 1 / C_ii with the other degrees of freedom free, and K_ii with the
+    others fixed; NaN for a locked degree of freedom. Returns None for six ideal motions, or for different read-out and load points.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -217,8 +217,8 @@ def directional(tensor: Array) -> DirectionalStiffness:
 def centre_of_stiffness(stiffness: Array) -> Array:
     """Compute the centre of stiffness (..., 3) relative to the reference: the antisymmetric part of K_tt^-1 K_tr.
 
-    Forces and rotations uncouple best there. With a fully uncoupled centre c, K_tr = -K_tt [c]x (Loncaric 1987 calls the symmetric
-    remainder zero at the centre of stiffness).
+    At this point, the coupling of forces and rotations is minimal. If there is a fully uncoupled centre c, K_tr = -K_tt [c]x. Another
+    definition of the centre of stiffness is by Loncaric (1987).
 
     >>> from flexstage.spatial.frame import transport
     >>> carry = transport(np.array([0.0, 0.0, -0.025]))

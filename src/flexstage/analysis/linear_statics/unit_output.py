@@ -19,8 +19,9 @@ from flexstage.base.units.quantity import RATIO, STIFFNESS
 class UnitOutput:
     """Output properties of one isolated unit, in its own frame.
 
-    `unit` is its name, `copy` the analysed instance, `direction` (3,) that of its output, `stiffness` 6x6 at the output, strokes fixed.
-    With the output guided along the direction, `gain` is output per stroke, and `ideal_gain` the value without elasticity.
+    `unit` is the unit's name, `copy` the analysed instance. `direction` (3,) is the direction of the output, `stiffness` the 6x6 at the
+    output with strokes fixed. If the output is guided along the direction, `gain` is the output per stroke, and `ideal_gain` the gain
+    without elasticity.
     """
 
     unit: str
@@ -32,7 +33,7 @@ class UnitOutput:
 
     @cached_property
     def axial(self) -> Annotated[float, STIFFNESS, Heading("axial stiffness")]:
-        """Stiffness along the direction, all else fixed [N/m]: n^T K n.
+        """Stiffness along the output direction with all other DOFs fixed [N/m]: n^T K n.
 
         >>> values = np.diag([10.0, 2.0, 3.0, 1.0, 1.0, 1.0])
         >>> stiffness = Matrix(values, tuple("abcdef"), tuple("abcdef"), "N/m")
@@ -44,19 +45,19 @@ class UnitOutput:
 
     @cached_property
     def lateral(self) -> Annotated[tuple[float, float], STIFFNESS]:
-        """Stiffness across the direction, all else fixed [N/m], softest and stiffest: eigenvalues of K in the plane across."""
+        """Least and largest stiffness across the output direction, all other DOFs fixed [N/m]: eigenvalues of K in the plane across."""
         across = np.linalg.svd(self.direction[None, :])[2][1:]
         softest, stiffest = np.linalg.eigvalsh(across @ self._translations @ across.T)
         return float(softest), float(stiffest)
 
     @property
     def softest_lateral(self) -> Annotated[float, INNER, STIFFNESS, Heading("softest lateral", varying=True)]:
-        """Smaller stiffness across the direction [N/m]."""
+        """Least stiffness across the output direction [N/m]."""
         return self.lateral[0]
 
     @property
     def stiffest_lateral(self) -> Annotated[float, INNER, STIFFNESS, Heading("stiffest lateral", varying=True)]:
-        """Larger stiffness across the direction [N/m]."""
+        """Largest stiffness across the output direction [N/m]."""
         return self.lateral[1]
 
     @property

@@ -1,4 +1,4 @@
-"""Analysis of each isolated unit: output stiffness, gain, loss, and errors of simpler theories."""
+"""Analysis of each isolated unit: output stiffness, gain, lost motion, and errors of simpler theories."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ _FORCES = ("platform.fx", "platform.fy", "platform.fz")
 class UnitResult(UnitOutput):
     """Properties of one isolated unit by the lumped model.
 
-    With its output guided along the direction: `loss` and `load_compliance` [m/N]. `series` is its stiffness in actuator coordinates for
-    the mapped model (`None` if that model refuses). For a lever unit, `lever` are its springs and `omitted` the error of Eq. 3 in its gain,
-    by degree of freedom.
+    `loss` and `load_compliance` [m/N] are for an output guided along its direction. `series` is the unit's stiffness in actuator
+    coordinates for the mapped model (`None` if this model does not support the unit). For a lever unit, `lever` are the springs, and
+    `omitted` is the error of the gain by Eq. 3, by degree of freedom.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -54,8 +54,8 @@ class UnitResult(UnitOutput):
 def units(mechanism: Mechanism, *, omissions: bool = True) -> dict[str, UnitResult]:
     """Analyse the first instance of every isolated unit with exactly one actuator at its output. One design.
 
-    A unit that requires the rest of the stage (a carriage guided by its neighbours) is omitted. `omissions`: also compute the errors of
-    lever theory, most of the computing time.
+    A unit that cannot be isolated (a carriage guided by neighbouring units) is omitted. `omissions`: also compute the errors of lever
+    theory, which takes most of the time.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(units(double_triangle())["horizontal"].axial / 1e6, 2)  # N/um
@@ -68,7 +68,7 @@ def units(mechanism: Mechanism, *, omissions: bool = True) -> dict[str, UnitResu
 
 
 def driven_units(mechanism: Mechanism) -> dict[str, tuple[str, Array]]:
-    """Return by unit the first instance with exactly one actuator at its output, and the output's direction (3,).
+    """Return, for each unit, the first instance with exactly one actuator at its output, and the direction (3,) of the output.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> {unit: copy for unit, (copy, _) in driven_units(double_triangle()).items()}
@@ -103,7 +103,7 @@ def as_vector(direction: Array) -> Vector:
 
 
 def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array, *, omissions: bool = True) -> UnitResult:
-    """Analyse one isolated instance of a unit with output along a direction (3,), with the errors of lever theory. One design.
+    """Analyse one isolated instance of a unit with output along a direction (3,); with `omissions`, the errors of lever theory.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(unit_alone(double_triangle(), "B4", "vertical", np.array([0.0, 0.0, 1.0])).gain, 1)

@@ -37,7 +37,7 @@ _SWITCH = {"on": 1.0, "off": 0.0}
 
 @dataclass(frozen=True, eq=False)
 class DrivePath:
-    """Load path: `drive` takes the `values` (k,) [SI], relative to the static equilibrium under `loads` and `weight` (0: without).
+    """Load path: `values` (k,) [SI] of the `drive`, relative to the static equilibrium under `loads` and `weight` (0: without weight).
 
     `locked` coordinates are fixed at their static equilibrium values.
     """
@@ -49,11 +49,11 @@ class DrivePath:
     weight: float
 
     def rest(self, model: nonlinear.Nonlinear) -> equilibrium.State:
-        """Static equilibrium. Raises `DesignError` if none is found."""
+        """Return the static equilibrium. Raises `DesignError` if there is none."""
         return _resting(equilibrium.equilibrium(model, self.loads, weight=self.weight))
 
     def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State) -> paths.LoadPath:
-        """Equilibria along the path."""
+        """Return the equilibria along the path from the static equilibrium `rest`."""
         target, hold = self._wanted(model, rest, None)
         result = paths.load_path(model, self.drive, target, loads=self.loads, hold=hold, weight=self.weight)
         _require_continuation(result.state)
@@ -67,12 +67,12 @@ class DrivePath:
         return start + target, {name: float(operating_point.coordinate(rest, name)) for name in self.locked}
 
     def points(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Points:
-        """Points of the path, for the computation of single columns."""
+        """Return the points of the path, from which single columns can be computed."""
         (result,) = self.points_of_designs((model,), values)
         return result
 
     def points_of_designs(self, models: Sequence[nonlinear.Nonlinear], values: Array | None = None) -> list[strokes.Points]:
-        """Points of several designs of one structure, in one run."""
+        """Return the points of the path for several designs of one structure, solved together."""
         rests = [_resting(each) for each in equilibrium.equilibria(models, self.loads, weight=self.weight)]
         requested = [self._wanted(model, rest, values) for model, rest in zip(models, rests, strict=True)]
         target, hold = [each for each, _ in requested], [each for _, each in requested]
@@ -117,7 +117,7 @@ def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:
 
 
 def course(mechanism: Mechanism, name: str) -> DrivePath:
-    """Read a load path of `[paths]`. Raises `DesignError` with all errors of the path.
+    """Read the load path `name` in `[paths]`. Raises `DesignError` with all errors of the path.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")

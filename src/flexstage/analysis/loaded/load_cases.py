@@ -1,4 +1,4 @@
-"""Critical load factors of load cases and stroke ends of a design."""
+"""Critical load factors of a design for its load cases, at the static equilibrium and at the ends of the strokes."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES
 
 REST = "at rest"
 ENOUGH = 1e-4
-"""Relative tolerance of a load factor."""
+"""Relative tolerance of a critical load factor."""
 _MOST = 1e12
 """Largest load factor of a load path."""
 _ENDS = 8
@@ -48,8 +48,8 @@ _ENDS = 8
 class LoadCase(CheckedFields):
     """Load case: the load that `grows` (loads by name, including weight and specified forces) at an operating point.
 
-    `stays` are constant loads. Coordinates and strokes in `at` are displacements from the static equilibrium. The stage is free under the
-    force that displaces a coordinate, unless the coordinate is `locked`. `gravity` is the share of weight.
+    `stays` are constant loads. Coordinates and strokes in `at` are displacements from the static equilibrium. Unless a displaced coordinate
+    is `locked`, the stage is free under the force that displaces it. `gravity` is the fraction of the weight.
     """
 
     load: str
@@ -62,12 +62,12 @@ class LoadCase(CheckedFields):
 
     @property
     def shares(self) -> tuple[float, float]:
-        """Constant shares of weight and of specified forces."""
+        """Fractions of the weight and of the specified forces that remain constant."""
         return (0.0 if WEIGHT in self.grows else self.gravity, 0.0 if STATED in self.grows else 1.0)
 
     @property
     def whole(self) -> dict[str, float]:
-        """Loads other than the stage's own."""
+        """Constant and growing loads by name, without weight and specified forces."""
         grown = {name: value for name, value in self.grows.items() if name not in {WEIGHT, STATED}}
         return {name: self.stays.get(name, 0.0) + grown.get(name, 0.0) for name in {**self.stays, **grown}}
 
@@ -76,8 +76,8 @@ class LoadCase(CheckedFields):
 class CaseFactor:
     """Critical load factor of a `load` at an operating point `place`, with the `kind` of end and the `buckling_mode`.
 
-    `factor` is infinite if the stage is stable up to the largest factor, NaN if unknown; `why` is the reason. `bound` is the factor up to
-    which the stage is stable, NaN if unknown.
+    `factor` is infinite if the stage is stable up to the largest factor, and NaN if unknown, for the reason `why`. `bound` is the factor up
+    to which the stage is known to be stable, NaN if unknown.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -97,7 +97,7 @@ class CaseFactor:
 
 
 class CaseFactors(Result):
-    """Critical load factors of all load cases and stroke ends, `cases`, and the required least factor, `demand`."""
+    """Critical load factors of all load cases, `cases`, and the required least factor, `demand`."""
 
     cases: tuple[CaseFactor, ...]
     demand: Annotated[float, RATIO]
@@ -105,7 +105,7 @@ class CaseFactors(Result):
 
     @property
     def least(self) -> CaseFactor | None:
-        """Case with the least critical factor; None if none buckles."""
+        """Case with the least critical load factor; None if the stage does not buckle in any case."""
         known = [case for case in self.cases if np.isfinite(case.factor)]
         return min(known, key=lambda case: case.factor, default=None)
 
@@ -144,11 +144,13 @@ def buckling_factors(
 ) -> CaseFactors:
     """Compute the critical load factor of every load case and stroke end of a design, at large displacements.
 
-    Loads are the weight with payloads, and specified forces with preloads; for a path in `[paths]` also the loads in its `hold`. One load
-    grows at a time; all others are constant. Operating points: the static equilibrium, and both ends of every path. A design without paths
-    uses both ends of every actuator (at most eight), and the worst corner of the strokes by linearised buckling.
+    The loads are the weight with payloads, and the specified forces with preloads; for a path in `[paths]`, also the loads in its `hold`.
+    One load grows at a time; all others are constant. The operating points are the static equilibrium and both ends of every path. For a
+    design without paths, they are both stroke ends of every actuator (at most eight), and the worst corner of the strokes by linearised
+    buckling.
 
-    A permanent constant-direction force displaces a coordinate, as for `--at`; a stroke is fixed. Load factors end at `most`.
+    At an operating point, a constant-direction force displaces a coordinate, as for `--at`; a stroke is fixed. Load factors are computed up
+    to `most`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [case.place for case in buckling_factors(parallelogram(), most=2.0).cases]
@@ -160,7 +162,7 @@ def buckling_factors(
 
 
 def load_cases(mechanism: Mechanism) -> tuple[LoadCase, ...]:
-    """Return the load cases and stroke ends of a design, as in `buckling_factors`.
+    """Return the load cases of a design at all operating points, as in `buckling_factors`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [(case.load, case.place) for case in load_cases(parallelogram())][:2]
@@ -245,9 +247,9 @@ def _factor(model: Nonlinear, case: LoadCase, most: float) -> CaseFactor:
 
 
 def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tolerance: float = ENOUGH) -> Critical:
-    """Compute the critical factor of a load case from its operating point; a factor below 1 from zero load.
+    """Compute the critical load factor of a load case on the path from its operating point; a factor below 1, on the path from zero load.
 
-    Raises `DesignError` if the stage has no equilibrium there, and as `critical_load` does.
+    Raises `DesignError` if there is no equilibrium at the operating point, and as `critical_load` does.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear

@@ -1,4 +1,4 @@
-"""Effect of permanent load (weight, payloads, preloads, forces, bent flexures) on a stage, and its linearised loaded model."""
+"""Effect of permanent load (weight, payloads, preloads, forces, bent flexures) on a stage, and the model linearised under this load."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ else:
 _BENT = "flexures that are not straight when free"
 _WARM = "its temperatures"
 FELT = 0.01
-"""Relative change of a stiffness or frequency above which results are for the loaded stage."""
+"""Relative change of a stiffness or frequency due to permanent load, above which results are computed for the loaded stage."""
 _MODES = 6
 
 
@@ -45,10 +45,10 @@ _MODES = 6
 class LoadEffect:
     """Effect of the permanent load (weight, payloads, preloads, specified forces, bent or warm flexures) on a stage.
 
-    `change` is the largest relative change of the platform stiffness along an axis or of one of the first frequencies, and `figure` its
-    name. If `figure` is empty, `change` bounds any stiffness, from linearised buckling. `model` is the model linearised about the loaded
-    state if the change is significant (1 % or more), else None. `links` is that model link by link, for lost motion and drift; `state` is
-    the loaded state. `why` is the reason if the change is unknown.
+    `change` is the largest relative change of the platform stiffness along an axis or of one of the first frequencies; `figure` is the name
+    of this quantity. If `figure` is empty, `change` is an upper bound for any stiffness, from linearised buckling. `model` is the model
+    linearised about the loaded state if the change is significant (1 % or more), else None. `links` is the same model without inner
+    coordinates of flexures, for lost motion and drift. `state` is the loaded state. `why` is the reason if the change is unknown.
     """
 
     change: Annotated[float, RATIO]
@@ -60,7 +60,7 @@ class LoadEffect:
 
     @cached_property
     def links(self) -> LinearModel | None:
-        """Model linearised about the loaded state link by link: flexures follow their ends quasi-statically."""
+        """Model linearised about the loaded state without inner coordinates: flexures follow their ends quasi-statically."""
         return None if self.model is None or self.state is None else linearise.linearise(self.state, inner=False)
 
     @property
@@ -95,9 +95,9 @@ class LoadEffect:
 def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     """Compute the effect of the permanent load on a stage; `None` for a batch of designs or an unknown load factor.
 
-    Linearised buckling bounds the relative change of every stiffness by 1 / load factor. If this bound is 1 % or more, the change is
-    computed in the nominal position, and if significant, at large displacements. Flexures that are not straight when free have no such
-    bound: their stages are computed at large displacements. Raises `DesignError` if the stage has no elastic model.
+    By linearised buckling, the relative change of every stiffness is at most 1 / load factor. If this bound is 1 % or more, the change is
+    computed in the nominal position, and if significant, at large displacements. For flexures that are not straight when free, the bound is
+    not valid: these stages are always computed at large displacements. Raises `DesignError` if the stage has no elastic model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> load_effect(parallelogram()).model is None
@@ -126,7 +126,7 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
 
 
 def felt_links(mechanism: Mechanism) -> LinearModel:
-    """Return the lumped model link by link, linearised about the loaded state if the permanent load is significant.
+    """Return the lumped model; if the permanent load is significant, linearised about the loaded state without inner coordinates.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> "geometric" in felt_links(parallelogram()).stiffness

@@ -37,11 +37,13 @@ _HELD = tuple(f"{SEAT}.{name}" for name in COMPONENTS)
 class Misaligned(Result):
     """Result for an instance `copy`, misaligned on the ground along (x, y, z) or about (rx, ry, rz) an axis of its frame.
 
-    `along` has a row for each misalignment, with the load that forces the instance there and the first frequencies. Further columns are the
-    largest stress and strain of a flexure, and the number of unstable modes (0: stable). `state` has the equilibria. `loads` are the
-    wrenches in all flexures at the largest misalignment, on each end in the frame of its start. `critical` is the misalignment at which the
-    first stiffness vanishes [rad, m]; NaN if none does. `followed` is the largest misalignment known to be stable: `critical`, 0.1 rad, 0.1
-    of the longest flexure, or the end of the path. Stable states beyond `critical` belong to another branch: they have no numbers.
+    `along` has a row for each misalignment, with the load that forces the instance into this position, and the first frequencies. Further
+    columns are the largest stress and strain of a flexure, and the number of unstable modes (0: stable). `state` has the equilibria.
+    `loads` are the wrenches at the largest misalignment on the end of each flexure, in the frame of its start.
+
+    `critical` is the misalignment at which the first stiffness vanishes [rad, m]; NaN if none does. `followed` is the largest misalignment
+    known to be stable: `critical`, 0.1 rad, 0.1 of the longest flexure, or the end of the path. Stable states beyond `critical` belong to
+    another branch and have no values.
     """
 
     copy: str
@@ -56,16 +58,17 @@ class Misaligned(Result):
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Strains beyond the limits of the theory."""
+        """Warnings of strains beyond the limits of the theory."""
         return tuple(strain_warnings(self.strained))
 
 
 class Misalignments(Result):
     """Critical misalignment of each instance, by axis of its own frame; null if no stiffness vanishes.
 
-    `followed` is the misalignment up to which the stage is known to be stable, as in `Misaligned`. `load` forces the instance to `size`
-    [rad, m], `stress` is the largest of a flexure [Pa]; null if no equilibrium was found. `worst` is the result for the instance and axis
-    with the least `followed`; if all are equal, with the largest stress. It is None if no instance joins the ground.
+    `followed` is the misalignment up to which the stage is known to be stable, as in `Misaligned`. `load` is the load that misaligns the
+    instance by `size` [rad, m]; `stress` is the largest stress in a flexure [Pa]. Both are null if no equilibrium was found. `worst` is the
+    result for the instance and axis with the least `followed`; if all are equal, with the largest stress. `worst` is None if no instance is
+    connected to the ground.
     """
 
     critical: Matrix
@@ -77,17 +80,17 @@ class Misalignments(Result):
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Strains beyond the limits of the theory in the worst case."""
+        """Warnings of strains beyond the limits of the theory in the worst case."""
         return () if self.worst is None else self.worst.warnings
 
 
 @check_arguments
 def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points: int = 11) -> Misaligned:
-    """Compute internal loads of an instance or link forced into a misaligned seat on the ground, at large displacements, with weight.
+    """Compute the internal loads if an instance or link is mounted on a misaligned seat on the ground, at large displacements.
 
-    The seat joins the instance's links to the ground. It moves by `size` [m, rad] along or about an axis of the instance's frame, in
-    `points` steps from zero. The centre of rotation is the frame's origin (of a link: its middle). Motions that are not over-constrained
-    stay free. Raises `DesignError` for unknown names and for instances that do not join the ground.
+    The seat connects the instance's links to the ground. It moves by `size` [m, rad] along or about an axis of the instance's frame, at
+    `points` values from zero. The centre of rotation is the frame's origin (of a link: its middle). The weight is included. Motions that
+    are not over-constrained remain free. Raises `DesignError` for unknown names and for instances that are not connected to the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = misalign(parallelogram(), "left", "ry", 1e-3, points=3)
@@ -115,9 +118,9 @@ def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points:
 
 
 def misalignments(mechanism: Mechanism, axes: tuple[str, ...] = COMPONENTS[3:], *, size: float = 1e-3) -> Misalignments:
-    """Compute the critical misalignment of every instance (or link) on the ground, one at a time, by `axes` of its own frame.
+    """Compute the critical misalignment of every instance (or link) on the ground, one at a time, for `axes` of the instance's frame.
 
-    Axes are either rotations or translations, as all have one `size` [rad, m]. Raises `DesignError` as `misalign` does.
+    All axes must be rotations, or all translations, because they have the same `size` [rad, m]. Raises `DesignError` as `misalign` does.
     """
     rows = seated(mechanism)
     forced = [_forced(mechanism, copy, axis) for copy in rows for axis in axes]
@@ -143,7 +146,7 @@ def _at_size(forced: _Forced, size: float) -> tuple[float, float]:
 
 
 def seated(mechanism: Mechanism) -> tuple[str, ...]:
-    """Return the unit instances and single links that join the ground.
+    """Return the names of unit instances and single links that are connected to the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> seated(parallelogram())

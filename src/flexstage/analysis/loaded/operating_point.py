@@ -33,11 +33,11 @@ _SHARES = np.linspace(0.0, 1.0, 17)[1:-1]
 
 
 class OperatingPoint(Result):
-    """Operating point: `sag` is the static deflection under weight, loads and heat, `moved` the displacement from there.
+    """Operating point: `sag` is the static deflection under weight, loads and heat, `moved` the displacement from static equilibrium.
 
-    Both have a row for each point (the platform and named points), columns displacement and rotation vector; `moved` is None without
-    displacement. `held` lists every displaced or fixed coordinate: its value relative to the static equilibrium, and the force that holds
-    it. `rest` and `state` are the two equilibria; `linear` is the model linearised about the second.
+    Both have a row for each point (the platform and named points); the columns are displacement and rotation vector. `moved` is None
+    without displacement. `held` lists every displaced or fixed coordinate: its value relative to the static equilibrium, and the force that
+    holds it. `rest` is the static equilibrium, `state` the displaced equilibrium, and `linear` the model linearised about `state`.
     """
 
     sag: Matrix
@@ -52,12 +52,12 @@ class OperatingPoint(Result):
 
     @cached_property
     def links(self) -> LinearModel:
-        """Linearised model link by link, for lost motion: flexures follow their ends quasi-statically."""
+        """Linearised model without inner coordinates, for lost motion: flexures follow their ends quasi-statically."""
         return linearise(self.state, locked=self.locked, inner=False)
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Strains beyond the limits of the theory, and drives without effect."""
+        """Warnings of strains beyond the limits of the theory, and of drives without effect."""
         return (*self.doubts, *strain_warnings(strains(self.state)), *left_out(self.state))
 
 
@@ -72,13 +72,14 @@ def operating_point(
 ) -> OperatingPoint:
     """Compute the operating point of a stage at large displacements, and linearise about it.
 
-    First, the static equilibrium is solved under weight, payloads, preloads and specified forces, `loads` (as in `equilibrium`) and
-    `temperature` (a uniform change [K]). Relative to it, `at` displaces coordinates (`platform.y` [m], `platform.rz` [rad], a component of
-    the rotation vector) by a constant-direction force. This force then remains while the coordinate is released; strokes in `at` (of a
-    stack, by its name) are fixed. Coordinates in `fixed` are fixed at their equilibrium value, or at the value in `at`.
+    First, the static equilibrium is solved under weight, payloads, preloads, specified forces, `loads` (as in `equilibrium`) and
+    `temperature` (a uniform change [K]). `at` then displaces coordinates relative to this equilibrium by constant-direction forces:
+    `platform.y` [m], or `platform.rz` [rad], a component of the rotation vector. In the linear model, these coordinates are free under the
+    forces. Strokes in `at` (of a stack, by its name) are fixed. Coordinates in `fixed` are fixed at their equilibrium value, or at the
+    value in `at`.
 
-    Raises `DesignError` for unknown names, contradictory conditions, a missing equilibrium (with the largest share that has one), and
-    for a released stage that is unstable.
+    Raises `DesignError` for unknown names, contradictory conditions, and a missing equilibrium (with the largest fraction that has one).
+    Also if the stage is unstable under the forces.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = operating_point(parallelogram(), {"platform.x": 1e-4})
@@ -111,7 +112,7 @@ def operating_point(
 
 
 def require_consistent(model: Nonlinear, at: Mapping[str, float], loads: Mapping[str, float], hold: Sequence[str]) -> None:
-    """Refuse contradictory displacements, loads and fixed coordinates, with all errors.
+    """Raise `DesignError` with all contradictions between displacements, loads and fixed coordinates.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> require_consistent(nonlinear(parallelogram()), {"platform.x": 1e-4}, {"platform.fy": 1.0}, [])
@@ -121,7 +122,7 @@ def require_consistent(model: Nonlinear, at: Mapping[str, float], loads: Mapping
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """Definition of an operating point: constant `loads`, displacements and strokes `at`, `fixed` coordinates, share of weight."""
+    """Definition of an operating point: constant `loads`, displacements and strokes `at`, `fixed` coordinates, fraction of `weight`."""
 
     model: Nonlinear
     loads: Mapping[str, float]
@@ -131,34 +132,34 @@ class Conditions:
 
     @cached_property
     def rest(self) -> State:
-        """Static equilibrium under the constant loads alone."""
+        """Static equilibrium under only the constant loads."""
         result = equilibrium(self.model, self.loads, weight=self.weight)
         require_equilibrium(result)
         return result
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Displaced coordinates, then the other fixed ones."""
+        """Names of the displaced coordinates, then of the other fixed coordinates."""
         return tuple(dict.fromkeys([*(name for name in self.at if name not in self.driven), *self.fixed]))
 
     @cached_property
     def driven(self) -> dict[str, float]:
-        """Strokes and forces in `at`."""
+        """Strokes and forces in `at`, by input name."""
         inputs = {channel.name for channel in self.model.inputs}
         return {name: value for name, value in self.at.items() if name in inputs}
 
     def held(self, share: float | Array) -> dict[str, Any]:
-        """Values of displaced and fixed coordinates at a share of the displacement."""
+        """Return the values of displaced and fixed coordinates at a fraction of the displacement."""
         return {name: coordinate(self.rest, name) + share * self.at.get(name, 0.0) for name in self.coordinates}
 
     def reach(self, share: float | Array) -> State:
-        """Equilibria at shares of the displacement."""
+        """Return the equilibria at fractions of the displacement."""
         given = {name: self.loads.get(name, 0.0) + share * value for name, value in self.driven.items()}
         return equilibrium(self.model, {**self.loads, **given}, hold=self.held(share), weight=self.weight, start=self.rest)
 
 
 def coordinate(state: State, name: str) -> Array:
-    """Return the value (...) of a coordinate, as fixed by `equilibrium` [m, rad].
+    """Return the value (...) [m, rad] of a coordinate at a state, named as in the `hold` of `equilibrium`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> round(float(coordinate(equilibrium(nonlinear(parallelogram()), hold={"platform.x": 1e-4}), "platform.x")), 12)

@@ -1,4 +1,4 @@
-"""Seating of balls under weight, payloads and forces, strokes zero: lift-off, slip and the onset of yield."""
+"""Seating of balls in their seats under weight, payloads and forces with zero strokes: lift-off, slip and onset of yield."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _RANK = 1e-9
 class Seating:
     """Contact loads of a ball in its seat, at the worst contact.
 
-    `left` (...) is the ratio of the least normal force to the preload: at zero the ball lifts off. `slip` is the ratio of tangential force
-    to the friction limit, NaN without specified friction. `pressure` [Pa] is the greatest, `crush` its ratio to the onset of yield in the
-    softer material, NaN if neither has a yield stress.
+    `left` (...) is the ratio of the least normal force to the preload; the ball lifts off at zero. `slip` is the ratio of the tangential
+    force to the friction limit, NaN without specified friction. `pressure` is the largest contact pressure [Pa]. `crush` is its ratio to
+    the pressure at the onset of yield in the softer material, NaN if neither material has a yield stress.
     """
 
     left: Array
@@ -42,9 +42,9 @@ class Seating:
 def seating(mechanism: Mechanism, model: LinearModel) -> dict[str, Seating]:
     """Compute the seating of each ball contact, by link, under the permanent load.
 
-    The wrench of a link determines the motion of its ball, except for motions without stiffness, and so the force of each contact.
-    Stiffness is linearised about the preload. The criterion is gross sliding: the total tangential force exceeds friction times the normal
-    force.
+    The wrench of a link determines the motion of its ball (except for motions without stiffness), and thus the force of each contact. The
+    stiffness is linearised about the preload. A contact slips if the total tangential force exceeds the friction coefficient times the
+    normal force (gross sliding).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -69,7 +69,7 @@ def seating(mechanism: Mechanism, model: LinearModel) -> dict[str, Seating]:
 
 
 def seated(part: Contact, material: Material, wrench: Array) -> Seating:
-    """Compute the seating of a ball under a wrench (..., 6) on the ball about its centre, in addition to the preload."""
+    """Compute the seating of a ball under a `wrench` (..., 6) [N, N m] on the ball about its centre, in addition to the preload."""
     contacts = hertz(part, material)
     pressed, shifted = _contact_forces(part, material, contacts, wrench)
     left = np.min(pressed / np.real(contacts.force)[..., None], axis=-1)
@@ -99,7 +99,7 @@ def _softer(material: Material) -> Array:
 
 
 def seating_findings(found: Mapping[str, Seating]) -> Iterator[Finding]:
-    """Return warnings for balls that lift off, slip or yield, on the first design."""
+    """Yield warnings for balls that lift off, slip or yield, in the first design."""
     for name, each in found.items():
         left, slip, pressure, crush = (float(first_design(value, 0)) for value in (each.left, each.slip, each.pressure, each.crush))
         if left <= 0.0:

@@ -1,8 +1,8 @@
 """Stability of a whole stage: linearised buckling load factors in the nominal position.
 
-Linearised buckling of the drawn stage, (K + lambda K_g) x = 0. K_g is the second variation of the energy about the loaded stage. It has
-terms of every part under the wrench it carries (`beams.geometric`)and of every rigid body with forces at points that rotate with it.
-With F at r from the body's reference, over all forces on it: tr(S) I - (S + S^T)/2, S = sum F r^T.
+Linearised buckling of the nominal stage solves (K + lambda K_g) x = 0. The geometric stiffness K_g is the second variation of the energy of
+the loaded stage. It has one term for every part under its wrench (`beams.geometric`), and one for every rigid body with forces F at points
+r that rotate with the body. The latter is tr(S) I - (S + S^T)/2 with S = sum F r^T, r from the body's reference point.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from flexstage.parts.part import Part, push_of
 from flexstage.spatial.frame import COMPONENTS, FORCES, spatial_rotation, transport, twist_transform
 
 DOUBTFUL = 20.0
-"""Load factor below which the loaded stage differs from the nominal one: 5 % of the stiffness."""
+"""Load factor below which the stiffness of the loaded stage differs from the nominal stiffness by more than about 5 %."""
 
 _Of = TypeVar("_Of")
 _KEPT, _ALIKE, _REPEATED, _NAMED = 3, 1e-9, 1e-6, 6
@@ -58,8 +58,9 @@ _SHAPES = 6
 class Stability:
     """Buckling load factors of a stage (...): `dead` of weight, payloads and forces, strokes zero.
 
-    `worst` (...) is the factor of the permanent load with the worst `strokes` (..., m) [m]; infinite without softening. `stiffens` (...) is
-    the largest relative stiffening by the permanent load. `moving` names the bodies with the largest motion in the buckling mode.
+    `worst` (...) is the load factor of the permanent load together with the worst `strokes` (..., m) [m]; it is infinite without softening.
+    `stiffens` (...) is the largest relative stiffening by the permanent load. `moving` names the bodies with the largest motion in the
+    buckling mode.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -89,7 +90,7 @@ class Stability:
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Warnings if stiffness and frequencies of the loaded stage differ from the nominal ones."""
+        """Warnings if stiffness and frequencies of the loaded stage differ significantly from the nominal stage."""
         return tuple(self._doubts())
 
     def _doubts(self) -> Iterator[Finding]:
@@ -127,10 +128,10 @@ def _lower(factor: float) -> float:
 
 @SESSION.keep(2)
 def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
-    """Compute linearised buckling load factors of the stage; with `limits`, also of the worst strokes between them. Cached.
+    """Compute linearised buckling load factors of the stage; with `limits`, also for the worst strokes within the limits. Cached.
 
-    `model` is the lumped one. The worst strokes are at a corner, as the reciprocal of the factor is convex in them. Raises `DesignError`
-    for stages with superelements: their geometric stiffness is unknown.
+    `model` must be the lumped model. The worst strokes are at a corner of the limits, because the reciprocal of the factor is a convex
+    function of the strokes. Raises `DesignError` for stages with superelements, whose geometric stiffness is unknown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -1,4 +1,4 @@
-"""Models of stable stages: elastic results require a stable nominal position."""
+"""Check that a stage is stable in its nominal position, which all elastic results require."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _CORNERS = 12
 
 
 def standing(mechanism: Mechanism) -> LinearModel:
-    """Return the lumped model of a stage that is stable in its nominal position; unchecked for a batch or superelements.
+    """Return the lumped model of a stage after a check that its nominal position is stable; no check for a batch or superelements.
 
     Raises `DesignError` if the load factor of weight, payloads and forces is below 1.
 
@@ -33,7 +33,7 @@ def standing(mechanism: Mechanism) -> LinearModel:
 
 
 def under_load(mechanism: Mechanism) -> Stability | None:
-    """Return load factors of the permanent load, strokes zero; `None` for a batch or a stage with superelements."""
+    """Return the load factors of the permanent load with zero strokes; `None` for a batch or a stage with superelements."""
     return _under_load(mechanism)[1]
 
 
@@ -68,7 +68,7 @@ def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
 
 
 def require_standing(mechanism: Mechanism) -> None:
-    """Refuse elastic results of a stage that is unstable in its nominal position; pass if the lumped model fails.
+    """Raise `DesignError` if a stage is unstable in its nominal position. If it has no lumped model, there is no check.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> require_standing(parallelogram())
@@ -83,7 +83,7 @@ def require_standing(mechanism: Mechanism) -> None:
 
 @SESSION.keep(2)
 def load_factors(mechanism: Mechanism) -> Stability | None:
-    """Return load factors of the stage over all strokes, relative to zero voltage; `None` without an elastic model.
+    """Return load factors of the stage over all strokes, which are relative to zero voltage; `None` without an elastic model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> bool(load_factors(parallelogram()).worst > 100.0)

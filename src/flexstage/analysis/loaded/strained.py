@@ -1,4 +1,4 @@
-"""Strain limits of the theory of large displacements."""
+"""Warnings for strains beyond the limits of the theory of large displacements."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def strain_warnings(strained: Strains) -> Iterator[Finding]:
 
 
 def left_out(state: State) -> Iterator[Finding]:
-    """Return warnings for effects outside the theory: contacts that lift off, stops that are reached.
+    """Yield warnings for effects that the theory neglects: contacts that lift off, stops that are reached.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium

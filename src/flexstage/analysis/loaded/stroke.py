@@ -38,9 +38,10 @@ class Stroke(Result):
     """Characteristics of a stage over the stroke of a `drive`: a row of `along` for each point.
 
     Columns: the drive's value, its holding force and stiffness (of a coordinate), and the platform's displacement and rotation vector.
-    `lost` is the relative lost motion of a stack's stroke. Further columns are the platform's first natural frequencies, free under that
-    force, the largest stress and strain of a flexure, and the number of unstable modes (0: stable). Drive and displacements are relative to
-    `sag`, the static deflection under weight and loads; None if they are relative to the nominal position.
+    `lost` is the relative lost motion of a stack's stroke. Further columns are the platform's first natural frequencies (with the
+    coordinate free under the holding force), the largest stress and strain of a flexure, and the number of unstable modes (0: stable).
+    Drive and displacements are relative to the static deflection `sag` under weight and loads; if `sag` is None, relative to the nominal
+    position.
     """
 
     drive: str
@@ -52,7 +53,7 @@ class Stroke(Result):
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Strains beyond the limits of the theory, and missing equilibria."""
+        """Warnings of strains beyond the limits of the theory, and of missing equilibria."""
         return (*_warnings(self), *self.doubts)
 
 
@@ -68,9 +69,9 @@ class PostBuckling:
 def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics | None = None) -> Stroke:
     """Compute the characteristics over a stroke, point by point (docs/nonlinear.md, 25 to 28).
 
-    Frequencies are NaN if the free stage is unstable. Loads and weight belong to the path. The drive and displacements are relative to
-    `rest`, if specified. With the ideal `kinematics` of the stage, the lost motion of a driven stack is 1 - R_a V^+ (t - t_rest) / a. The
-    platform's displacement and rotation vector is t, the stroke a; R_a and V are of the nominal position (`lost_motion`).
+    Frequencies are NaN if the free stage is unstable. Loads and weight are those of the path. The drive and displacements are relative to
+    `rest`, if specified. With the ideal `kinematics` of the stage, the lost motion of a driven stack is 1 - R_a V^+ (t - t_rest) / a. Here
+    t is the platform's displacement and rotation vector, and a the stroke. R_a and V are for the nominal position (`lost_motion`).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.paths.load_path import load_path
@@ -94,7 +95,7 @@ def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics 
 class Points:
     """States (k,) along a drive's `values`, relative to `rest`, and their characteristics, computed on first use.
 
-    `locked` coordinates stay fixed for the free stage; the ideal `kinematics` gives lost motion.
+    `locked` coordinates remain fixed when the stage is free. The ideal `kinematics` is needed for lost motion.
     """
 
     drive: str
@@ -116,7 +117,7 @@ class Points:
 
     @cached_property
     def motions(self) -> Array:
-        """Number of unstable modes of each state, fixed drive coordinates fixed; -1 without equilibrium."""
+        """Number of unstable modes of each state with the drive coordinate fixed; -1 without equilibrium."""
         return unstable_motions(self.state)
 
     @cached_property
@@ -131,7 +132,7 @@ class Points:
         return dict(_columns(self))
 
     def column(self, name: str) -> Array:
-        """A single column (k,)."""
+        """Return a single column (k,)."""
         return self.columns[name][0]()
 
 

@@ -22,9 +22,9 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, WRENCH
 class StackLine(Result):
     """Force-displacement lines of single stacks against the stage, (..., n) each; other strokes zero.
 
-    `free` displacement [m] and `blocking` force [N] are the ends of the stack's line, `stiffness` [N/m] is its stiffness. `stage_stiffness`
-    [N/m] belongs to the stage at its ends, other strokes fixed. `travel` [m] and `force` [N] (compression) are the intersection of both
-    lines.
+    `free` displacement [m] and `blocking` force [N] are the ends of the stack's line; `stiffness` [N/m] is the stack's stiffness.
+    `stage_stiffness` [N/m] is the stiffness of the stage between the ends of the stack, with other strokes fixed. `travel` [m] and `force`
+    [N] (compression) are the intersection of both lines.
     """
 
     TABLE: ClassVar[Layout] = Layout("Stacks against the stage")
@@ -60,7 +60,7 @@ class PlatformLine(Result):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
-        """Rows are the coordinates, columns travel, stiffness and blocked force."""
+        """Table of the coordinates (rows) with travel, stiffness and blocked force."""
         moves = list(map(MOTION.unit, self.coordinates))
         loads = list(map(WRENCH.unit, self.coordinates))
         slopes = ratio_units(tuple(loads), tuple(moves))
@@ -72,7 +72,7 @@ class PlatformLine(Result):
 def stack_lines(mechanism: Mechanism, model: LinearModel) -> StackLine:
     """Compute the intersection of each stack's line F = k (u - s) with the stage's line F = k_s s.
 
-    The model gives the stack's force per stroke, k k_s / (k + k_s), and so k_s.
+    The model gives the stack's force per stroke, k k_s / (k + k_s), from which k_s follows.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -112,8 +112,8 @@ def _along(model: LinearModel, link: str, name: str, free: Array) -> Array:
 def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) -> PlatformLine:
     """Compute force-displacement lines of the platform at its reference point; `mapping` as for `single_axis`.
 
-    The command along coordinate j ends at the first actuator's limit. Travel is the elastic motion there, including lost motion. The load
-    acts along j only, the other coordinates are free: stiffness 1 / C_jj.
+    The command along coordinate j ends where the first actuator reaches its limit. The travel is the elastic motion at this command,
+    including lost motion. The load acts only along j; the other coordinates are free, so the stiffness is 1 / C_jj.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

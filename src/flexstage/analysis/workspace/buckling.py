@@ -40,8 +40,8 @@ class Ends(Enum):
 class Buckling(Result):
     """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst corner (negative: tension throughout), `length` [m].
 
-    `ends` lists the assumed end conditions of each column. `stage` is buckling of the whole stage, with the actual end conditions and with
-    several columns and bodies together.
+    `ends` lists the assumed end conditions of each column. `stage` is the buckling of the whole stage: its end conditions are exact, and
+    columns and bodies can buckle together.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -80,20 +80,18 @@ class Buckling(Result):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:
-        """Rows are the links, columns compression, critical load and load factor."""
+        """Table of the links (rows) with compression, critical load and load factor."""
         values = np.stack([self.compression, self.critical, self.factor], axis=-1)
         return Matrix(values, self.links, ("compression", "critical", "factor"), (("N", "N", "1"),) * len(self.links))
 
 
 def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> Buckling:
-    """Compute Euler loads of slender parts against their compression over the corners of the strokes and permanent load.
+    """Compute Euler loads of slender parts, and their largest compression over the corners of the strokes under permanent load.
 
-    Slender parts are leaves, rods, notches, necks and stacks. P = pi^2 E I / L_e^2 with the least second moment of the thinnest section
-    over the whole length, so hinges are underestimated. A lower
-    torsional buckling load of the section law takes precedence.
-
-    The factor of the whole stage uses the actual end conditions. Compressions below 1e-9 of the largest force in any part are rounding, and
-    count as zero.
+    Slender parts are leaves, rods, notches, necks and stacks. The Euler load is P = pi^2 E I / L_e^2, with the least second moment of the
+    thinnest section over the whole length. The load of notched hinges is thus underestimated. A lower torsional buckling load takes
+    precedence. The load factor of the whole stage is for the actual end conditions. Compressions below 1e-9 of the largest force in any
+    part are rounding errors and count as zero.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -142,7 +140,7 @@ def _twisting_load(link: PlacedLink) -> Number:
 
 
 def stack_rigidity(piezo: Piezo) -> Number:
-    """Return the bending rigidity of a stack [N m^2]: as specified, else E I = k L d^2 / 16 of its ceramic (E = k L / A).
+    """Return the bending rigidity of a stack [N m^2]: as specified, else E I = k L d^2 / 16 of the ceramic (E = k L / A).
 
     >>> round(stack_rigidity(Piezo(stroke=1e-4, stiffness=16e6, length=0.1, diameter=0.01)), 9)
     10.0

@@ -1,4 +1,4 @@
-"""Clearance: the clear aperture as a keep-out area in plan, and the envelope."""
+"""Clearance of a stage: check of its outlines against the clear aperture (a keep-out area in plan) and the envelope."""
 
 from __future__ import annotations
 
@@ -36,8 +36,9 @@ class Intrusion:
 class Clearance(Result):
     """Clearance of the stage: its bounding box, envelope and clear aperture.
 
-    `intrusions` are into the `opening` (..., 2) [m], empty without an aperture. `low` and `high` are corners (..., 3) [m] of the bounding
-    box, `envelope` is (..., 3) [m] or `None`. `extreme` names the outermost outlines (low x, y, z, high x, y, z; first design).
+    `intrusions` are outlines inside the clear aperture, whose size is `opening` (..., 2) [m]; empty without an aperture. `low` and `high`
+    are corners (..., 3) [m] of the bounding box. `envelope` is the size (..., 3) [m] of the envelope, or `None`. `extreme` names the
+    outermost outlines (low x, y, z, high x, y, z; first design).
     """
 
     TABLE: ClassVar[Layout] = Layout("Clearance", "table reached_by", head="axis")
@@ -56,7 +57,7 @@ class Clearance(Result):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW, Heading(unit="mm")]:
-        """Rows are the axes; columns low, high, size (and envelope)."""
+        """Table of the axes (rows) with low, high, size, and envelope if specified."""
         columns = [self.low, self.high, self.size]
         names = ["low", "high", "size"]
         if self.envelope is not None:
@@ -70,7 +71,7 @@ class Clearance(Result):
 
     @property
     def notes(self) -> Annotated[tuple[str, ...], INNER]:
-        """Outlines inside the aperture, edges outside the envelope."""
+        """Notes on outlines inside the aperture and edges outside the envelope."""
         said = tuple(f"{each.where}: {each.what}." for each in self.findings)
         return said or (() if self.opening is None else ("Nothing enters the clear opening.",))
 
@@ -102,8 +103,9 @@ class Clearance(Result):
 def clearance(mechanism: Mechanism) -> Clearance:
     """Compare the bounding box with the envelope, and the outlines with the aperture (a rectangle about the z axis).
 
-    Convex outlines in plan, tested by separating axes: exact for boxes and round discs, an upper bound of the depth for tilted cylinders. A
-    body is clear if its upright through hole encloses the aperture. Parts without dimensions (compliance matrices, joints) are ignored.
+    The convex outlines are tested in plan by separating axes. The result is exact for boxes and round discs; for tilted cylinders, the
+    depth is an upper bound. A body is outside the aperture if its through hole along z encloses the aperture. Parts without dimensions
+    (compliance matrices, joints) are ignored.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> clearance(double_triangle()).size[2].round(6).item()

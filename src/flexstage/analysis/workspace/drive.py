@@ -16,9 +16,9 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 class Drive(Result):
-    """The electrical side of the actuators: `gain` (..., n) [m/V], `low`, `high`, `bias` [V], `capacitance` [F] (NaN if not specified).
+    """Electrical data of the actuators: `gain` (..., n) [m/V], `low`, `high`, `bias` [V], `capacitance` [F] (NaN if not specified).
 
-    Linear: the free stroke is proportional to the voltage; no hysteresis or creep.
+    The model is linear: the free stroke is proportional to the voltage, without hysteresis or creep.
     """
 
     TABLE: ClassVar[Layout] = Layout("Drive")
@@ -32,7 +32,9 @@ class Drive(Result):
 
 
 def drive(mechanism: Mechanism) -> Drive:
-    """Return the electrical side of a stage; default bias: mid-range. Raises `DesignError` for stacks without a voltage range.
+    """Return the electrical data of a stage's actuators. The default bias is mid-range.
+
+    Raises `DesignError` for stacks without a voltage range.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> electric = drive(double_triangle())

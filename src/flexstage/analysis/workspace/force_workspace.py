@@ -43,8 +43,9 @@ class ForceWorkspace(Result):
 
     `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate. The other ideal
     coordinates are zero if `alone`, else free. `bounds` (coordinates x causes) [m, rad] are the continuous motion limits by cause, `short`
-    the limits in short use (a coil's `duty`). They are NaN if unspecified. `current`, `voltage`, `power` and `rise` (coordinates x coils)
-    hold the motion: i, R i, i^2 R and i^2 R times the thermal resistance [K]. `unmoved` are ideal motions without an input.
+    the limits in short use (a coil's `duty`); NaN if unspecified. `current`, `voltage`, `power` and `rise` (coordinates x coils) are
+    required per motion to hold it: i, R i, i^2 R, and i^2 R times the thermal resistance [K]. `unmoved` are ideal motions that no input
+    drives.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -93,7 +94,7 @@ class ForceWorkspace(Result):
 
     @property
     def notes(self) -> Annotated[tuple[str, ...], INNER]:
-        """Motions that inputs do not move independently, or not at all."""
+        """Notes on motions that inputs do not drive independently, or not at all."""
         coupled = () if all(self.alone) else ("Fewer inputs than ideal motions: the other coordinates move freely.",)
         return (*coupled, *([f"No actuator moves {', '.join(self.unmoved)}."] if self.unmoved else []))
 
@@ -107,13 +108,14 @@ def _least(bounds: Array) -> Array:
 def force_workspace(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> ForceWorkspace:
     """Compute the force workspace: limits over compliance along every ideal motion, for stages with force actuators.
 
-    C = dx/du (elastic, strokes and forces) gives the inputs per motion G. It is C^-1 for as many inputs as motions, for more the least-norm
-    inverse relative to input limits. Coils limit the motion by peak and continuous current, heat i^2 R over thermal resistance, static
-    amplifier voltage R i, largest force and magnetic travel. Other limits are strokes, the nearer side of each stop, and yield in a hinge
-    under permanent load. Linear.
+    The elastic model gives C = dx/du for strokes and forces u. The inputs per motion are G = C^-1 for as many inputs as motions; for more
+    inputs, G is the least-norm inverse relative to the input limits. Coils limit the motion by peak and continuous current, heat i^2 R
+    through the thermal resistance, static amplifier voltage R i, largest force and magnetic travel. Other limits are strokes, the nearer
+    side of each stop, and yield in a hinge under permanent load. The computation is linear.
 
-    An input moves a coordinate if its effect exceeds 1e-9 of the Cauchy-Schwarz bound (c E)^1/2. Here c is the compliance of the coordinate
-    and E twice the energy of the input. Raises `DesignError` without a force actuator, an ideal motion, or a motion with an input.
+    An input drives a coordinate if its effect exceeds 1e-9 of the Cauchy-Schwarz bound (c E)^1/2. Here c is the compliance of the
+    coordinate, and E is twice the strain energy due to the input. Raises `DesignError` if the stage has no force actuator, no ideal motion,
+    or no motion that an input drives.
     """
     if not kinematics.thrusts or not kinematics.mobility:
         raise refuse("force_workspace", "no force actuator moves the stage", "Use the workspace of its strokes")
@@ -316,10 +318,10 @@ def _needs(assembly: Assembly, inputs: tuple[str, ...], names: tuple[str, ...], 
 
 
 def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
-    """Return the limits of every input: strokes from zero voltage, symmetric forces; the least specified short-use limit of a coil.
+    """Return the limits of every input: strokes from zero voltage, symmetric forces; for a coil, the least specified short-use limit.
 
-    A single input may not displace its coil by more than half the magnetic travel. Raises `DesignError` for a force actuator without a
-    limit.
+    An input is also limited so that, acting alone, it displaces its coil by at most half the magnetic travel. Raises `DesignError` for a
+    force actuator without a limit.
     """
     assembly, inputs = expand(mechanism), model.actuators
     strokes = stroke_limits(mechanism).from_zero
@@ -342,7 +344,7 @@ def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
 
 
 def bounds_along(found: ForceWorkspace, name: str) -> Array:
-    """Return the limits (..., k) of the motion along one coordinate, infinite if unspecified. Raises `DesignError` if all are."""
+    """Return the limits (..., k) of the motion along one coordinate, infinite if unspecified. Raises `DesignError` if none is specified."""
     if name not in found.coordinates:
         what = "no actuator moves it" if name in found.unmoved else "not an ideal motion of this stage"
         raise refuse(f"stroke.{name}", what, f"Its actuators move it along {', '.join(found.coordinates)}")

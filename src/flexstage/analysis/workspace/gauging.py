@@ -25,11 +25,12 @@ _LEVEL = 1e-9
 
 
 class GaugeRange(Result):
-    """Gauge readings at the worst corner of a box of commands, and half the measuring range (gauges at mid-range), (..., g) each.
+    """Gauge readings at the worst corner of a box of commands, and half ranges (gauges start at mid-range), (..., g) each.
 
-    `swing` the largest reading and `limit` half the range, in `units` by gauge (m, rad). `radius` [m] is each gauge's distance from the
-    platform's axis, `largest_here` [m] the largest within range at its angle, `largest_anywhere` [m] at any angle. Infinite: within range
-    everywhere; NaN: out of range even on the axis, or the gauge is not between platform and ground.
+    `swing` is the largest reading and `limit` half the range, in `units` by gauge (m, rad). `radius` [m] is each gauge's distance from the
+    platform's axis. `largest_here` [m] is the largest radius at the gauge's angle for which the reading is within the range,
+    `largest_anywhere` [m] the largest such radius at any angle. Infinite: within the range everywhere. NaN: outside the range even on the
+    axis, or the gauge is not between platform and ground.
     """
 
     TABLE: ClassVar[Layout] = Layout("Gauge ranges", "table used")
@@ -56,7 +57,7 @@ class GaugeRange(Result):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:
-        """Rows are the gauges."""
+        """Table of the gauges (rows)."""
         columns = ("swing", "limit", "radius", "largest_here", "largest_anywhere")
         values = np.stack([getattr(self, name) for name in columns], axis=-1)
         units = tuple((unit, unit, "m", "m", "m") for unit in self.units or ("m",) * len(self.gauges))
@@ -64,11 +65,11 @@ class GaugeRange(Result):
 
 
 class PoseResolution(Result):
-    """Pose resolution: platform motion for one resolution step of every gauge, by S = V (R_s V)^+, (..., 6) [m, rad].
+    """Pose resolution: platform motion (..., 6) [m, rad] for one resolution step of every gauge, by S = V (R_s V)^+.
 
-    S is by single gauges, also for those in sums; `gauge_steps` and `gauge_noise` (..., g) [m, rad] are their resolution and noise. `worst`
-    is for one step of all gauges with the worst signs, sum |S_ij| r_j; `rms` for independent steps, (sum S_ij^2 r_j^2)^(1/2). `noise` is
-    the rms of the specified noise densities over the gauges' bandwidths (NaN if unspecified).
+    The columns of S are single gauges, including gauges in sums. `gauge_steps` and `gauge_noise` (..., g) [m, rad] are their resolution r
+    and noise. `worst` is for one step of all gauges with the worst signs, sum |S_ij| r_j. `rms` is for independent steps, (sum S_ij^2
+    r_j^2)^(1/2). `noise` is the rms motion due to the specified noise densities over the gauges' bandwidths (NaN if unspecified).
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -87,16 +88,16 @@ class PoseResolution(Result):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:
-        """Rows are the six components of the platform's motion."""
+        """Table of the six components of the platform's motion (rows)."""
         units = tuple((unit,) * 3 for unit in TWIST_UNITS)
         return Matrix(np.stack([self.worst, self.rms, self.noise], axis=-1), COMPONENTS, ("worst", "rms", "noise"), units)
 
 
 def gauge_inverse(kinematics: Kinematics) -> Matrix:
-    """Compute S (..., 6, g), platform motion per reading: R_s^-1 for six gauges, else the least-squares inverse on the ideal motions.
+    """Compute S (..., 6, g), the platform motion per reading: R_s^-1 for six gauges, else the least-squares inverse on the ideal motions.
 
-    With sums of gauges, R_s is of the sums and of the gauges outside sums; the columns of S are the single gauges. Raises `DesignError` if
-    the gauges do not determine every ideal motion.
+    If there are sums of gauges, the rows of R_s are the sums and the gauges outside sums; the columns of S are the single gauges. Raises
+    `DesignError` if the gauges do not determine every ideal motion.
 
     >>> from flexstage.cases.double_triangle import SM_REF_A, double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -173,7 +174,8 @@ def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolut
 def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number]) -> GaugeRange:
     """Compute gauge readings over the corners of a box of commands (half widths by coordinate [m, rad]), and half ranges.
 
-    The platform's axis is the line along z through its reference point; gauges not between platform and ground have no `largest` radius.
+    The platform's axis is the line along z through its reference point. Gauges that are not between platform and ground have no largest
+    radius.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -25,7 +25,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, WRENCH_UNITS, transport
 OWN_WEIGHT = "own weight"
 _ROUNDING = 1e-9
 SAFETY = Graded(1.5, 1.0, Mark.PLAIN)
-"""Grades of safety factors: failure below 1, small margin below 1.5."""
+"""Grades of safety factors: failed below 1, warning below 1.5."""
 
 
 class LoadRange(Result):
@@ -47,9 +47,10 @@ class LoadRange(Result):
 class LoadShare(Result):
     """Axial forces of the stacks under permanent load, positive in compression.
 
-    `loads` (actuators x own weight, payloads and forces) [N]; `share` (actuators x wrench at the platform's reference) per unit wrench;
-    `stroke` (actuators x strokes) [N/m]. `maximum`, `preload` and `tensile` (..., n) [N] are the stacks' limits (NaN: not specified);
-    `reference` (..., 3) the platform's reference point [m].
+    `loads` (actuators x own weight, payloads and forces) [N] are the forces by cause. `share` (actuators x wrench components) are the
+    forces per unit wrench at the platform's reference point. `stroke` (actuators x strokes) [N/m] are the forces per stroke. `maximum`,
+    `preload` and `tensile` (..., n) [N] are the stacks' limits (NaN: not specified). `reference` (..., 3) [m] is the platform's reference
+    point.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -72,13 +73,13 @@ class LoadShare(Result):
         return np.sum(self.loads.values, axis=-1)
 
     def under(self, force: Array, at: Array) -> Array:
-        """Added compression (..., n) [N] due to a force (..., 3) [N] on the platform at a point (..., 3) [m], both in the stage's frame."""
+        """Return the compression (..., n) [N] due to a force (..., 3) [N] on the platform at a point (..., 3) [m], in stage axes."""
         moment = np.cross(at - self.reference, force)
         wrench = np.concatenate(np.broadcast_arrays(force, moment), axis=-1)
         return (self.share.values @ wrench[..., None])[..., 0]
 
     def range(self, limits: StrokeLimits) -> tuple[Array, Array]:
-        """Least and largest compression (..., n) [N] over the box of strokes with permanent load: exact interval ends."""
+        """Return the least and the largest compression (..., n) [N] over the box of strokes under permanent load (exact)."""
         ends = np.stack([self.stroke.values * limits.low[..., None, :], self.stroke.values * limits.high[..., None, :]])
         return (
             self.compression + np.sum(np.min(ends, axis=0), axis=-1),
@@ -86,29 +87,32 @@ class LoadShare(Result):
         )
 
     def usage(self, compression: Array) -> Array:
-        """Compression including preload over maximum load (..., n); NaN if unspecified."""
+        """Return compression including preload over the maximum load (..., n); NaN if unspecified."""
         return (compression + np.nan_to_num(self.preload)) / self.maximum
 
     def pull(self, compression: Array) -> Array:
-        """Tension over the sum of preload and tensile limit (..., n): above 1 the stack separates or breaks; infinite without either."""
+        """Return tension over the sum of preload and tensile limit (..., n); infinite if neither is specified.
+
+        Above 1, the stack separates or breaks.
+        """
         allowed = np.nan_to_num(self.preload) + np.nan_to_num(self.tensile)
         tension = np.maximum(0.0, -compression)
         safe = np.where(allowed > 0.0, allowed, 1.0)
         return np.where(tension <= 0.0, 0.0, np.where(allowed > 0.0, tension / safe, np.inf))
 
     def over(self, limits: StrokeLimits) -> LoadRange:
-        """Load range of the stacks over the box of strokes with permanent load."""
+        """Return the load range of the stacks over the box of strokes under permanent load."""
         least, largest = self.range(limits)
         return LoadRange(self.actuators, least, largest, self.usage(largest), self.pull(least))
 
     def use(self, limits: StrokeLimits) -> Array:
-        """Largest share of each stack's limits over the box of strokes (..., n), in compression or tension."""
+        """Return the largest utilisation of each stack's load limits over the box of strokes (..., n), in compression or tension."""
         least, largest = self.range(limits)
         pressed, pulled = np.broadcast_arrays(self.usage(largest), self.pull(least))
         return np.where(np.real(pulled) > np.real(np.nan_to_num(pressed)), pulled, pressed)
 
     def tension_findings(self, limits: StrokeLimits) -> Iterator[Finding]:
-        """Stacks in tension beyond preload and tensile limit, or without specified limits."""
+        """Yield a warning for each stack whose tension exceeds preload plus tensile limit, or whose limits are not specified."""
         least, pull = self.range(limits)[0], self.pull(self.range(limits)[0])
         first, share = (np.real(each).reshape(-1, len(self.actuators))[0] for each in (least, pull))
         scale = np.max(np.abs(first), initial=0.0)
@@ -125,8 +129,8 @@ class LoadShare(Result):
 def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     """Compute the distribution of weight (bodies, links, payloads) and specified forces over the stacks, strokes fixed.
 
-    Every force f at a point acts on its body's coordinates; f_stack = C K^-1 f. Small displacements; a stack without tensile limit and
-    preload also counts as connected in tension; check `pull`.
+    Every force f at a point acts on its body's coordinates; the stack forces are C K^-1 f. Displacements are small. All stacks are assumed
+    to transmit tension, also without preload and tensile limit: check `pull`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

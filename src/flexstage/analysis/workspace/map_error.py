@@ -1,4 +1,4 @@
-"""Error of the linear map x = J a against finite kinematics, over the whole workspace."""
+"""Error of the linear map x = J a relative to finite kinematics, over the whole workspace."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ _ROUNDING = 64.0 * float(np.finfo(float).eps)
 class MapError(Result):
     """Error of the linear map: finite pose minus J a.
 
-    `strokes` (k, ..., n) [m] have `errors` (k, ..., 6) [m, rad]. `worst` (..., 6) is the largest by axis, at `worst_strokes` (..., 6, n).
-    For rounding errors, these are 0 and the first strokes. `residual` (...) [m] is the largest constraint residual of redundant
+    `errors` (k, ..., 6) [m, rad] are for the `strokes` (k, ..., n) [m]. `worst` (..., 6) is the largest error by axis, at `worst_strokes`
+    (..., 6, n). If all errors are rounding, `worst` is 0 at the first strokes. `residual` (...) [m] is the largest residual of redundant
     constraints.
     """
 
@@ -63,7 +63,7 @@ class MapError(Result):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:
-        """Rows are the six components; columns the worst error and its strokes."""
+        """Table of the six components (rows) with the worst error and its strokes."""
         values = np.concatenate([self.worst[..., None], self.worst_strokes], axis=-1)
         units = tuple((unit, *("m",) * len(self.actuators)) for unit in TWIST_UNITS)
         return Matrix(values, COMPONENTS, ("worst", *self.actuators), units)
@@ -72,8 +72,8 @@ class MapError(Result):
 def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: StrokeLimits, *, inside: int = 64) -> MapError:
     """Compute the error of x = J a over the box of strokes: corners, centres of faces and `inside` points of a Halton sequence.
 
-    Redundant strokes strain the links unless they belong to a pose: these stages use the vertices of the reachable polytope and points
-    halfway to them. Raises `DesignError` for more than 12 actuators or none.
+    Redundant strokes strain the links unless they are consistent with a pose. For redundant actuators, the points are therefore the
+    vertices of the reachable polytope and points halfway to them. Raises `DesignError` for more than 12 actuators or none.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -95,7 +95,7 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
 
 
 def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> MapError:
-    """Compute the error of x = J a at strokes (k, ..., n) [m], batch axes between.
+    """Compute the error of x = J a at k points of strokes (k, ..., n) [m]; batch axes are between.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -24,7 +24,7 @@ _TOLERANCE = 1e-9
 class Polytope(Result):
     """Reachable poses {xi : `normals` xi <= `offsets`}: normals (..., 2 n, f), offsets (..., 2 n) [m].
 
-    `vertices` (..., v, f) [m, rad] (padded with NaN for designs with fewer), `volume` (...) in `volume_unit`.
+    `vertices` (..., v, f) [m, rad] are padded with NaN for designs with fewer vertices; `volume` (...) is in `volume_unit`.
     """
 
     TABLE: ClassVar[Layout] = Layout("Reachable extents, other coordinates free", "extent")
@@ -38,20 +38,20 @@ class Polytope(Result):
     provenance: str
 
     def contains(self, pose: Array) -> Array:
-        """Whether poses (..., f) [m, rad] can be reached; the boundary counts as reachable."""
+        """Return whether poses (..., f) [m, rad] can be reached; the boundary is included."""
         used = (self.normals @ pose[..., None])[..., 0]
         return np.all(used <= self.offsets + _TOLERANCE * np.abs(self.offsets), axis=-1)
 
     @property
     def poses(self) -> Annotated[Matrix, VIEW]:
-        """The vertices, of one design."""
+        """Vertices, for one design."""
         known = self.vertices[~np.isnan(self.vertices).any(axis=-1)]
         units = tuple(map(MOTION.unit, self.coordinates))
         return Matrix(known, tuple(str(number + 1) for number in range(len(known))), self.coordinates, (units,) * len(known))
 
     @property
     def extent(self) -> Annotated[Matrix, VIEW]:
-        """Least and largest value of each coordinate, the others free (rows: coordinates)."""
+        """Least and largest value of each coordinate (rows), with the other coordinates free."""
         values = np.stack([np.nanmin(self.vertices, axis=-2), np.nanmax(self.vertices, axis=-2)], axis=-1)
         units = tuple((MOTION.unit(name),) * 2 for name in self.coordinates)
         return Matrix(values, self.coordinates, ("least", "largest"), units)
@@ -60,7 +60,8 @@ class Polytope(Result):
 def reachable(mapping: Matrix, limits: StrokeLimits, *, provenance: str = "") -> Polytope:
     """Compute the polytope of poses with low <= R_a xi <= high. `mapping` as for `single_axis`.
 
-    With as many strokes as coordinates, a parallelotope: vertices R_a^-1 a over all corners a, volume prod(full strokes) / |det R_a|.
+    With as many strokes as coordinates, it is a parallelotope with the vertices R_a^-1 a for all corners a of the strokes, and the volume
+    prod(full strokes) / |det R_a|.
 
     >>> square = reachable(Matrix(np.diag([1.0, 2.0]), ("A", "B"), ("x", "y"), "1"), StrokeLimits(("A", "B"), -np.ones(2), np.ones(2)))
     >>> float(square.volume), bool(square.contains(np.array([1.0, 0.5]))), bool(square.contains(np.array([1.0, 0.6])))

@@ -1,7 +1,7 @@
 """Limits of small displacements of linear models: rotation of hinges, bending of leaves, motion of the platform.
 
-Linear kinematics omit theta^2/2 of a lever's rotation, and (u/L)^2 of a leaf's deflection. The limit is 1 % (0.141 rad), or the angle at
-which the faces of a notch touch, if smaller.
+Linear kinematics neglect terms theta^2/2 of a lever's rotation, and (u/L)^2 of a leaf's deflection. The limit is an error of 1 % (0.141
+rad), or the angle at which the faces of a notch touch, if this is smaller.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from flexstage.parts.profile import single
 from flexstage.parts.shape import Shaped
 
 ERROR = 0.01
-"""Relative error of second order that linear models may have."""
+"""Accepted relative error of linear models due to terms of second order."""
 _ATOM = 1e-10
 """Smallest reported shortening [m]."""
 
 
 @dataclass(frozen=True)
 class SecondOrder:
-    """Second-order error of linear kinematics over a box of motions: relative `error` at the part `link`, and the cause `why`.
+    """Second-order error of linear kinematics over a box of motions: largest relative `error`, at the part `link`, by the cause `why`.
 
-    `shortening` is the foreshortening of the bent leaf or rod `shortened`, which displaces a guide sideways; empty without one.
+    `shortening` is the foreshortening [m] of the bent leaf or rod `shortened` (empty without one), which displaces a guide sideways.
     `held_twice`: redundant constraints may also stretch flexures.
     """
 
@@ -85,14 +85,14 @@ class SmallMotion:
         return self.turn @ half, self.bend @ half
 
     def use(self, command: Mapping[str, Number]) -> tuple[float, str]:
-        """Largest ratio of motion to limit over all links for a box of commands (half widths), and the link's name."""
+        """Return the largest ratio of motion to limit over all links for a box of commands (half widths), and the link's name."""
         turned, bent = self._moved(command)
         shares = np.maximum(turned / self.limit, bent / _SMALL)
         worst = int(np.argmax(shares > (1.0 - 1e-9) * np.max(shares)))
         return float(shares[worst]), self.names[worst]
 
     def second_order(self, command: Mapping[str, Number]) -> SecondOrder:
-        """Largest theta^2 / 2 of a rotation, or of a deflection over a length, over a box of commands (half widths).
+        """Return the largest theta^2 / 2 of a rotation, or of a deflection over length, over a box of commands (half widths).
 
         The foreshortening of a leaf or rod of length L is 3 u^2 / (5 L) + L theta^2 / 24. Here u is the end deflection relative to the
         middle, theta the rotation between the ends.
@@ -108,7 +108,7 @@ class SmallMotion:
         return SecondOrder(error, self.names[worst], why, shortening=float(shorter[most]), shortened=shortened)
 
     def doubt(self, command: Mapping[str, Number]) -> str:
-        """Reason why linear models are invalid for a box of commands; empty if valid."""
+        """Return the reason why linear models are invalid for a box of commands; empty if they are valid."""
         share, name = self.use(command)
         if share <= 1.0:
             return ""
@@ -120,7 +120,7 @@ class SmallMotion:
         return f"{name} turns by {1e3 * turned:.4g} mrad, beyond {1e3 * self.limit[place]:.4g} mrad {why}"
 
     def warnings(self, single: SingleAxis) -> Iterator[Finding]:
-        """Warnings for single-axis strokes beyond small motions, with the usable stroke."""
+        """Yield warnings for single-axis strokes beyond small motions, with the usable stroke."""
         for name, stroke in zip(single.coordinates, np.atleast_2d(single.symmetric)[0], strict=True):
             doubt = self.doubt({name: float(stroke)})
             if doubt:

@@ -1,4 +1,4 @@
-"""Stops as limits of strokes: gaps as strokes, rows of ideal motions as rows of R_a."""
+"""Stops as limits of strokes: the gap of a stop is treated as a stroke, and its motion per ideal motion as a row of R_a."""
 
 from __future__ import annotations
 
@@ -33,10 +33,11 @@ def single_strokes(mechanism: Mechanism, kinematics: Kinematics) -> SingleAxis:
 def with_stops(
     mechanism: Mechanism, kinematics: Kinematics, mapping: Matrix, limits: StrokeLimits, point: str = PLATFORM
 ) -> tuple[Matrix, StrokeLimits]:
-    """Return mapping and limits with a row for every stop within reach: low <= n^T x <= high, n the ideal motion that closes it.
+    """Return mapping and limits with an additional row for every stop within reach: low <= n^T x <= high.
 
-    `mapping` is for motions of `point`. Stops out of reach of all simultaneous strokes are omitted; an open side gets a limit out of reach,
-    so that all limits are finite. Bodies between ground and platform move as in the ideal model (small motions).
+    n^T x is the motion at the stop in the ideal motions x. `mapping` is for motions of `point`. Stops that all simultaneous strokes cannot
+    reach are omitted. An open side of a stop gets a finite limit out of reach. Bodies between ground and platform move as in the ideal
+    model (small motions).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

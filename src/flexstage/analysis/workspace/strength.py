@@ -1,4 +1,4 @@
-"""Stress at every hinge at the worst corner of the strokes, against yield, fatigue limit or allowable stress."""
+"""Stress at every hinge at the worst corner of the strokes, compared with yield stress, fatigue limit or allowable stress."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ FROM_ZERO = "of all strokes from zero voltage"
 class HingeStress(Result):
     """Largest stress in every hinge over the corners of the strokes, (..., L) each.
 
-    `nominal` and `peak` (with the notch factor) von Mises stress [Pa]; `yield_stress` [Pa] (NaN if unspecified); `strokes` (..., L, n) [m]
-    at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts). `limit` [Pa] is
-    the least of yield stress, fatigue limit and allowable stress (NaN: none; absent: yield stress). `governing` names it, on the first
-    design.
+    `nominal` and `peak` (with the notch factor) are von Mises stresses [Pa]. `yield_stress` [Pa] is NaN if unspecified. `strokes` (..., L,
+    n) [m] are at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts).
+    `limit` [Pa] is the least of yield stress, fatigue limit and allowable stress (NaN: none; absent: yield stress). `governing` names this
+    limit in the first design.
 
-    `places` are end and faces with the largest stress (a batch has none), `condition` is the range of strokes. `actuators` with their
-    `units` may be force actuators, or coordinates of the platform.
+    `places` are the ends and faces with the largest stress (empty for a batch). `condition` is the range of strokes. `actuators` with their
+    `units` may be stroke or force actuators, or coordinates of the platform.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -104,7 +104,7 @@ class HingeStress(Result):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW, Heading(digits=4)]:
-        """Rows are the links, columns nominal, peak, yield (or the governing limit) and safety."""
+        """Table of the links (rows) with nominal and peak stress, yield stress (or the governing limit) and safety factor."""
         values = stack([self.nominal, self.peak, self.allowed, self.safety])
         return Matrix(values, self.links, ("nominal", "peak", "yield", "safety"), (("Pa", "Pa", "Pa", "1"),) * len(self.links))
 
@@ -114,9 +114,13 @@ def hinge_stress(
 ) -> HingeStress:
     """Compute the stress of every hinge from the link wrenches of an elastic model, with permanent load.
 
-    `limits`: `stroke_limits(mechanism).from_zero` for a stage assembled without voltage (the bias also bends its hinges), or
-    `stroke_limits(mechanism)` for a stage that is stress-free at its bias; for coordinates with a `command`, the limits of the coordinates.
-    `condition` describes these limits. Linear beam theory, section maxima added (see `beams.stress`).
+    `limits` depend on the assembly:
+
+    - `stroke_limits(mechanism).from_zero` for a stage assembled without voltage, whose hinges are also bent by the bias;
+    - `stroke_limits(mechanism)` for a stage that is stress-free at its bias.
+
+    With a `command`, they are limits of its coordinates. `condition` is a text that describes the limits. The stress is by linear beam
+    theory, with the maxima of a section added (see `beams.stress`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -171,7 +175,7 @@ def _places(links: Mapping[str, PlacedLink], wrenches: Array) -> Iterator[str]:
 
 
 def sized_links(assembly: Assembly) -> dict[str, PlacedLink]:
-    """Return the links with a computed stress."""
+    """Return the links whose stress can be computed."""
     return {name: link for name, link in assembly.links.items() if _has_section(link)}
 
 

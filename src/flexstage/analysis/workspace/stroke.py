@@ -28,7 +28,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, Frame
 class StrokeLimits:
     """Stroke limits `low` to `high` (..., n) [m] of each actuator, relative to its bias (or mid-range).
 
-    `zero` (..., n) is the stroke at zero voltage, relative to the bias (absent: the lowest).
+    `zero` (..., n) is the stroke at zero voltage, relative to the bias (absent: equal to `low`).
     """
 
     actuators: tuple[str, ...]
@@ -38,7 +38,7 @@ class StrokeLimits:
 
     @property
     def full(self) -> Array:
-        """The full stroke (..., n) [m]."""
+        """Full stroke (..., n) [m]: `high` minus `low`."""
         return self.high - self.low
 
     @cached_property
@@ -49,7 +49,7 @@ class StrokeLimits:
 
     @property
     def corners(self) -> Array:
-        """All 2^n combinations of least and largest strokes (..., 2^n, n) [m]; refused for more than 12 actuators."""
+        """All 2^n combinations of least and largest strokes (..., 2^n, n) [m]. Raises `DesignError` for more than 12 actuators."""
         count = len(self.actuators)
         if count > 12:
             raise refuse("stroke corners", f"{count} actuators have {2**count} corners", "Use single strokes")
@@ -57,7 +57,7 @@ class StrokeLimits:
         return np.where(high, self.high[..., None, :], self.low[..., None, :])
 
     def points(self, depth: int) -> Array:
-        """The corners as points (2^n, ..., n) with at least `depth` batch axes between, for broadcasting with a batch of designs."""
+        """Return the corners as points (2^n, ..., n) with at least `depth` batch axes in the middle, to broadcast with many designs."""
         return beside(np.moveaxis(self.corners, -2, 0), depth)
 
 
@@ -83,7 +83,7 @@ class SingleAxis(Result):
 
     @property
     def table(self) -> Annotated[Matrix, VIEW]:
-        """Rows are the coordinates, columns low, high, symmetric and full."""
+        """Table of the coordinates (rows) with low, high, symmetric and full stroke."""
         values = np.stack([self.low, self.high, self.symmetric, self.high - self.low], axis=-1)
         units = tuple((MOTION.unit(name),) * 4 for name in self.coordinates)
         return Matrix(values, self.coordinates, ("low", "high", "symmetric", "full"), units)
@@ -92,8 +92,8 @@ class SingleAxis(Result):
 class Utilisation(Result):
     """Actuator utilisation for a box of simultaneous commands.
 
-    `demand` (..., n) [m] is the largest absolute stroke over the corners of the box, `available` (..., n) the symmetric stroke. Stops
-    within reach are listed with the actuators (`stops/end`), with their gaps as strokes.
+    `demand` (..., n) [m] is the largest absolute stroke over the corners of the box, `available` (..., n) [m] the symmetric stroke. Stops
+    within reach are listed with the actuators (`stops/end`); their gaps are listed as strokes.
     """
 
     TABLE: ClassVar[Layout] = Layout("Simultaneous strokes", "demand available ratio")
@@ -106,7 +106,7 @@ class Utilisation(Result):
 
     @property
     def ratio(self) -> Annotated[Array, SHARE, Bound(high=1.0), Along("actuators"), Heading("used")]:
-        """Demand over available stroke (..., n); above 1 the corner is out of reach."""
+        """Demand over available stroke (..., n); above 1, the corner of the box is out of reach."""
         return self.demand / self.available
 
     @property
@@ -116,12 +116,12 @@ class Utilisation(Result):
 
     @property
     def scale(self) -> Annotated[Array, RATIO]:
-        """Scale factor (...) of the box that uses the strokes fully."""
+        """Factor (...) by which the box can be scaled until the strokes are fully used."""
         return 1.0 / np.max(self.ratio, axis=-1)
 
 
 def beside(points: Array, depth: int) -> Array:
-    """Return points (k, ..., n) with at least `depth` batch axes between, for broadcasting with designs.
+    """Return points (k, ..., n) with at least `depth` batch axes in the middle, to broadcast with a batch of designs.
 
     >>> beside(np.zeros((64, 6)), 1).shape
     (64, 1, 6)
@@ -141,7 +141,7 @@ def stacks(mechanism: Mechanism) -> dict[str, ChargedActuator]:
 
 
 def stroke_actuators(mechanism: Mechanism) -> dict[str, StrokeActuator]:
-    """Return the part of every stroke input by input name, with overrides applied.
+    """Return the stroke actuators by input name, with overrides applied.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(stroke_actuators(double_triangle()))
@@ -169,12 +169,12 @@ def stroke_limits(mechanism: Mechanism) -> StrokeLimits:
 
 
 def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFORM, *, mapping: Matrix | None = None) -> Matrix:
-    """Compute R_a for the motion of a named point: strokes per coordinate of the point, its other coordinates fixed.
+    """Compute R_a for the motion of a named point: strokes per coordinate of the point, with its other coordinates fixed.
 
     `mapping` replaces R_a, e.g. by the correction gains of lost motion (strokes per platform coordinate).
 
-    Translations of a rigid platform are equal everywhere; rotations are about the point. With fewer than six ideal motions the coordinates
-    keep their names. Raises `DesignError` if the point cannot follow them independently.
+    Translations of a rigid platform are equal at all points; rotations are about the named point. With fewer than six ideal motions, the
+    coordinates keep their names. Raises `DesignError` if the point cannot move along each coordinate independently.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -191,7 +191,7 @@ def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFO
 
 
 def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Array:
-    """Compute the twist (..., 6, f) of a named point per ideal motion: `platform` (its reference), a platform point, or `body.point`.
+    """Compute the twist (..., 6, f) of a point per ideal motion: `platform` (its reference point), a platform point, or `body.point`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -209,7 +209,7 @@ def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Ar
 
 
 def single_axis(mapping: Matrix, limits: StrokeLimits, *, at: str = PLATFORM, provenance: str = "") -> SingleAxis:
-    """Compute single-axis strokes within low <= R_a x <= high.
+    """Compute the single-axis strokes x within the stroke limits low <= R_a x <= high.
 
     `mapping` is `kinematics.mapping`, `mapping_at` of a point, or the correction gains of lost motion. For a single actuator:
 

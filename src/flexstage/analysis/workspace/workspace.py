@@ -39,9 +39,9 @@ _FURTHER = frozenset({"worst_case", "polytope", "drive", "map_error", "gauges", 
 class Workspace(Result):
     """Workspace of one design; a field is `None` without a result, with the reason in `reasons` by field name.
 
-    `single_axis` are ideal strokes, `corrected` those with lost motion corrected by command. `worst_case` is the actuators' demand for the
-    box `command` of motions (half widths by coordinate, all at once), `gauges` the gauges' readings. Stress, buckling and loads are for a
-    stage stress-free at zero voltage, over all strokes and under permanent load.
+    `single_axis` are ideal strokes; `corrected` are strokes with commands that correct lost motion. `worst_case` is the actuators' demand
+    for the box `command` of motions (half widths by coordinate, all at once); `gauges` are the gauges' readings. Stress, buckling and loads
+    are for a stage that is stress-free at zero voltage, over all strokes and under permanent load.
     """
 
     command: Annotated[Mapping[str, Number], MOTION]
@@ -81,8 +81,8 @@ def workspace(
 ) -> Workspace:
     """Compute the workspace of one design; default `command`: all single-axis strokes at once.
 
-    Unless `whole`, only strokes, resolution, stress and buckling (two thirds of the time); other fields are `None` without a reason. Raises
-    `DesignError` if the strokes do not determine the platform.
+    Without `whole`, only strokes, resolution, stress and buckling are computed (in two thirds of the time); other fields are `None` without
+    a reason. Raises `DesignError` if the strokes do not determine the platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -18,7 +18,7 @@ from flexstage.spatial.frame import FORCES
 
 @dataclass(frozen=True, eq=False)
 class Command:
-    """Inputs (..., n) = `start` + `mapping` x for the platform coordinates x."""
+    """Command of platform coordinates x: the inputs (..., n) are `start` + `mapping` x."""
 
     mapping: Matrix
     start: Array
@@ -27,10 +27,10 @@ class Command:
 def corner_wrenches(
     mechanism: Mechanism, model: LinearModel, limits: StrokeLimits, links: tuple[str, ...], command: Command | None = None
 ) -> Array:
-    """Compute link wrenches (k, ..., L, 6) [N, N m] at all k = 2^n stroke corners, on the second body, in the frame at the link's centre.
+    """Compute link wrenches (k, ..., L, 6) [N, N m] at all k = 2^n corners of the strokes, under permanent load.
 
-    The wrench is linear in the strokes, so convex measures of it (stress, force) are largest at a corner. Weight and forces are included.
-    With a `command`, limits belong to its coordinates.
+    A wrench acts on the second body, in the link's frame at its centre. It is linear in the strokes, so convex functions of the wrench
+    (stress, force) are largest at a corner. With a `command`, `limits` are those of its coordinates.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -50,7 +50,7 @@ def corner_wrenches(
 
 
 def dead_wrenches(mechanism: Mechanism, model: LinearModel, outputs: tuple[str, ...]) -> Array:
-    """Compute outputs (..., p) under weight and forces, strokes fixed.
+    """Compute the named outputs (..., p) under weight and specified forces, with strokes fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -1,7 +1,7 @@
 """Jobs in worker processes, which isolate crashes, hangs and memory exhaustion from the caller.
 
-A `Worker` is a process that calls one function repeatedly. It runs this module, not a copy of the caller: valid in scripts without a guard,
-notebooks and tests. It ends with its caller in any case, and leaves no file.
+A `Worker` is a process that calls one function repeatedly. The process runs this module, not a copy of the caller. It thus works in
+notebooks, tests and scripts without a `__main__` guard. It always ends with its caller, and leaves no file.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Word(Enum):
 
 
 Heard: TypeAlias = "queue.SimpleQueue[tuple[Worker, Word, Any]]"
-"""Queue of workers' messages in order; `ENDED` has the exit code, negative for a signal."""
+"""Queue of (worker, kind, value) messages in order. For `ENDED`, the value is the exit code, negative for a signal."""
 
 
 def cores() -> int:
@@ -62,7 +62,7 @@ def cores() -> int:
 
 
 def environment() -> dict[str, str]:
-    """Return the environment of a single-threaded process with the caller's import path, and large pages.
+    """Return environment variables for a single-threaded process: the caller's import path, and memory settings (large pages).
 
     >>> environment()["OMP_NUM_THREADS"]
     '1'
@@ -73,9 +73,10 @@ def environment() -> dict[str, str]:
 
 
 class Worker:
-    """Process that calls `function(line, *arguments)`, with messages in `heard`. Raises `OSError` if it cannot be started.
+    """Process that calls `function(line, *arguments)` and puts its messages in the queue `heard`.
 
-    `DesignError`, `MemoryError` and `OSError` are returned unchanged. Other exceptions end the process with code 1; see `last_words`.
+    Raises `OSError` if the process cannot be started. Exceptions `DesignError`, `MemoryError` and `OSError` of the function reach the
+    caller unchanged. Other exceptions end the process with code 1; see `last_words`.
 
     >>> worker = Worker(isinstance)
     >>> worker.call(Line), worker.end()
@@ -103,13 +104,13 @@ class Worker:
         self._send(function)
 
     def ask(self, *arguments: Any) -> None:
-        """Start a call of its function, or answer its question; `ENDED` at once if it has ended."""
+        """Send arguments to the worker: they start a call, or answer the function's question. An ended worker reports `ENDED` at once."""
         self._send(arguments)
 
     def call(self, *arguments: Any) -> Any:
-        """Return the function's result, or raise its exception; for a worker without other listeners.
+        """Call the function and return its result, or raise its exception; the worker's queue must have no other reader.
 
-        Raises `EOFError` if it crashed or was ended. The process has then ended, as after an interrupt.
+        Raises `EOFError` if the process crashed or was ended. After this error or an interrupt, the process has ended.
         """
         try:
             self.ask(*arguments)
@@ -124,7 +125,7 @@ class Worker:
         return value
 
     def resident(self) -> float:
-        """Resident memory [bytes]; 0 if unknown."""
+        """Return the resident memory of the process [bytes]; 0 if unknown."""
         try:
             import psutil
 
@@ -133,7 +134,7 @@ class Worker:
             return 0.0
 
     def last_words(self) -> str:
-        """Last line of its standard error."""
+        """Return the last line of the standard error of the process."""
         self._log.seek(0)
         lines = self._log.read().decode(errors="replace").strip().splitlines()
         return lines[-1][:300] if lines else "it said nothing"
@@ -160,17 +161,17 @@ class Worker:
 
 @dataclass(frozen=True)
 class CallError(Exception):
-    """Failed call: its arguments, and the exception; none if processes died repeatedly."""
+    """Failed call: its arguments, and its exception (`None` if its processes died repeatedly)."""
 
     arguments: tuple[Any, ...]
     error: Exception | None
 
 
 def results(function: Callable[..., Any], calls: Iterable[tuple[Any, ...]], workers: int) -> Iterator[tuple[tuple[Any, ...], Any]]:
-    """Yield arguments and result of each call of `function(line, *arguments)` on completion, by several processes.
+    """Yield (arguments, result) of each call of `function(line, *arguments)` in order of completion, from `workers` processes.
 
-    The function is sent to each process once, arguments individually. The call of a dead process is repeated by another. Raises `CallError`
-    for a failed call. All processes end with the iteration.
+    Each process receives the function once, then the arguments of each call. If a process dies, another process repeats its call. Raises
+    `CallError` for a failed call. All processes end with the iteration.
 
     >>> sorted(result for _, result in results(isinstance, [(Line,), (int,)], 2))
     [False, True]
@@ -210,7 +211,7 @@ def results(function: Callable[..., Any], calls: Iterable[tuple[Any, ...]], work
 
 
 class Line:
-    """Connection of a function to its caller: intermediate messages and answers."""
+    """Connection of a function in a worker to its caller, for intermediate messages and answers."""
 
     def __init__(self, asked: queue.SimpleQueue[bytes], answers: IO[bytes]) -> None:
         self._asked, self._answers = asked, answers
@@ -229,14 +230,14 @@ class Line:
 
 
 def limit_memory(most: float) -> None:
-    """Limit the memory of this process [bytes], without core files."""
+    """Limit the memory of this process to `most` [bytes], and disable core files."""
     _limit("RLIMIT_CORE", 0)
     if most != float("inf"):
         _limit("RLIMIT_DATA", int(most))
 
 
 def limit_processor(seconds: float) -> None:
-    """End this process by SIGXCPU after additional CPU time [s], independent of the machine's load."""
+    """Limit the additional CPU time of this process [s]; at the limit the signal SIGXCPU ends it."""
     _limit("RLIMIT_CPU", math.ceil(time.process_time() + seconds))
 
 
@@ -250,7 +251,7 @@ def _limit(name: str, most: int) -> None:
 
 
 def main() -> None:
-    """Serve calls from standard input; output of libraries goes to standard error."""
+    """Serve calls from standard input. Output printed by libraries is sent to standard error."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     faulthandler.enable()
     requested: queue.SimpleQueue[bytes] = queue.SimpleQueue()

@@ -1,4 +1,4 @@
-"""Memory: available size, and refusal of larger requirements before allocation."""
+"""Memory check: available memory, and an error before an allocation that would exceed it."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from flexstage.base.finding import refuse
 _USABLE = 0.9
 """Usable share of free memory."""
 ALWAYS = 3e7
-"""Memory requirement [bytes] below which no check is made."""
+"""Memory requirement [bytes] up to which `require_memory` does not check."""
 
 
 def require_memory(where: str, what: str, needed: float, fits: Callable[[float], str]) -> None:
-    """Refuse a memory requirement [bytes] above the available memory; `fits` returns a hint for the available memory.
+    """Raise `DesignError` if `needed` memory [bytes] exceeds the available memory.
+
+    `what` names the data in the message. `fits` returns a hint for the available memory [bytes].
 
     >>> require_memory("stage", "its matrices", 1e3, lambda there: f"{there / 1e6:.0f} bodies would fit")
     """
@@ -36,7 +38,7 @@ def gigabytes(size: float) -> str:
 
 
 def available() -> float:
-    """Return the usable memory [bytes]: 90 % of the free memory of machine, control group and process limits.
+    """Return the usable memory [bytes]: 90 % of the smallest free memory of machine, control group and process limits.
 
     >>> available() > 0.0
     True

@@ -1,7 +1,8 @@
 """Compiled kernels: C equivalents of numpy code, built at installation (`hatch_build.py`) next to their sources.
 
-A kernel is built for each vector width; the widest one supported by this processor is loaded. Each library has the digest of its sources:
-it is not loaded for edited sources. This module requires only the standard library, as installation uses it.
+Each kernel is built for several vector widths. The widest version that this processor supports is loaded. Each library contains the digest
+of its sources, and is not loaded if the sources have changed. The installation uses this module, which therefore requires only the standard
+library.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 SWITCH = "FLEXSTAGE_KERNEL"
-"""Environment variable: `off` disables kernels, other values name their lanes."""
+"""Environment variable: `off` disables the kernels; another value names the vector lanes to use."""
 PACKAGE = Path(__file__).parents[2]
 HEADERS = Path(__file__).parent
 """Folder of shared headers of all kernels."""
@@ -24,7 +25,7 @@ KERNELS = tuple(PACKAGE / "models" / model / "kernel.c" for model in ("batch", "
 
 @dataclass(frozen=True)
 class Lanes:
-    """Vector lanes of kernels: architecture, required processor features, and compiler flags."""
+    """Vector lanes (SIMD width) of a kernel: architecture, required processor features, and compiler flags."""
 
     name: str
     machines: tuple[str, ...]
@@ -43,7 +44,7 @@ _LANES = (
 
 
 def machine_lanes() -> tuple[Lanes, ...]:
-    """Return the lanes of this architecture, widest first; for an unknown one, two lanes by the compiler.
+    """Return the vector lanes of this architecture, widest first; for an unknown architecture, two lanes by the compiler.
 
     >>> len(machine_lanes()) > 0
     True
@@ -52,7 +53,7 @@ def machine_lanes() -> tuple[Lanes, ...]:
 
 
 def processor_lanes() -> tuple[Lanes, ...]:
-    """Return the lanes of this processor, widest first.
+    """Return the vector lanes that this processor supports, widest first.
 
     >>> set(processor_lanes()) <= set(machine_lanes())
     True
@@ -81,7 +82,9 @@ def library_path(source: Path, lanes: Lanes) -> Path:
 
 
 def kernel_lanes() -> Lanes:
-    """Return the widest lanes of this processor, or those of FLEXSTAGE_KERNEL; raises `DesignError` for unsupported ones.
+    """Return the vector lanes named by FLEXSTAGE_KERNEL, by default the widest lanes of this processor.
+
+    Raises `DesignError` for lanes that this processor does not support.
 
     >>> kernel_lanes() in processor_lanes()
     True
@@ -96,7 +99,7 @@ def kernel_lanes() -> Lanes:
 
 
 def kernel_library(source: Path) -> ctypes.CDLL | None:
-    """Load the library of a kernel; `None` if FLEXSTAGE_KERNEL is off, or none was built from the current sources.
+    """Load the library of a kernel; `None` if FLEXSTAGE_KERNEL is `off`, or no library was built from the current sources.
 
     Raises `DesignError` if FLEXSTAGE_KERNEL names unsupported lanes.
 
@@ -113,12 +116,12 @@ def kernel_library(source: Path) -> ctypes.CDLL | None:
 
 
 def library_sources(library: ctypes.CDLL) -> str:
-    """Return the digest of the sources of a library."""
+    """Return the digest of the sources from which a library was built."""
     return ctypes.c_char_p.in_dll(library, "flexstage_sources").value.decode()  # type: ignore[union-attr]
 
 
 def library_digest(source: Path) -> str:
-    """Return lanes and content digest of the loaded library: equal ones give bit-identical results."""
+    """Return the lanes and the content digest of the loaded library. Equal digests give bit-identical results."""
     path = library_path(source, kernel_lanes())
     return f"{path.stem.rpartition('-')[2]} {hashlib.sha256(path.read_bytes()).hexdigest()[:12]}"
 

@@ -9,9 +9,9 @@ _MINUTES, _HOURS = 90.0, 2.0 * 3600.0
 """Times [s] from which minutes and hours are used."""
 
 LINES, LINE = "FLEXSTAGE_PROGRESS", "progress"
-"""Environment variable for progress lines of a command, and the prefix of each line."""
+"""Environment variable that enables progress lines of a command, and the prefix of each progress line."""
 RESULT = "result"
-"""Prefix of a line with a part of the result by its name, as JSON, where progress lines are printed."""
+"""Prefix of a line with one named part of the result as JSON. Such lines are printed only with progress lines."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Step:
 
 
 Progress = Callable[[Step], None]
-"""Callback of every step, in the caller's process and thread; an exception stops the computation and cleans up."""
+"""Callback for every step, called in the caller's process and thread. An exception in it stops the computation and cleans up."""
 
 
 def duration(seconds: float) -> str:
@@ -39,7 +39,7 @@ def duration(seconds: float) -> str:
 
 
 def seconds_left(fraction: float, elapsed: float) -> float | None:
-    """Return the extrapolated remaining time; `None` while too early.
+    """Return the remaining time [s], extrapolated from the completed fraction and the elapsed time; `None` if it is too early.
 
     >>> seconds_left(0.25, 10.0), seconds_left(0.01, 10.0)
     (30.0, None)

@@ -1,4 +1,4 @@
-"""Threads of linear algebra: a single thread for many small matrices, faster on a busy machine."""
+"""Threads of linear algebra. For many small matrices, a single thread is faster on a busy machine."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ DOCUMENT_ONLY = {"physics": False}
 """Field metadata: the field (a name, tags, sources) is not in the physics digest."""
 
 WHERE_STATED = {"where_stated": True}
-"""Field metadata: an empty field is not in digests, so that older digests stay valid."""
+"""Field metadata: digests omit the field if it is empty. Digests from before the field existed thus stay valid."""
 
 KEY = "key"
 """Field metadata: key of the field in files and addresses, if it is a Python keyword."""
@@ -36,7 +36,7 @@ class Description(CheckedFields):
     """Base of descriptions: immutable, compared and hashed by content.
 
     Two digests exist: `digest(value)` covers the whole document; `digest(value, physics=True)` omits fields marked `DOCUMENT_ONLY`. Floats
-    are compared by their bits. Classes of other packages include their package's version.
+    are compared by their bits. The digest of a class from another package includes the package's version.
     """
 
     __slots__ = ()
@@ -55,7 +55,7 @@ class Description(CheckedFields):
 def keep(function: Callable[P, T]) -> Callable[P, T]:
     """Decorate a function of descriptions to cache its last 64 results by content, except for batches.
 
-    Successive designs often differ in one part: results of other parts are reused. Cached arrays are read-only.
+    Successive designs often differ in one part only; the cached results of the other parts are reused. Cached arrays are read-only.
 
     >>> counted = []
     >>> double = keep(lambda value: counted.append(value) or 2.0 * value)
@@ -90,7 +90,7 @@ def _is_single(value: Any) -> bool:
 
 
 def digest(value: Any, *, physics: bool = False) -> str:
-    """Return the SHA-256 of a description's content; with `physics`, of fields that affect its mechanics.
+    """Return the SHA-256 of a description's content; with `physics`, only of the fields that affect the mechanics.
 
     >>> digest(1.0) == digest(1.0), digest(1.0) == digest(1)
     (True, False)

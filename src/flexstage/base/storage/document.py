@@ -34,7 +34,7 @@ def plain(result: Any) -> Document:
 
 
 def as_text(result: Any) -> str:
-    """Return the document as JSON text: finite numbers, others null with a reason under `reasons`.
+    """Return the document as JSON text. A number that is not finite is null, with a reason under `reasons`.
 
     >>> print(as_text({"gain": float("nan")}))
     {

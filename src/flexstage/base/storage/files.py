@@ -1,7 +1,8 @@
-"""Foreign files: only regular ones; HDF5 and MAT files in a separate process, with limits of CPU time and memory.
+"""Import of files of other programs: only regular files. HDF5 and MAT files are read in a separate process with limits.
 
-Their libraries may crash, hang without an exception, or exhaust memory. They run in a worker for many files, which is replaced if it dies,
-hangs or is interrupted. The system enforces limits if supported. Data in other files are refused.
+The HDF5 and MAT libraries may crash, hang without an exception, or exhaust memory. They run in a worker process that reads many files. The
+worker is replaced if it dies, hangs or is interrupted. If the operating system supports it, CPU time and memory are limited. HDF5 data in
+external files are refused.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from flexstage.base.processes.memory import gigabytes, require_memory
 
 Attribute: TypeAlias = str | float | tuple[str, ...]
 PATIENCE = 8.0
-"""CPU time limit of one request [s], plus `_SLOW` per requested byte."""
+"""CPU time limit of one request [s]; `_SLOW` per requested byte is added."""
 MEMORY = 1_000_000_000
 """Memory limit of the worker in addition to requested data [B]."""
 _SLOW = 1e-7
@@ -41,7 +42,7 @@ _COMPLEX_FIELDS = (("r", "i"), ("real", "imag"))
 
 
 def require_regular(path: Path) -> None:
-    """Raise `DesignError` for a missing file, a folder, a device or a pipe: reading may never end.
+    """Raise `DesignError` for a missing file, a folder, a device or a pipe, because reading a device or a pipe may never end.
 
     >>> require_regular(Path("/dev/null"))
     Traceback (most recent call last):
@@ -62,10 +63,10 @@ def require_regular(path: Path) -> None:
 
 @dataclass(frozen=True, eq=False)
 class HdfArray:
-    """Array of an HDF5 file: path, shape, kind of numbers (as numpy's, `t` for texts, `r` for references).
+    """Array of an HDF5 file: path, shape, and kind of numbers (numpy's letter, `t` for texts, `r` for references).
 
-    `size` is bytes per number, `columns` are kinds by name for a table, `attributes` its attributes, `texts` its texts, `references` paths
-    of referenced objects.
+    `size` is the number of bytes per number. `columns` are the kinds by column name for a table. `attributes`, `texts` and `references`
+    (paths of referenced objects) are the other contents of the array.
     """
 
     name: str
@@ -80,7 +81,7 @@ class HdfArray:
 
 @dataclass(frozen=True, eq=False)
 class Hdf:
-    """Content of an HDF5 file: attributes of groups by path ("" is the file), arrays by path, in file order."""
+    """Content of an HDF5 file: attributes of groups by path ("" is the file), and arrays by path, in file order."""
 
     path: Path
     groups: Mapping[str, Mapping[str, Attribute]]
@@ -92,7 +93,7 @@ class Hdf:
         return self.groups[""]
 
     def read(self, name: str, spans: Sequence[tuple[int, int]] = (), column: str = "") -> Array:
-        """Read an array or a column of a table, or spans (start, stop) of its first axes; pairs of numbers as complex ones."""
+        """Read an array, a column of a table, or `spans` (start, stop) of its first axes. Pairs of numbers become complex numbers."""
         array = self.arrays[name]
         lengths = [max(0, min(stop, length) - max(start, 0)) for (start, stop), length in zip(spans, array.shape, strict=False)]
         needed = math.prod((*lengths, *array.shape[len(lengths) :])) * array.size
@@ -105,7 +106,9 @@ class Hdf:
 
 
 def hdf(path: Path) -> Hdf:
-    """Return the content of an HDF5 file without numbers. Raises `DesignError` for invalid, truncated or damaged files, or external data.
+    """Return the structure of an HDF5 file; `Hdf.read` reads the numbers.
+
+    Raises `DesignError` for an invalid, truncated or damaged file, or for external data.
 
     >>> import h5py, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -122,13 +125,15 @@ def hdf(path: Path) -> Hdf:
 
 @dataclass(frozen=True)
 class MatlabObject:
-    """Object of a class in a MAT file, readable only by MATLAB."""
+    """Object of a MATLAB class in a MAT file; only MATLAB can read its content."""
 
     kind: str
 
 
 def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | MatlabObject]]:
-    """Read arrays, texts and objects of a MAT file of version 4 or 5; structures by path (`test.u`). Raises `DesignError`.
+    """Read (name, value) of all arrays, texts and objects of a MAT file of version 4 or 5; structures have paths (`test.u`).
+
+    Raises `DesignError` for an unreadable file.
 
     >>> import scipy.io, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -148,9 +153,9 @@ def _advise_less(there: float) -> str:
 
 @contextlib.contextmanager
 def new_hdf(place: Path, size: int) -> Generator[Any]:
-    """Open a new HDF5 file of at most `size` bytes, allocated first: on a full disk the library would crash.
+    """Open a new HDF5 file of at most `size` bytes. The space is allocated first, because the library crashes on a full disk.
 
-    Raises `OSError` without enough space, or if it cannot be written.
+    Raises `OSError` if the space is insufficient or the file cannot be written.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -180,7 +185,7 @@ def new_hdf(place: Path, size: int) -> Generator[Any]:
 
 
 class Child:
-    """Worker process for file requests; started by the first request, restarted after a failure."""
+    """Worker process that reads files. The first request starts it; the next request after a failure restarts it."""
 
     def __init__(self) -> None:
         self._worker: Worker | None = None
@@ -188,7 +193,7 @@ class Child:
         self._lock = threading.Lock()
 
     def ask(self, read: Callable[..., Any], path: Path, arguments: tuple[Any, ...], seconds: float, memory: float) -> Any:
-        """Return the answer; raises as `Worker.call`, and the next request starts a new worker."""
+        """Return the result of `read` for a file, or raise as `Worker.call`. After a failure, the next request starts a new worker."""
         with self._lock:
             known = self._worker
             if known is None or self._owner != os.getpid() or known.process.poll() is not None:
@@ -207,7 +212,7 @@ class Child:
 
 
 CHILD = Child()
-"""Single worker of this process: its start takes half a second, as does the import of its libraries."""
+"""The only file worker of this process; starting it and importing its libraries takes half a second each."""
 atexit.register(CHILD.end)
 
 

@@ -1,7 +1,8 @@
 """Decomposition of results into labelled matrices and sheets, for CSV, pandas, xarray, MATLAB and notebooks.
 
-A part has its path in the document (`docs/json.md`). Records in a sequence or mapping are rows of one sheet; nested records are rows of
-another sheet that repeats the names of the first. Arrays along names have one row per name, bare arrays one row per entry.
+Each sheet or matrix has the path of its data in the document (`docs/json.md`). Records in a sequence or mapping are the rows of one sheet.
+Nested records are the rows of another sheet, which repeats the row names of the first sheet. An array along names has one row per name,
+another array one row per entry.
 """
 
 from __future__ import annotations
@@ -33,14 +34,14 @@ class _Sort(Enum):
 
 @dataclass(frozen=True)
 class Sheet:
-    """Sheet: `names` of rows by column head (none for a single row), and the values of every field by row."""
+    """Table of values: `names` are columns with the row names (empty for a single row), `columns` the values of every field by row."""
 
     names: Mapping[str, tuple[Any, ...]]
     columns: Mapping[Field, tuple[Any, ...]]
 
     @property
     def heads(self) -> Mapping[str, tuple[Any, ...]]:
-        """All columns by head: names of rows, then fields with SI units, as keys of the document."""
+        """All columns by heading: row names, then fields. The heading of a field is its key in the document, with the SI unit."""
         fields = {each.key: values for each, values in self.columns.items()}
         return {f"{head}_name" if head in fields else head: values for head, values in self.names.items()} | fields
 
@@ -49,7 +50,7 @@ _Part: TypeAlias = tuple[str, Sheet | Matrix]
 
 
 def parts(result: Any) -> Iterator[_Part]:
-    """Return the parts of a result or a document by path.
+    """Yield (path, sheet or matrix) for each part of a result or a document.
 
     >>> from flexstage.base.labelled import Matrix
     >>> result = dict(parts({"gain": 2.0, "modes": [{"frequency_hz": 100.0}, {"frequency_hz": 200.0}]}))
@@ -63,7 +64,7 @@ def parts(result: Any) -> Iterator[_Part]:
 
 
 def rows_of(source: Any) -> Sheet:
-    """Return a mapping or sequence of records as rows, or the arrays of a record along its first name field."""
+    """Return a sheet: a mapping or sequence of records as rows, or one record's arrays along its first field of names."""
     if isinstance(source, Mapping):
         return Sheet(owner_names(source), _columns([_record(each) for each in source.values()]))
     if isinstance(source, Sequence):
@@ -72,7 +73,7 @@ def rows_of(source: Any) -> Sheet:
 
 
 def owner_names(source: Any) -> dict[str, tuple[Any, ...]]:
-    """Return names of the rows of a mapping, else none; one column for each name of a key.
+    """Return columns with the row names of a mapping, one column for each element of a key; empty for other values.
 
     >>> owner_names({("raster", "B1"): 0, ("raster", "B2"): 0})
     {'name': ('raster', 'raster'), 'name 2': ('B1', 'B2')}
@@ -206,7 +207,7 @@ def _items(value: Any) -> Iterable[tuple[Any, Any]]:
 
 
 def is_cell(value: Any) -> bool:
-    """Return whether a value fits a cell: nothing, a number, a word, or a few words.
+    """Return whether a value fits in a table cell: None, a number, a word, or a few words.
 
     >>> is_cell(None), is_cell(np.array(1.0)), is_cell(("a", "b")), is_cell(np.ones(2)), is_cell({})
     (True, True, True, False, False)

@@ -1,7 +1,7 @@
 """Disk storage: cache folder, atomic writes, temporary folders, and clean-up after killed processes.
 
-A file is written under another name next to its target and renamed on completion. Such names, and those of temporary folders, identify
-their process and machine: the next writer in the folder removes those of ended processes.
+A file is written under a temporary name next to its target and renamed on completion. Temporary names of files and folders identify the
+process and the machine. The next writer in the folder removes files and folders of ended processes.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ _DAY = 86400.0
 
 
 def cache_folder() -> Path:
-    """Return the folder in the environment variable FLEXSTAGE_CACHE, else flexstage in the user's cache folder; it may be missing.
+    """Return the path of the cache folder, which may not exist yet.
 
-    Raises `DesignError` if unknown.
+    It is the environment variable FLEXSTAGE_CACHE, or by default `flexstage` in the user's cache folder. Raises `DesignError` if unknown.
 
     >>> cache_folder().is_absolute()
     True
@@ -56,14 +56,14 @@ def cache_folder() -> Path:
 
 @dataclass(frozen=True)
 class PendingFile:
-    """File written, or to be written, at `place` next to its future `target`; `where` is the user's name for it."""
+    """Temporary file at `place`, to be renamed to its `target`; `where` is the user's name for the target in messages."""
 
     place: Path
     target: Path
     where: str
 
     def flush(self) -> None:
-        """Flush it to the disk, with the permissions of the replaced file; raises `DesignError` on failure."""
+        """Flush the file to the disk, with the permissions of the file that it replaces; raises `DesignError` on failure."""
         try:
             with self.place.open("rb+") as stream:
                 os.fsync(stream.fileno())  # a full disk may be reported only here
@@ -73,14 +73,14 @@ class PendingFile:
             raise _write_error(self.where, error) from None
 
     def rename(self) -> None:
-        """Rename it to its target; raises `DesignError` on failure."""
+        """Rename the file to its target; raises `DesignError` on failure."""
         try:
             self.place.replace(self.target)
         except OSError as error:
             raise _write_error(self.where, error) from None
 
     def put(self) -> Path:
-        """Flush it and rename it to its target; raises `DesignError` on failure."""
+        """Flush the file and rename it to its target; raises `DesignError` on failure."""
         try:
             self.flush()
             self.rename()
@@ -89,16 +89,16 @@ class PendingFile:
         return self.target
 
     def drop(self) -> None:
-        """Remove it unless renamed."""
+        """Remove the temporary file, unless it has been renamed."""
         with contextlib.suppress(OSError):
             self.place.unlink()
 
 
 @contextmanager
 def atomic_write(path: str | os.PathLike[str]) -> Generator[Path]:
-    """Provide a temporary path for writing, renamed to `path` at the end of the block, removed on failure.
+    """Provide a temporary path for writing. At the end of the block, the file is renamed to `path`; on failure, it is removed.
 
-    Raises `DesignError` for a missing folder, a write-protected or irregular file, or a disk error.
+    Raises `DesignError` for a missing folder, a write-protected file, a path that is not a regular file, or a disk error.
 
     >>> with temporary_folder() as folder:
     ...     with atomic_write(folder / "a.txt") as place:
@@ -147,10 +147,10 @@ def write_temporary(path: str | os.PathLike[str], content: str | bytes) -> Pendi
 
 
 def move_all(files: Iterable[PendingFile]) -> None:
-    """Rename all files or none: on failure, previous ones are restored.
+    """Rename all files or none: on failure, the previous files are restored.
 
-    All are flushed before the first rename, and only renames follow: a process killed within these few microseconds leaves complete files,
-    some of them new.
+    All files are flushed before the first rename. If the process is killed between two renames, all files are complete, but only some of
+    them are new.
 
     >>> with temporary_folder() as folder:
     ...     move_all(write_temporary(folder / name, "whole") for name in ("a.c", "a.h"))
@@ -287,7 +287,7 @@ def _is_abandoned(entry: os.DirEntry[str], ours: re.Match[str]) -> bool:
 
 
 def process_mark() -> str:
-    """Return a mark of this process, unique among machines with a shared disk.
+    """Return a text that identifies this process, unique among machines with a shared disk.
 
     >>> has_ended(process_mark(), time.time())
     False
@@ -296,7 +296,10 @@ def process_mark() -> str:
 
 
 def has_ended(mark: str, since: float) -> bool:
-    """Return whether the process of a `process_mark` that wrote at a time [s since 1970] has ended; true for another machine."""
+    """Return whether the process with a `process_mark` has ended; true for a mark of another machine.
+
+    `since` is the time [s since 1970] at which the process wrote: a process started later has reused the process number.
+    """
     host, _, number = mark.partition("-")
     return host != _host() or not number.isdecimal() or not _is_running(int(number), since)
 

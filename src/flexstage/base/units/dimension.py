@@ -1,7 +1,7 @@
 """Size and dimension of units.
 
-Names and prefixes are defined in two tables; the angle is a separate dimension. A unit is a product or quotient of
-names with small powers, read from left to right: `N m/rad`, `nm/Hz^0.5`, `um/m/K`, `1/K`, `m/(N m)`. Sizes are exact fractions.
+Unit names and prefixes are defined in two tables. The angle is a separate dimension. A unit is a product or quotient of names with small
+powers, read from left to right: `N m/rad`, `nm/Hz^0.5`, `um/m/K`, `1/K`, `m/(N m)`. Sizes are exact fractions.
 """
 
 from __future__ import annotations
@@ -67,13 +67,13 @@ _LONGEST = 60
 
 @dataclass(frozen=True)
 class Dimension:
-    """Size of a unit in kilogram, metre, second, ..., and the powers of its base dimensions, sorted by name."""
+    """Size of a unit in coherent SI units, and the powers of its base dimensions, sorted by name."""
 
     size: Fraction
     powers: tuple[tuple[str, Fraction], ...] = ()
 
     def times(self, other: Dimension, power: Fraction) -> Dimension:
-        """Return the product with a power of another unit.
+        """Return the product of this unit and a `power` of another unit.
 
         >>> Dimension(Fraction(2)).times(Dimension(Fraction(4)), Fraction(-1)).size
         Fraction(1, 2)
@@ -86,7 +86,7 @@ class Dimension:
 
 @functools.lru_cache(maxsize=512)
 def dimension_of(unit: str) -> Dimension:
-    """Return the size and dimension of a unit; raises `ValueError` with its error.
+    """Return the size and dimension of a unit; raises `ValueError` with a message for an invalid unit.
 
     >>> dimension_of("N m").powers == dimension_of("J").powers, dimension_of("N/um").size / dimension_of("N/m").size
     (True, Fraction(1000000, 1))
@@ -117,7 +117,7 @@ _ONE = Dimension(Fraction(1))
 
 
 def common_spelling(text: str) -> str:
-    """Return the text with common signs of products, powers and degrees.
+    """Return the text with standard signs for products, powers and degrees.
 
     >>> common_spelling("kg·m²")
     'kg m^2'

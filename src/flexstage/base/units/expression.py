@@ -1,7 +1,7 @@
-"""Expressions of numbers with units and of named numbers: + - * / ( ), sqrt, sin, cos, tan only.
+"""Arithmetic expressions of numbers with units and of named numbers, with + - * / ( ), sqrt, sin, cos, tan only.
 
-A unit belongs to the number before it, up to the last name of a unit: `10 um/V` is one number, `10 um/arm` a quotient.
-Values are floats, complex numbers or arrays with dimensions; the angle is a separate dimension.
+A unit belongs to the number before it. It ends with its last unit name: `10 um/V` is one number, `10 um/arm` is a quotient. Values are
+floats, complex numbers or arrays with dimensions; the angle is a separate dimension.
 """
 
 from __future__ import annotations
@@ -43,13 +43,13 @@ class ExpressionError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Amount:
-    """Value in coherent SI units and its dimension (of size 1)."""
+    """Value in coherent SI units, and its dimension."""
 
     value: Any
     dimension: Dimension
 
     def noun(self) -> str:
-        """Return its kind: a length, a ratio, a quantity in m^2.
+        """Return its kind in words, e.g. "a length", "a ratio" or "a quantity in m^2".
 
         >>> evaluate(parse_expression("2 mm * 3 mm"), {}).noun()
         'a quantity in m^2'
@@ -58,18 +58,19 @@ class Amount:
 
 
 Scope = Mapping[str, Amount | None]
-"""Amounts by name; `None` for one with a reported error."""
+"""Amounts by name; `None` for a named number whose error is already reported."""
 
 
 class UnknownAmountError(Exception):
-    """Unknown amount in an expression, with an error reported elsewhere."""
+    """Error for a named number without a known amount; its cause is already reported elsewhere."""
 
 
 @dataclass(frozen=True, eq=False)
 class Expression:
-    """Arithmetic expression: its named numbers and its amount; a `literal` is one number with its unit.
+    """Parsed arithmetic expression: the `names` it uses, and a function `amount` that evaluates it for a scope.
 
-    `amount` raises `ExpressionError` for inconsistent dimensions, unknown names, and values out of range.
+    `literal`: the expression is one number with its unit. `amount` raises `ExpressionError` for inconsistent dimensions, unknown names, and
+    values out of range.
     """
 
     names: frozenset[str]
@@ -145,7 +146,7 @@ def parse_expression(text: str) -> Expression:
 
 
 def evaluate(expression: Expression, scope: Scope) -> Amount:
-    """Evaluate an expression; raises `ExpressionError`, also for a value that is not finite.
+    """Evaluate an expression with the named amounts of `scope`; raises `ExpressionError`, also for a result that is not finite.
 
     >>> arm = Amount(0.026, dimension_of("m"))
     >>> round(evaluate(parse_expression("arm/2 + 1 mm"), {"arm": arm}).value, 12)
@@ -262,7 +263,7 @@ class _Parser:
 
 
 def unit_end(text: str, at: int) -> int:
-    """Return the end of the unit that begins at an index of a text; the index without one.
+    """Return the index in `text` after the unit that begins at index `at`; `at` if there is no unit.
 
     >>> unit_end("10 um/arm", 2), unit_end("10 um/V", 2)
     (5, 7)
@@ -294,7 +295,7 @@ def _factor(text: str, at: int) -> int | None:
 
 
 def is_unit(name: str) -> bool:
-    """Return whether a name, with an optional power, is a unit.
+    """Return whether a name is a unit, with or without a power.
 
     >>> is_unit("mm"), is_unit("arm")
     (True, False)

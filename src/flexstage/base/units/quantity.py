@@ -1,7 +1,7 @@
 """Physical quantities: metadata of a field with its dimension, SI unit and display unit.
 
-A description field is written `thickness: Annotated[Number, LENGTH, POSITIVE]`; this metadata supplies file parsing, JSON Schema, tables
-and checks of sign.
+A description field is written `thickness: Annotated[Number, LENGTH, POSITIVE]`. File parsing, JSON Schema, tables and sign checks use this
+metadata.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 class Quantity:
     """Physical quantity: name, coherent SI unit and display unit.
 
-    `example` is an example text of a design file. `also` are equivalent units of another form (m/(N m) for rad/N).
+    `example` is an example text for a design file. `also` are equivalent units of another form (m/(N m) for rad/N).
     """
 
     name: str
@@ -35,7 +35,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Bound:
-    """Interval of a number; `low` is excluded if `open_low`, `high` if `open_high`."""
+    """Interval of a number from `low` to `high`. With `open_low` or `open_high`, the limit itself is excluded."""
 
     low: float = float("-inf")
     high: float = float("inf")
@@ -56,7 +56,7 @@ class Bound:
         return " and ".join(words)
 
     def whole(self) -> str:
-        """Return the range of whole numbers in words.
+        """Return the interval in words, for whole numbers.
 
         >>> Bound(low=2.0).whole(), Bound(low=2.0, high=9.0).whole()
         ('2 or more', '2 to 9')
@@ -120,7 +120,7 @@ COUPLING = Quantity("coupling compliance", "rad/N", "urad/N", "4.59 urad/N", als
 ROTATIONAL_COMPLIANCE = Quantity("rotational compliance", "rad/(N m)", "urad/(N m)", "4590 urad/(N m)")
 
 DIRECTION = Quantity("direction", "1", "1", "x")
-"""Direction of any length: three bare numbers, or `"x"`, `"-y"`, ... in a file."""
+"""Direction vector of any length: three numbers without unit, or `"x"`, `"-y"`, ... in a file."""
 
 DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
     "x": (1.0, 0.0, 0.0),
@@ -133,10 +133,10 @@ DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
 """Named directions in files."""
 
 COMPLIANCE_MATRIX = Quantity("compliance matrix", "mixed", "mixed", "2.91 um/N")
-"""6x6 with blocks `COMPLIANCE`, `COUPLING` and `ROTATIONAL_COMPLIANCE`."""
+"""Quantity of a 6x6 with blocks `COMPLIANCE`, `COUPLING` and `ROTATIONAL_COMPLIANCE`."""
 
 ANY = Quantity("number", "mixed", "mixed", "26 mm")
-"""Number of a quantity specified in another field."""
+"""Quantity of a number whose actual quantity is specified in another field."""
 
 STIFFNESS_MATRIX = Quantity("stiffness matrix", "mixed", "mixed", "17 N/um")
-"""6x6 with blocks `STIFFNESS`, `COUPLING_STIFFNESS` and `ROTATIONAL_STIFFNESS`."""
+"""Quantity of a 6x6 with blocks `STIFFNESS`, `COUPLING_STIFFNESS` and `ROTATIONAL_STIFFNESS`."""

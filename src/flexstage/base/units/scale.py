@@ -1,4 +1,7 @@
-"""Unit factors and directions for descriptions written in Python: `1.54 * mm`, `along=X`. Multiply to enter SI, divide to show."""
+"""Unit factors and directions for descriptions written in Python: `1.54 * mm`, `along=X`.
+
+Multiply a number by the factor to convert it to SI; divide an SI value by the factor to display it.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Conversion of text with units to SI numbers and back. Inside the package every number is SI.
 
-The angle is a separate dimension, so that degrees are distinct from ratios and rad/s from Hz. All arithmetic is exact (fractions); a text
-is rounded once, to the nearest float, so that "1.54 mm" is the float 0.00154.
+The angle is a separate dimension: degrees are distinct from ratios, and rad/s from Hz. All arithmetic is exact (fractions). The value of a
+text is rounded only once, to the nearest float: "1.54 mm" is the float 0.00154.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
 def show(value: Number, quantity: Quantity, unit: str | None = None, *, digits: int | None = None) -> str:
     """Return an SI value as text in `unit` (default: the quantity's display unit).
 
-    Without `digits`: the shortest text that `parse` reads back to the same bits. An array shows its range and size.
+    Without `digits`, it is the shortest text that `parse` converts back to the same bits. For an array, the text contains its range and
+    size.
 
     >>> from flexstage.base.units.quantity import LENGTH, STIFFNESS
     >>> show(0.00154, LENGTH), show(1.03e7, STIFFNESS, "N/mm"), show(2.0 / 3.0, LENGTH, digits=4)
@@ -78,7 +79,7 @@ def convert(value: Number, quantity: Quantity, unit: str | None = None) -> Numbe
 
 
 def missing_unit(found: Any, quantity: Quantity, *, where: str) -> DesignError:
-    """Return the error of a number without a unit.
+    """Return the error for a number `found` without a unit, at `where`.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> str(missing_unit(1.54, LENGTH, where="parts.neck.thickness"))
@@ -89,7 +90,7 @@ def missing_unit(found: Any, quantity: Quantity, *, where: str) -> DesignError:
 
 
 def number_with_unit(number: str, unit: str) -> tuple[float, Dimension]:
-    """Return the value in coherent SI units of a number's text with a unit (none: a ratio), and its dimension.
+    """Convert the texts of a number and its unit to a value in coherent SI units and a dimension. Without a unit: a ratio.
 
     >>> number_with_unit("26", "mm")[0], number_with_unit("5", "%")[0], number_with_unit("3", "kN")[0]
     (0.026, 0.05, 3000.0)
@@ -99,7 +100,7 @@ def number_with_unit(number: str, unit: str) -> tuple[float, Dimension]:
 
 
 def split_unit(text: str) -> tuple[str, str]:
-    """Split a text into its leading number (or empty) and its unit.
+    """Split a text into its leading number (empty if there is none) and its unit (`1` if there is none).
 
     >>> split_unit("26 mm"), split_unit("0.3"), split_unit("arm / 2")
     (('26', 'mm'), ('0.3', '1'), ('', 'arm / 2'))
@@ -110,7 +111,7 @@ def split_unit(text: str) -> tuple[str, str]:
 
 
 def quantity_of_dimension(dimension: Dimension, unit: str = "") -> Quantity:
-    """Return the first known quantity of a dimension, displayed in `unit`; for another dimension, one named by its SI unit.
+    """Return the first known quantity of a dimension, displayed in `unit`; for an unknown dimension, a quantity named by its SI unit.
 
     >>> quantity_of_dimension(dimension_of("mm"), "mm").noun, quantity_of_dimension(dimension_of("mm^3")).si
     ('a length', 'm^3')
@@ -179,7 +180,7 @@ def _no_number(text: str, quantity: Quantity, where: str) -> DesignError:
 
 
 def example(quantity: Quantity) -> str:
-    """Return an example of a quantity for input: a ratio without quotes.
+    """Return an example text of a quantity for input. The example of a ratio has no quotes.
 
     >>> example(RATIO)
     '0.3'

@@ -1,1 +1,1 @@
-"""Laws of flexures at large displacements: tables of bending, twist and stretch modes along their length."""
+"""Flexures at large displacements: tables of bending, twist and stretch modes along their length."""

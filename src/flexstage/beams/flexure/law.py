@@ -1,6 +1,7 @@
 """Law of a flexure at large displacements: mode tables, quadratic energy and the few non-quadratic terms.
 
-Lengths are over the flexure's own length L, forces over E I / L^2, moments over E I / L, with a reference rigidity E I.
+All quantities are dimensionless: lengths are divided by the flexure's length L, forces by E I / L^2, moments by E I / L, with a reference
+rigidity E I.
 
 The centre line is along x of the link frame, y is across the thin side, z along the width. Curvatures are (twist, about y, about z).
 """
@@ -25,7 +26,11 @@ from flexstage.parts.section import Rectangle, Section, cowper_rectangle
 
 @dataclass(frozen=True)
 class Resolution(CheckedFields):
-    """Numbers of modes of twist and of bending about y and z, of loads of the two plate fields, and of points along the flexure."""
+    """Discretisation of a flexure: numbers of modes and points.
+
+    `twist`, `across` and `bending` are the numbers of modes of twist and of bending about y and z. `fields` are the numbers of loads of the
+    two plate fields. `points` is the number of points along the flexure.
+    """
 
     twist: int = 6
     across: int = 6
@@ -36,14 +41,15 @@ class Resolution(CheckedFields):
 
 DEFAULT = Resolution()
 STRESSES = Resolution(twist=3, across=4, bending=4)
-"""Hinges of varying compliance: moments of degree 0 and 1 are exact at zero load; two more degrees follow the load."""
+"""Default resolution for hinges of varying compliance. At zero load, moments of degree 0 and 1 are exact; two more degrees are for loads.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class FlexureLaw:
-    """Tables of a flexure (docs/nonlinear.md, 3); leading axes are flexures with equal mode counts.
+    """Tables of a flexure (docs/nonlinear.md, 3). The leading axes are flexures with equal numbers of modes.
 
-    - `form` (..., q, q): second derivative of the quadratic energy by all amplitudes, k of curvature, then e of the plate fields.
+    - `form` (..., q, q): second derivative of the quadratic energy by all q amplitudes: k of curvature, then e of the plate fields.
     - `modes` (..., n, 3, k) and `inner` (..., 3 (n + 1), 3, k): curvatures of unit amplitudes at the points of the rule and of the rotation
       steps.
     - `plate` (..., n, 2, e): the fields a2 and a4.
@@ -77,15 +83,17 @@ class FlexureLaw:
 
     @property
     def signature(self) -> tuple[int, ...]:
-        """Shape that flexures of one batch share: numbers of points, curvature modes and plate modes."""
+        """Numbers of points, curvature modes and plate modes; equal for all flexures of one batch."""
         return (*self.modes.shape[-3:], self.plate.shape[-1])
 
 
 def leaf_law(part: Leaf, material: Material, resolution: Resolution = DEFAULT, *, warps: bool = False) -> FlexureLaw:
     """Build the law of a leaf with plate action and clamped ends (docs/nonlinear.md, 9 to 13); `warps`: the end bodies allow warping.
 
-    Exact for small strains of a thin leaf except for two approximations. Two shapes across the width: error 0.04 % in bending up to b^2 k /
-    t = 20. One warping shape for twist at clamped ends.
+    The law is exact for small strains of a thin leaf, except for two approximations:
+
+    - two shapes across the width: error 0.04 % in bending up to b^2 k / t = 20 (curvature k);
+    - one warping shape for twist at clamped ends.
     """
     length, thickness, width = (np.asarray(each, dtype=float) for each in (part.length, part.thickness, part.width))
     young, poisson = float(material.modulus), float(material.contraction)
@@ -136,7 +144,7 @@ def _natural(part: Leaf, material: Material) -> tuple[float, float]:
 
 
 def natural_curvature(part: Leaf, material: Material) -> float:
-    """Compute the natural curvature about z of a free leaf [1/m], due to its blank and its warmer face.
+    """Compute the curvature about z of a free leaf [1/m], due to its initial curvature and its face temperature difference.
 
     >>> natural_curvature(Leaf("steel", 0.1, 0.001, 0.01, curvature=2.0), Material(young=200e9, poisson=0.3, density=7750.0))
     2.0
@@ -147,9 +155,8 @@ def natural_curvature(part: Leaf, material: Material) -> float:
 def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = False, curvature: float = 0.0) -> FlexureLaw:
     """Build the law of any `Beam` part by stress modes: curvature = flexibility(s) x polynomials (docs/nonlinear.md, 14).
 
-    At zero load it equals the 6x6 of the beam. `flat`: a thin section, whose fibres far from the axis stretch in twist (Wagner).
-
-    `curvature` is the natural curvature about z [1/m].
+    At zero load, the law equals the 6x6 of the beam. `flat`: the section is thin, and its fibres far from the axis stretch in twist (Wagner
+    effect). `curvature` is the natural curvature about z [1/m].
     """
     places, weights, flexibility, inertia = _whole(part)
     length = np.sum(weights)

@@ -1,4 +1,4 @@
-"""Polynomials along and across a flexure of unit length and width, Gauss rules, and projections that these rules integrate exactly."""
+"""Polynomials along and across a flexure of unit length and width, Gauss rules, and projections that are exact with these rules."""
 
 from __future__ import annotations
 
@@ -12,16 +12,15 @@ from flexstage.base.number import Array
 from flexstage.spatial.rotation import GAUSS_THREE
 
 FINE = 200
-"""Points of the rule that integrates the laws."""
+"""Number of Gauss points for the integrals of a flexure law."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rule:
-    """A Gauss rule on [0, 1]: `points` (n,), `weights` (n,), and `running` (n, n), integrals of the interpolant to each point.
+    """Gauss rule on [0, 1]: `points` (n,), `weights` (n,), and `running` (n, n), the integrals of the interpolant from 0 to each point.
 
-    `knots` (n + 2,) are 0, the points and 1; `inner` (3 (n + 1),) are three Gauss points in each interval between them.
-
-    `ends` (2, n) are the values of the interpolant at 0 and 1.
+    `knots` (n + 2,) are 0, the points and 1. `inner` (3 (n + 1),) are three Gauss points in each interval between knots. `ends` (2, n)
+    times the values at the points gives the interpolant at 0 and 1.
     """
 
     points: Array
@@ -57,7 +56,7 @@ def gauss(size: int) -> Rule:
 
 
 def polynomials(count: int, places: Array) -> Array:
-    """Evaluate Legendre polynomials P_k(2 s - 1), k < `count`, at s (p,): (count, p).
+    """Evaluate the Legendre polynomials P_k(2 s - 1), k < `count`, at `places` s (p,). Returns (count, p).
 
     >>> polynomials(2, np.array([0.0, 1.0])).tolist()
     [[1.0, 1.0], [-1.0, 1.0]]
@@ -66,7 +65,7 @@ def polynomials(count: int, places: Array) -> Array:
 
 
 def slopes(count: int, places: Array) -> Array:
-    """Evaluate the derivatives by s of the polynomials (count, p).
+    """Evaluate the derivatives of these polynomials by s at `places` s (p,). Returns (count, p).
 
     >>> slopes(2, np.array([0.5])).ravel().tolist()
     [0.0, 2.0]
@@ -76,7 +75,10 @@ def slopes(count: int, places: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Across:
-    """Integrals across the width b = 1 of shapes phi_j = P_j(2 z) / 12: phi phi, phi' phi', phi'' phi'', phi phi'', z phi'' and phi'."""
+    """Integrals of products of the shapes phi_j = P_j(2 z) / 12 and their derivatives across the width b = 1.
+
+    The products are phi phi, phi' phi', phi'' phi'', phi phi'' and z phi''; the last integrals are of phi'.
+    """
 
     plain: Array
     sloped: Array
@@ -102,9 +104,9 @@ def across(degrees: tuple[int, ...]) -> Across:
 
 
 def project(values: Array, places: Array, weights: Array, size: int) -> Array:
-    """Project functions known at `places` (p,) with `weights` on P_0 ... P_(size - 1) by least squares: coefficients (..., size).
+    """Project functions on P_0 ... P_(size - 1) by least squares; returns coefficients (..., size).
 
-    Integrals of these polynomials by a rule of `size` points then equal the moments of the functions.
+    The functions have `values` (..., p) at `places` (p,), with integration `weights` (p,).
 
     >>> rule = gauss(5)
     >>> project(rule.points**2, rule.points, rule.weights, 3).round(12).tolist()

@@ -2,8 +2,8 @@
 
 Across the width b the deflection is w(x, z) = W - theta z + a2 phi2 + a4 phi4, phi_j = (b^2 / 12) P_j(2 z / b).
 
-The shapes have zero mean, so that they are orthogonal to W'', and phi2'' = 1. Clamped ends constrain the amplitudes and the section
-rotations psi of each shape (docs/nonlinear.md, 10).
+The shapes have zero mean and are therefore orthogonal to W''; phi2'' = 1. At clamped ends, the amplitudes and the section rotations psi of
+each shape are constrained (docs/nonlinear.md, 10).
 """
 
 from __future__ import annotations
@@ -24,18 +24,17 @@ _TERMS = 30
 _CUT = 1e-14
 """Relative singular value below which a combination of fields is rounding."""
 LOADS = (6, 4)
-"""Line loads on a2 and on a4 whose responses are the field modes of a leaf."""
+"""Numbers of line loads on a2 and on a4. The responses to these loads are the field modes of a leaf."""
 STRETCH_TWO, STRETCH_FOUR = 1.0 / 720.0, 1.0 / 1296.0
-"""Integrals of phi2^2 and phi4^2 across the width, over b^5."""
+"""Integrals of phi2^2 and of phi4^2 across the width b, divided by b^5."""
 
 
 @dataclass(frozen=True, eq=False)
 class Fields:
-    """Modes of the fields a2 and a4 of a leaf (docs/nonlinear.md, 11), one amplitude each; lengths over L, energies over D b / L.
+    """Modes of the fields a2 and a4 of a leaf with one amplitude per mode (docs/nonlinear.md, 11).
 
-    `form` (..., e, e) is their quadratic form, `values` (..., 2, e, n) are a2 and a4 at the points of a rule.
-
-    `coupling` (..., 2, e, k) are their integrals with P_k, k < n.
+    Lengths are divided by L, energies by D b / L. `form` (..., e, e) is the quadratic form of the e amplitudes. `values` (..., 2, e, n) are
+    a2 and a4 at the n points of a rule. `coupling` (..., 2, e, k) are the integrals of a2 and a4 with P_k, k < n.
     """
 
     form: Array
@@ -59,7 +58,7 @@ def _products() -> tuple[Array, Array, Array]:
 
 
 def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
-    """Build the quadratic form (120, 120) of a2, a4, psi2, psi4 (docs/nonlinear.md, 10) of a strip of unit length, over D b.
+    """Build the quadratic form (120, 120) of a2, a4, psi2, psi4 of a strip of unit length, divided by D b (docs/nonlinear.md, 10).
 
     >>> form = stiffness(0.5, 0.005, 0.3)
     >>> form.shape, bool(np.allclose(form, form.T))
@@ -85,7 +84,9 @@ def stiffness(width: Number, thickness: Number, poisson: Number) -> Array:
 
 @functools.lru_cache(maxsize=256)
 def fields(width: float, thickness: Number, poisson: Number, size: int, loads: tuple[int, int] = LOADS) -> Fields:
-    """Compute the field modes of a leaf: responses of the strip to line loads P_k on a2 and a4; `width` and `thickness` over the length.
+    """Compute the field modes of a leaf: responses of the strip to line loads P_k on a2 and a4.
+
+    `width` and `thickness` are divided by the length. `size` is the number of points of the rule.
 
     Cached for each proportion: do not modify the arrays.
 

@@ -22,16 +22,16 @@ _CUT = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Functions of s at sampling points: `values` (..., k, p), and their `slopes` by s."""
+    """Functions of s at p points: `values` (..., k, p), and `slopes`, their derivatives by s."""
 
     values: Array
     slopes: Array
 
 
 def restrained_twist_modes(count: int, places: Array, decay: Array) -> Modes:
-    """Compute the rates of twist with restrained warping (docs/nonlinear.md, 9): P_k - cosh(c u) / cosh(c), sinh for odd k; u = 2 s - 1.
+    """Compute the twist rates with restrained warping (docs/nonlinear.md, 9), P_k - cosh(c u) / cosh(c), with sinh for odd k, u = 2 s - 1.
 
-    `decay` c (...) is half the length times sqrt(G J / (E C_w)). The exponentials cannot overflow.
+    `decay` c (...) is half the length times sqrt(G J / (E C_w)). The computation does not overflow for large c.
 
     >>> restrained_twist_modes(2, np.array([0.0, 1.0]), np.array(500.0)).values.round(12).tolist()
     [[0.0, 0.0], [0.0, 0.0]]
@@ -49,7 +49,7 @@ def restrained_twist_modes(count: int, places: Array, decay: Array) -> Modes:
 def orthonormal(modes: Modes, weights: Array) -> Modes:
     """Orthonormalise the functions for the integral with `weights` (p,) at their points.
 
-    In short wide leaves the functions of `restrained_twist_modes` are nearly dependent: amplitudes without effect would amplify rounding.
+    In short wide leaves, the functions of `restrained_twist_modes` are nearly linearly dependent, which would amplify rounding errors.
 
     >>> rule = gauss(20)
     >>> result = orthonormal(restrained_twist_modes(3, rule.points, np.array(0.1)), rule.weights)
@@ -71,10 +71,11 @@ def _along() -> tuple[Array, Array, Array]:
 
 
 def curling_energy(width: Number, poisson: Number, twist: Modes) -> Array:
-    """Compute the reduction (..., k, k) of the twist form by section curvature, over D b / L; `twist` at the fine points.
+    """Compute the reduction (..., k, k) of the twist energy by curvature of the section, divided by D b / L.
 
-    `width` is over the length. With w_xx = - k_x' z and w_xz = - k_x the plate also bends to a_j phi_j, j = 3, 5, 7, with a and a' zero at
-    the clamps. The fields of least energy follow the twist (docs/nonlinear.md, 9).
+    `width` is divided by the length; `twist` has the modes at the `FINE` points. With w_xx = - k_x' z and w_xz = - k_x, the plate also
+    bends by a_j phi_j, j = 3, 5, 7, with a and a' zero at the clamps. The fields a_j minimise the energy for a given twist
+    (docs/nonlinear.md, 9).
     """
     width_wise, weights = across(_DEGREES), gauss(FINE).weights
     value, slope, _ = _along()

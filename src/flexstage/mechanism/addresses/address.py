@@ -1,12 +1,13 @@
 """Addresses of values: one scheme for files, `--set`, findings, studies and sensitivities.
 
-    parts.neck.thickness                     a shared part bodies.platform.mass                     the tree of the description, name by
-    name units.horizontal.links.front.at.x        a link's placement in all instances of its unit; short: `horizontal/front.at.x`
-    horizontal/front.thickness               the part of one link of a unit, in all instances: an override, in `overrides`
-    B2/front.thickness                       in one instance: an override that precedes that of all instances links.strut.thickness
-    the part of a link of the stage: also an override numbers.arm                              a named number: results of formulas change
-    with it B2.shift.x, S1.rotation.z                misalignment of a unit instance or a gauge relative to its pattern: an override, zero
-    by default
+    parts.neck.thickness               a shared part
+    bodies.platform.mass               a value in the tree of the description, name by name
+    units.horizontal.links.front.at.x  a link's placement in all instances of its unit; short: `horizontal/front.at.x`
+    horizontal/front.thickness         the part of one link of a unit, in all instances: an override, in `overrides`
+    B2/front.thickness                 the same in one instance: an override that precedes the override of all instances
+    links.strut.thickness              the part of a link of the stage: also an override
+    numbers.arm                        a named number: results of formulas change with it
+    B2.shift.x, S1.rotation.z          misalignment of a unit instance or a gauge relative to its pattern: an override, default zero
 
 Levels may be omitted if the result is unique: `horizontal/front.radius` for `horizontal/front.profile.radius`, `neck.thickness` for
 `parts.neck.thickness`. An ambiguous or misspelt address is an error that lists the candidates.
@@ -41,7 +42,7 @@ _MOST_NAMES = 8
 
 
 def get(mechanism: Mechanism, address: str) -> Any:
-    """Return the value at an address, with overrides.
+    """Return the value at an address, including overrides.
 
     >>> from flexstage.parts.rod import Rod
     >>> get(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}), "parts.wire.length")
@@ -51,7 +52,7 @@ def get(mechanism: Mechanism, address: str) -> Any:
 
 
 def value_at(mechanism: Mechanism, place: Place) -> Any:
-    """Return the value at an address, with overrides."""
+    """Return the value at a resolved address, including overrides."""
     return follow(_holder(mechanism, place), place.path)
 
 
@@ -66,10 +67,10 @@ def _holder(mechanism: Mechanism, place: Place) -> Any:
 
 
 def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
-    """Return the mechanism with another value (SI number, array, or name) at an address, without the tag of the old value.
+    """Return the mechanism with a new value (SI number, array, or name) at an address; the tag of the old value is removed.
 
-    An override is written to `overrides`, an entry of a 6x6 with its symmetric entry. Results of formulas of a named number are recomputed;
-    the formula of a replaced value is removed.
+    An override is written to `overrides`. An entry of a 6x6 is set together with its symmetric entry. If a named number changes, formulas
+    that use it are recomputed. The formula of a replaced value is removed.
 
     >>> from flexstage.parts.rod import Rod
     >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)})
@@ -93,9 +94,9 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
 
 
 def set_text(mechanism: Mechanism, address: str, text: str) -> Mechanism:
-    """Return the mechanism with a text applied at an address: a value, a relative change of a number (`+10%`), or a formula.
+    """Return the mechanism with the value at an address set by a text: a value, a relative change (`+10%`), or a formula.
 
-    A percentage with a sign is a relative change of any number. Without a sign it is the value of a ratio.
+    A percentage with a sign is a relative change of any number. A percentage without a sign is the value of a ratio.
 
     >>> from flexstage.parts.rod import Rod
     >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}, numbers={"arm": NamedNumber(0.026, "mm")})
@@ -183,7 +184,7 @@ def _several(mechanism: Mechanism, place: Place, where: str) -> DesignError:
 def addresses(mechanism: Mechanism) -> tuple[str, ...]:
     """Return the address of every number of a description: shared parts, bodies, placements, and existing overrides.
 
-    Without directions and absent values.
+    Directions and absent values are omitted.
 
     >>> from flexstage.parts.rod import Rod
     >>> addresses(Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)}))[:2]
@@ -207,7 +208,7 @@ def quantity_of(mechanism: Mechanism, address: str) -> Quantity:
 
 
 def quantity_at(place: Place, address: str) -> Quantity:
-    """Return the quantity of a number. Raises `DesignError` for anything else."""
+    """Return the quantity of the number at a resolved address; raises `DesignError` if the value is not a number."""
     quantity = place.node.measures
     if quantity is None:
         raise refuse(address, "not a number", "Use the address of one of its numbers")

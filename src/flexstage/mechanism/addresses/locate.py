@@ -23,10 +23,10 @@ _TOPOLOGY = ("joins", "part")
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Target of an address.
+    """Resolved address of a value.
 
     `path` is the full path from the description, with empty `owners`. For an override, `owners` are the units and instances with overrides,
-    by rising precedence (`horizontal/front`, `B2/front`). Then `path` begins at the link (`at.x`, `in_link`) or its part. For a
+    by rising precedence (`horizontal/front`, `B2/front`). The `path` then begins at the link (`in_link`, e.g. `at.x`) or at its part. For a
     misalignment (`shift.x`), `owners` is an instance or a gauge.
     """
 
@@ -37,19 +37,19 @@ class Place:
 
     @property
     def misaligned(self) -> bool:
-        """Whether it is a misalignment of an instance or a gauge."""
+        """Whether the value is a misalignment of an instance or a gauge."""
         return bool(self.owners) and not self.in_link and self.path[:1] in [(name,) for name in MISALIGNED]
 
     @property
     def address(self) -> str:
-        """Full address, without the name of the part within a restricted part."""
+        """Full address; for a restricted part, without the level of the part inside."""
         inside = bool(self.owners) and not self.in_link and self.path[:1] == ("part",)
         path = self.path[:2] if self.number else self.path
         return ".".join((*self.owners[-1:], *path[inside:]))
 
     @property
     def number(self) -> str:
-        """Name of the named number; else empty."""
+        """Name of the named number; empty for another value."""
         return self.path[1] if not self.owners and self.path[:1] == (NUMBERS,) and len(self.path) > 1 else ""
 
 
@@ -91,7 +91,7 @@ def _stands(mechanism: Mechanism, address: str, steps: tuple[str, ...]) -> bool:
 
 
 def link_path(mechanism: Mechanism, owner: str) -> tuple[str, ...]:
-    """Return the path of the link of an owner of overrides: a link of a unit (`unit/link`), or of the stage.
+    """Return the path of a link in the description; `owner` is `unit/link`, or a link of the stage.
 
     >>> link_path(Mechanism(""), "strut")
     ('links', 'strut')
@@ -193,7 +193,7 @@ def _names(value: Any) -> list[str]:
 
 
 def canonical(mechanism: Mechanism, address: str) -> str:
-    """Return the full address, or the same text if it is unknown.
+    """Return the full address; an unknown address is returned unchanged.
 
     >>> canonical(Mechanism(""), "nowhere")
     'nowhere'

@@ -23,7 +23,7 @@ MATRICES = ("compliance", "matrix")
 
 
 def with_mirror(path: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
-    """Return the path, and for an entry of a symmetric 6x6 also the path of its symmetric entry.
+    """Return the path and, for an off-diagonal entry of a symmetric 6x6, also the path of its symmetric entry.
 
     >>> with_mirror(("compliance", "x", "rz"))
     (('compliance', 'x', 'rz'), ('compliance', 'rz', 'x'))
@@ -81,7 +81,7 @@ def _field_names(kind: type) -> Mapping[str, str]:
 
 
 def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
-    """Return the paths to every member of that name: of the value, else of its nested descriptions and tables.
+    """Return the paths to every member of that name: directly in the value, else in its nested descriptions and tables.
 
     >>> completions((1.0, 2.0), "y")
     (('y',),)

@@ -60,9 +60,9 @@ NO_IMAGE = ("the mirror image of its part is unknown", "Draw the other side in a
 
 @dataclass(frozen=True, eq=False)
 class PlacedBody:
-    """Body of the expanded stage: its frame, reference point (..., 3) and mass properties, in the stage's frame.
+    """Body of the expanded stage with its frame, reference point (..., 3) and mass properties, in the stage's frame.
 
-    `drawn` is the body with the bodies lent to it; the mass is of all of them, with `materials`. `links` belong to the stage.
+    `drawn` is the body together with bodies that name it in `of`. The mass is their total mass, with `materials`.
     """
 
     name: str
@@ -74,7 +74,7 @@ class PlacedBody:
 
     @cached_property
     def mass(self) -> MassProperties | None:
-        """Mass properties of the body and of bodies lent to it; `None` without any."""
+        """Mass properties of the body and of bodies that belong to it (`of`); `None` without any mass."""
         return _mass(self.drawn, self.materials)
 
     @cached_property
@@ -89,7 +89,7 @@ class PlacedBody:
 
     @cached_property
     def solids(self) -> Mapping[str, PlacedSolid]:
-        """Outlines by address, including lent ones (`platform.plate`, `B1/pad.lug`)."""
+        """Outlines by address, including those of bodies that belong to it (`platform.plate`, `B1/pad.lug`)."""
         return _placed_solids(self.drawn)
 
 
@@ -97,8 +97,8 @@ class PlacedBody:
 class PlacedLink:
     """Link of the expanded stage: joined bodies by name, part with overrides, link frame in the stage's frame.
 
-    `drawn` is its address in the description (`horizontal/front`), `name` the address of this instance (`B1/front`). A member of a compound
-    (`B1/pivot.left`) is `of` the link in the description (`B1/pivot`).
+    `name` is the address of this instance (`B1/front`), `drawn` its address in the description (`horizontal/front`). For a member of a
+    compound (`B1/pivot.left`), `of` is the name of the compound's link (`B1/pivot`).
     """
 
     name: str
@@ -112,11 +112,11 @@ class PlacedLink:
 
     @property
     def described(self) -> PlacedLink:
-        """Name of the link in the description: of itself, or of its compound."""
+        """Name of the described link: the link itself, or for a member, the link of its compound."""
         return self.of or self
 
     def joints(self, body: str) -> tuple[Array, ...]:
-        """Joints to a body (..., 3): the link's centre."""
+        """Return the joints with a body, (..., 3) each: the link's centre."""
         return (self.frame.position,) if body in self.joins else ()
 
 
@@ -130,7 +130,7 @@ class PlacedPort:
 
 @dataclass(frozen=True, eq=False)
 class PlacedSuperelement:
-    """Superelement of the expanded stage: its part, the part's frame in the stage's frame, its ports in file order."""
+    """Superelement of the expanded stage: its part, the part's frame in the stage's frame, and its ports in file order."""
 
     name: str
     drawn: str
@@ -141,17 +141,18 @@ class PlacedSuperelement:
 
     @property
     def joins(self) -> tuple[str, ...]:
-        """Bodies joined, one per port."""
+        """Names of the joined bodies, one per port."""
         return tuple(port.body for port in self.ports.values())
 
     def joints(self, body: str) -> tuple[Array, ...]:
-        """Joints to a body (..., 3): its ports there."""
+        """Return the joints with a body, (..., 3) each: the ports at this body."""
         return tuple(port.frame.position for port in self.ports.values() if port.body == body)
 
     def welds(self) -> Iterator[PlacedLink]:
-        """Joints between the bodies of the first and of each other port, rigid except for the free degrees of freedom of a link of two.
+        """Yield joints from the body of the first port to the body of each other port, for the ideal model.
 
-        For the ideal model. Ports on the body of the first port have no joint.
+        The joints are rigid; with two ports, the link may specify free degrees of freedom. Ports on the body of the first port have no
+        joint.
         """
         first, *others = self.ports
         free = self.link.free or ()
@@ -167,11 +168,10 @@ class PlacedSuperelement:
 class Assembly:
     """Expanded stage: all moving bodies, links and gauges by name. `actuators` maps input names to link names.
 
-    `circuits` maps the links of actuators to their input and their sign in it; `actuators` has the first link of each input.
-
-    `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in `superelements` instead of `links`:
-    they join any number of bodies. Bodies `of` another one are not listed: their solids belong to their owner, or to `ground`, the outlines
-    of the ground.
+    For a circuit of force actuators, `actuators` has the first link of the input. `circuits` maps each of its links to the input and the
+    sign. `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in `superelements` instead of
+    `links`, because they join any number of bodies. Bodies that belong to another body (`of`) are not listed: their solids are part of the
+    owner, or of `ground`, the outlines of the ground.
     """
 
     bodies: Mapping[str, PlacedBody]
@@ -191,24 +191,24 @@ class Assembly:
         return replace(self, links={**self.links, **welds}, superelements=Table({})) if self.superelements else self
 
     def actuator(self, name: str) -> Actuator:
-        """Part of an input, by the input's name; of a circuit its parts in series."""
+        """Return the actuator of an input; for a circuit, the equivalent of its actuators in series."""
         part = actuator_of(self.links[self.actuators[name]].part)
         count = sum(owner == name for owner, _ in self.circuits.values())
         return part.in_series(count) if count > 1 and isinstance(part, ThrustActuator) else part
 
     @cached_property
     def strokes(self) -> Mapping[str, str]:
-        """Input name to link name of the stroke actuators."""
+        """Link names of the stroke actuators, by input name."""
         return {name: link for name, link in self.actuators.items() if self.actuator(name).takes_stroke}
 
     @cached_property
     def thrusts(self) -> Mapping[str, str]:
-        """Input name to link name of the force actuators, of a circuit the first."""
+        """Link names of the force actuators, by input name; for a circuit, the first link."""
         return {name: link for name, link in self.actuators.items() if not self.actuator(name).takes_stroke}
 
     @cached_property
     def pushes(self) -> Mapping[str, tuple[str, Array]]:
-        """Input name and wrench per unit of input (..., 6) by link of every force actuator, those of circuits with their polarity."""
+        """Input name and wrench per unit of input (..., 6) of every force actuator, by link; in circuits with the sign of the polarity."""
         known = {link: each for link, each in self.circuits.items() if each[0] in self.thrusts}
         return {link: (name, sign * actuator_of(self.links[link].part).wrench) for link, (name, sign) in known.items()}
 
@@ -267,7 +267,7 @@ def _polar_frame(pattern: Polar, angle: Number) -> Frame:
 def expand(mechanism: Mechanism) -> Assembly:
     """Expand a description into bodies and links: units placed by pattern, overrides applied, frames in the stage's frame.
 
-    The description must have passed its checks. Without a platform reference, the platform's twist is at its centre of mass.
+    The description must have passed its checks. If the platform has no reference point, its twist is at its centre of mass.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(expand(double_triangle()).links)
@@ -280,7 +280,7 @@ def expand(mechanism: Mechanism) -> Assembly:
 
 
 def lay_out(mechanism: Mechanism) -> Assembly:
-    """Expand as `expand`, with mass properties computed on first use.
+    """Expand a description as `expand` does; mass properties are computed only on first use.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lay_out(double_triangle()).bodies)
@@ -290,7 +290,7 @@ def lay_out(mechanism: Mechanism) -> Assembly:
 
 
 class IdentityKey:
-    """Cache key of a description by identity, cheaper than a digest."""
+    """Cache key that identifies a description by object identity, which is faster than a digest."""
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism = mechanism
@@ -374,7 +374,9 @@ def unknown_names(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def unknown_entries(sections: Mapping[str, Any]) -> Iterator[Finding]:
-    """Materials, parts, units and sensors that the entries of sections, of a description or of a file's tree, name and do not have.
+    """Yield errors for names of materials, parts, units and sensors that do not exist.
+
+    `sections` are the sections of a description or of a file's tree.
 
     >>> print(*unknown_entries({"parts": {"leaf": {"material": "stel"}}, "materials": {"steel": {}}}))
     parts.leaf.material: unknown material "stel". Use steel.
@@ -435,7 +437,7 @@ def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:
 
 
 def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
-    """Return every body by name as in links, gauges and loads: bodies of the stage, and `instance/body` of placed units.
+    """Return every body by the name used in links, gauges and loads: bodies of the stage, and `instance/body` of placed units.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(placed_bodies(double_triangle()))[:3]
@@ -447,7 +449,9 @@ def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
 
 
 def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable[str] = ()) -> tuple[str, ...]:
-    """Return the moving bodies at a link's ends or ports, with owners instead of bodies `of` them; `own` belong to its unit.
+    """Return the moving bodies at a link's ends or ports; a body with `of` is replaced by its owner.
+
+    `copy` is the instance of the link's unit, `own` are the names of the unit's bodies.
 
     >>> strut = Link(("pad", "W/slide"), "wire", at=(0.0, 0.0, 0.0), along=(1.0, 0.0, 0.0))
     >>> joined(strut, {"pad": Body(of="ground"), "W/slide": Body()})
@@ -538,7 +542,7 @@ def _links(mechanism: Mechanism, placed: tuple[_Copy, ...]) -> Iterator[PlacedLi
 
 
 def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors for restricted compounds, and for links that specify degrees of freedom or ends of one: members have these.
+    """Return errors for restricted compounds, and for links of compounds that specify degrees of freedom or two ends.
 
     >>> list(compound_findings(Mechanism("")))
     []

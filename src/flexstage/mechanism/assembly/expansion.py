@@ -23,22 +23,22 @@ _STATED, _ASKED = "as specified", "as requested"
 
 @dataclass(frozen=True)
 class Ground:
-    """Material of the ground for thermal expansion (`None`: no expansion), and its source."""
+    """Material of the ground for thermal expansion (`None`: no expansion), and where it is specified."""
 
     material: str | None
     source: str
 
     @property
     def stated(self) -> bool:
-        """Whether it is specified in the description or the call."""
+        """Whether the material is specified in the description or the call."""
         return self.source in (_STATED, _ASKED)
 
 
 @dataclass(frozen=True, eq=False)
 class Expansion:
-    """Expansion coefficients [1/K] of the `bodies` (with the ground) and of the `parts` with a length [m].
+    """Expansion coefficients [1/K] of the `bodies`, including the ground, and of the `parts` that have a length.
 
-    `taken` is the assumed material of each body with its source (solids, links); `ground` is the material of the ground.
+    `taken` is the assumed material of each body and its source (solids or links). `ground` is the material of the ground.
     """
 
     bodies: Mapping[str, Number]
@@ -50,9 +50,9 @@ class Expansion:
 def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     """Compute all expansion coefficients; `ground` names the ground's material (default: `ground_of`; `none`: no expansion).
 
-    A body has the material of its heaviest solid, or without solids the common material of its links. Compliance matrices expand as the
-    drawn parts that they replace; other matrices and ideal joints have no length and no expansion. Raises `DesignError` for all materials
-    and stacks without a coefficient, and all bodies of unknown material.
+    A body has the material of its heaviest solid; without solids, the common material of its links. Compliance matrices expand as the drawn
+    parts that they replace. Other matrices and ideal joints have no length and no expansion. Raises `DesignError` with all materials and
+    stacks without a coefficient, and all bodies of unknown material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = expansion(double_triangle(), ground="steel")
@@ -85,7 +85,7 @@ def _stated_expansion(mechanism: Mechanism, material: str) -> Number:
 
 
 def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
-    """Return the ground's material: as requested (`none`: no expansion), as in the description, else that of all parts on the ground.
+    """Return the ground's material: as requested by `asked` (`none`: no expansion), as in the description, or of the parts on the ground.
 
     The parts on the ground are its outlines or, without outlines, its links; they must have one material. Raises `DesignError` for
     several materials or none: drift is then undefined.

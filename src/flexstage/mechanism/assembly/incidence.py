@@ -23,10 +23,10 @@ LARGE = 60
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Layout of the coordinate vector: six coordinates per body, the platform first; then the `inner` ones.
+    """Layout of the coordinate vector: six coordinates per body, the platform first; then the internal coordinates of links.
 
-    `inner` is the number of internal coordinates by link: amplitudes of its fixed-interface modes, zero in rigid motion.
-    For a `sparse` layout, matrices over the coordinates are `flexstage.base.sparse.Sparse`.
+    `inner` is the number of internal coordinates by link: amplitudes of its fixed-interface modes, which are zero in a rigid motion. In a
+    `sparse` layout, matrices over the coordinates are `flexstage.base.sparse.Sparse`.
     """
 
     bodies: tuple[str, ...]
@@ -45,7 +45,7 @@ class Layout:
         return (*twists, *(f"{link}.mode{number + 1}" for link, count in self.inner.items() for number in range(count)))
 
     def columns(self, body: str) -> slice:
-        """Coordinates of a body."""
+        """Return the slice of a body's six coordinates."""
         start = self._starts[body]
         return slice(start, start + 6)
 
@@ -56,12 +56,12 @@ class Layout:
 
     @cached_property
     def inner_starts(self) -> Mapping[str, int]:
-        """First internal coordinate of every link that has some."""
+        """Index of the first internal coordinate, for every link with internal coordinates."""
         ends = np.cumsum(list(self.inner.values()), dtype=int).tolist()
         return {name: 6 * len(self.bodies) + end - self.inner[name] for name, end in zip(self.inner, ends, strict=True)}
 
     def embed(self, first: int, block: Array) -> Array:
-        """Matrix (..., r, n) with a block (..., r, c) from column `first`, else zero."""
+        """Return a matrix (..., r, n) that contains a block (..., r, c) from column `first`, and is zero elsewhere."""
         if self.sparse:
             return cast("Array", Sparse(np.arange(first, first + block.shape[-1]), block, self.size))
         result = np.zeros((*block.shape[:-1], self.size), dtype=block.dtype)
@@ -69,11 +69,11 @@ class Layout:
         return result
 
     def selector(self, body: str) -> Array:
-        """Selection matrix (6, n) of a body's twist at its reference point, in the stage's axes."""
+        """Return the selection matrix (6, n) of a body's twist at its reference point, in the stage's axes."""
         return self.embed(self._starts[body], np.eye(6))
 
     def inner_selector(self, link: str) -> Array:
-        """Selection matrix (m, n) of a link's internal coordinates; without rows if it has none."""
+        """Return the selection matrix (m, n) of a link's m internal coordinates; m may be 0."""
         return self.embed(self.inner_starts.get(link, 0), np.eye(self.inner.get(link, 0)))
 
 
@@ -104,7 +104,9 @@ def is_single(assembly: Assembly) -> bool:
 
 
 def require_room(assembly: Assembly, matrices: float) -> None:
-    """Refuse a stage whose dense matrices (coordinates x rows of bodies or links, 8 bytes per entry) exceed the memory.
+    """Raise `DesignError` for a stage whose dense matrices exceed the available memory.
+
+    `matrices` is the number of dense matrices: coordinates x rows of bodies or links, 8 bytes per entry.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -121,7 +123,7 @@ def require_room(assembly: Assembly, matrices: float) -> None:
 
 
 def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Array:
-    """Compute the matrix (..., 6, n) of a body's twist at a frame's origin, in the frame's axes; zero for the ground.
+    """Compute the matrix (..., 6, n) that gives a body's twist at a frame's origin, in the frame's axes; zero for the ground.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -135,7 +137,7 @@ def twist_at(assembly: Assembly, order: Layout, body: str, frame: Frame) -> Arra
 
 
 def end_twists(assembly: Assembly, order: Layout, link: PlacedLink) -> tuple[Array, Array]:
-    """Compute the matrices (..., 6, n) of the twists of a link's first and second body, at its centre, in its frame.
+    """Compute the matrices (..., 6, n) that give the twists of a link's first and second body, at the link's centre in its frame.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -148,7 +150,7 @@ def end_twists(assembly: Assembly, order: Layout, link: PlacedLink) -> tuple[Arr
 
 
 def deformation(assembly: Assembly, order: Layout, link: PlacedLink) -> Array:
-    """Compute the matrix (..., 6, n) of a link's relative twist: second body against first, at its centre, in its frame.
+    """Compute the matrix (..., 6, n) that gives a link's relative twist, second minus first body, at the link's centre in its frame.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -179,9 +181,9 @@ def free_deformations(assembly: Assembly) -> Array:
 
 
 def with_ground(assembly: Assembly, order: Layout) -> Array:
-    """Compute the rigid motion (..., n, 6) of all bodies with the ground, for a twist at the platform's reference point.
+    """Compute the motion (..., n, 6) of all coordinates if the ground moves rigidly, for a unit twist at the platform's reference point.
 
-    Internal coordinates are zero. Raises `DesignError` without a platform.
+    Internal coordinates are zero. Raises `DesignError` if there is no platform.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

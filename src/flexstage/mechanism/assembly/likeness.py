@@ -11,7 +11,7 @@ from flexstage.mechanism.mechanism import Mechanism, Unit
 
 
 def drawn_units(mechanism: Mechanism) -> Mapping[str, Unit]:
-    """Return the units with inherited bodies and links; bodies and links of the unit take precedence.
+    """Return the units including inherited bodies and links. A unit's own bodies and links replace inherited ones of the same name.
 
     >>> drawn_units(Mechanism("", units={"outer": Unit({}, {}, like="inner"), "inner": Unit({}, {}, stiffness=1e6)}))["outer"].like
     'inner'
@@ -30,7 +30,7 @@ def _drawn(mechanism: Mechanism, name: str) -> Unit:
 
 
 def ancestry(mechanism: Mechanism, name: str) -> tuple[str, ...]:
-    """Return a unit with the chain of units that it inherits from, up to an unknown or repeated one.
+    """Return the unit's name and the chain of units from which it inherits, up to an unknown or repeated unit.
 
     >>> ancestry(Mechanism("", units={"outer": Unit({}, {}, like="inner"), "inner": Unit({}, {})}), "outer")
     ('outer', 'inner')
@@ -43,7 +43,7 @@ def ancestry(mechanism: Mechanism, name: str) -> tuple[str, ...]:
 
 
 def link_lineage(mechanism: Mechanism, unit: str, link: str) -> tuple[str, ...]:
-    """Return the units whose overrides apply to a unit's link, from the one that draws it.
+    """Return the units whose overrides apply to a unit's link, beginning with the unit that draws the link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> link_lineage(double_triangle(), "horizontal", "front")

@@ -35,7 +35,7 @@ from flexstage.parts.material import Material
 from flexstage.spatial.frame import Frame, identity, reflection
 
 STAGES = "stages"
-"""Table of a design file with the stages mounted on this one."""
+"""Table of a design file that lists the stages mounted on this stage."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,12 +51,12 @@ class Mount(Description):
 def mount(
     stage: Mechanism, name: str, carried: Mechanism, *, on: str = GROUND, pose: Pose | None = None, platform: bool | None = None
 ) -> Mechanism:
-    """Return the stage with a stage `carried` mounted on its body `on`, which replaces the mounted stage's ground.
+    """Return the stage with another stage, `carried`, mounted on its body `on`. This body replaces the carried stage's ground.
 
-    Bodies, links, units, instances, parts, gauges and loads of the mounted stage are named `name/...`, with unchanged numbers. Its
-    overrides, tags and temperatures are kept, and, on the ground, the ground's material. Gravity, damping, requirements, envelope, formulas
-    and other properties of the whole stage are dropped. `platform`: use the mounted stage's platform as that of both (default: if the stage
-    has no body `platform`).
+    Bodies, links, units, instances, parts, gauges and loads of the carried stage get the names `name/...`, with unchanged numbers. Its
+    overrides, tags and temperatures are kept; if `on` is the ground, also the ground's material. Its gravity, damping, requirements,
+    envelope, formulas and other properties of a whole stage are dropped. `platform`: the carried stage's platform is the platform of both
+    (default: if the stage has no body `platform`).
 
     Raises `DesignError` for name clashes, an unknown body, a mirrored pose, or different expansion or temperature of a common ground.
 
@@ -266,9 +266,10 @@ def _provenance(stage: Mechanism, rename: _Names, carried: Mechanism) -> tuple[T
 
 
 def mount_all(stage: Mechanism, carried: Mapping[str, tuple[Mount, Mechanism]]) -> Mechanism:
-    """Return the stage with all mounted stages, each after its carrier. The ground specified in the stage applies to all.
+    """Return the stage with all stages in `carried` mounted, each after the stage that it is mounted on.
 
-    Without a body `platform` in the stage, the platform is that of the topmost stage. Raises `DesignError` for several topmost stages.
+    The ground specified in the stage applies to all. If the stage has no body `platform`, the topmost stage provides it. Raises
+    `DesignError` for several topmost stages.
 
     >>> mount_all(Mechanism("bare"), {}).name
     'bare'

@@ -12,7 +12,7 @@ from flexstage.spatial.frame import rigid_inertia
 
 
 def carried_masses(mechanism: Mechanism, placed: PlacedBody) -> tuple[MassProperties, ...]:
-    """Return mass properties of the body, if it has mass, and of each of its payloads, in the stage's frame.
+    """Return the mass properties of the body (if it has mass) and of each of its payloads, in the stage's frame.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

@@ -21,9 +21,10 @@ from flexstage.spatial.frame import Frame
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """One term of a reading: a component of the twist of `body` at `frame` minus that of `base` at `foot`, times `weight`.
+    """One term of a gauge's reading: `weight` times a `component` of the relative twist of `body` against `base`.
 
-    Each in the axes of its frame. Both frames are equal except for gauges on links.
+    It is the component of the twist of `body` at `frame`, minus the component of the twist of `base` at `foot`, each in the axes of its
+    frame. The two frames differ only for gauges on links.
     """
 
     body: str
@@ -36,7 +37,7 @@ class Sight:
 
 @dataclass(frozen=True, eq=False)
 class PlacedGauge:
-    """Gauge of the expanded stage: its reading is the sum of its `sights`. `members` of a sum are gauges with their weights."""
+    """Gauge of the expanded stage: its reading is the sum of its `sights`. For a sum of gauges, `members` are their weights by name."""
 
     name: str
     gauge: Instrument
@@ -50,13 +51,13 @@ class PlacedGauge:
 
     @property
     def single(self) -> Sight | None:
-        """The only term; none for sums."""
+        """The only term of the reading; `None` for a sum of gauges."""
         return None if self.members else self.sights[0]
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedStop:
-    """Stop of the expanded stage: `low` and `high` (...) [m] bound the motion of its `sight`, infinite on an open side."""
+    """Stop of the expanded stage: `low` and `high` (...) [m] limit the motion of its `sight`; infinite on an open side."""
 
     sight: Sight
     low: Array
@@ -64,19 +65,19 @@ class PlacedStop:
 
 
 def place_stop(stop: Stop, frame: Frame) -> PlacedStop:
-    """Return a stop at a frame: the body's motion along x against the base's, as for a gap gauge."""
+    """Return a stop at a frame. It limits the motion of its body against its base along x, which is measured as by a gap gauge."""
     seen = Sight(stop.body, stop.base, frame, frame, Freedom.X.index, 1.0)
     return PlacedStop(seen, np.asarray(-np.inf if stop.gap_negative is None else -stop.gap_negative), np.asarray(stop.gap))
 
 
 def sight(probe: Probe, gauge: Instrument, frame: Frame) -> Sight:
-    """Return the measured quantity of a gauge at a frame."""
+    """Return the relative motion that a gauge at a frame measures."""
     sign = -1.0 if probe.positive is SensorSense.CLOSES else 1.0
     return Sight(probe.body, probe.base or GROUND, frame, frame, gauge.freedom.index, sign)
 
 
 def sight_of_link(first: str, second: str, frame: Frame, part: Part, gauge: Instrument) -> Sight:
-    """Return the measured quantity of a gauge on a link: second body against first, each at its end."""
+    """Return the relative motion that a gauge on a link measures: second body against first, each at its end of the link."""
     half = 0.5 * np.asarray(span(part))[..., None] * frame.rotation[..., :, 0]
     return Sight(
         second,
@@ -89,7 +90,7 @@ def sight_of_link(first: str, second: str, frame: Frame, part: Part, gauge: Inst
 
 
 def link_names(text: str) -> tuple[str, ...]:
-    """Return the links named by a gauge's `link`.
+    """Return the links named by the `link` text of a gauge.
 
     >>> link_names("B1-B3/pzt"), link_names("strut")
     (('B1/pzt', 'B2/pzt', 'B3/pzt'), ('strut',))
@@ -120,7 +121,7 @@ def _members(place: GaugeSum, gauges: Mapping[str, GaugePlace]) -> Iterator[tupl
 
 
 def gauge_findings(mechanism: Mechanism, links: Collection[str]) -> Iterator[Finding]:
-    """Return errors in poses, links and sums of gauges with known sensors; `links` belong to the expanded stage."""
+    """Return errors in poses, links and sums of gauges whose sensors exist; `links` are the link names of the expanded stage."""
     for key, place in mechanism.gauges.items():
         if isinstance(place, GaugeSum):
             yield from _sum_findings(f"gauges.{key}", key, place, mechanism.gauges)

@@ -1,7 +1,7 @@
 """Checks of a description, with all errors.
 
-`check` returns errors, `require_valid` raises them. Checks are vectorised: they report the first failing index of a batch. Models report
-errors that require elasticity (a free internal mode).
+`check` returns errors, `require_valid` raises them. For a batch, a check reports the index of the first failing design. Errors that depend
+on elasticity (a free internal mode) are reported by the models.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ __all__ = ["check", "copy_findings", "package_findings", "require_valid"]
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Return all errors of a description; none for a valid one.
 
-    A check is skipped if its assumptions fail. Numbers are compared if finite, links oriented if their parts are valid. The graph is
-    searched if its names exist; matrix files are read if all else is valid.
+    A check is skipped if its assumptions fail. Numbers are compared only if they are finite, orientations only for valid parts. The graph
+    is checked only if all names exist, matrix files only if all other checks pass.
 
     >>> [str(finding) for finding in check(Mechanism("empty"))]
     ['bodies: unknown body "platform". Declare the moving part under bodies.platform.']

@@ -38,7 +38,7 @@ _MOMENT_DIGITS = 5
 
 
 def geometry_findings(mechanism: Mechanism, *, overrides: bool = True) -> Iterator[Finding]:
-    """Return errors of materials, parts, solids, specified masses and payloads; with `overrides`, also of parts of single instances.
+    """Return errors of materials, parts, solids, specified masses and payloads; with `overrides`, also of overridden parts.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.03, thickness=0.012, width=0.01)
@@ -93,7 +93,7 @@ def _without_image(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def matrix_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors of superelement files, for valid descriptions of them.
+    """Return errors in the files of superelements whose descriptions are valid.
 
     >>> list(matrix_findings(Mechanism("")))
     []

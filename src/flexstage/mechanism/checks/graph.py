@@ -26,7 +26,7 @@ class _Edge:
 
 
 def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors of the expanded graph, for existing names.
+    """Return errors of the expanded graph; all names must exist.
 
     >>> from flexstage.parts.body import Body
     >>> print(*graph_findings(Mechanism("", bodies={"platform": Body(mass=1.0)})))

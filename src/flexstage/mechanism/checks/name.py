@@ -23,7 +23,7 @@ _RANGE = re.compile(r"(.*?)(\d+)-(?:\1)?(\d+)")
 
 
 def name_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors of names, for valid placement keys.
+    """Return errors of names; the placement keys must be valid.
 
     >>> print(*name_findings(Mechanism("", bodies={"ground": Body(), "platform": Body()})))
     bodies.ground: "ground" is implied and cannot be a body of the stage. Rename the body.

@@ -15,7 +15,7 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 def value_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors of single numbers.
+    """Return errors of single numbers, and of batches of inconsistent size.
 
     >>> from flexstage.parts.rod import Rod
     >>> print(*value_findings(Mechanism("", parts={"wire": Rod("steel", length=0.03, diameter=-0.001)})))

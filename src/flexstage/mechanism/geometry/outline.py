@@ -1,4 +1,4 @@
-"""Outlines of bodies' solids and links' parts: boxes and cylinders in the stage's frame."""
+"""Outlines of the solids of bodies and of the parts of links: boxes and cylinders in the stage's frame."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ from flexstage.spatial.frame import Frame
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """Box (`size` along the axes of `frame`, (..., 3) [m]), or cylinder along x (`is_cylinder`: length, diameter, diameter).
+    """Outline: a box of `size` (..., 3) [m] along the axes of `frame`, or a cylinder along x (`is_cylinder`) in this box.
 
-    `name` is its address (`platform.plate`, `B1/front`). `hole` (..., 2): sides of a rectangular hole of a box along z; `bore`: diameter of
-    a cylinder's hole along x. `corners` (..., n, 3) are of an outline smaller than its box; `is_ball`: a ball, as long as its diameter.
+    `name` is the address (`platform.plate`, `B1/front`). `hole` (..., 2) are the sides of a rectangular hole through a box along z. `bore`
+    is the diameter of a hole through a cylinder along x. `corners` (..., n, 3) are the corners of an outline that does not fill its box.
+    `is_ball`: the outline is a ball.
     """
 
     name: str
@@ -34,7 +35,7 @@ class Outline:
 
     @property
     def designs(self) -> tuple[int, ...]:
-        """Batch axes of position and size."""
+        """Shape of the batch axes of position and size."""
         corners = () if self.corners is None else self.corners.shape[:-2]
         return np.broadcast_shapes(self.frame.position.shape[:-1], self.frame.rotation.shape[:-2], self.size.shape[:-1], corners)
 
@@ -59,7 +60,7 @@ class Outline:
 
 
 def outlines(assembly: Assembly) -> tuple[Outline, ...]:
-    """Return outlines of all solids (also of the ground), and of all parts with dimensions.
+    """Return outlines of all solids (also of the ground), and of all parts that have dimensions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

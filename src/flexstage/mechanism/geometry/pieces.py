@@ -1,6 +1,6 @@
-"""Convex decomposition: bodies' solids and links' parts as polytopes inside the material.
+"""Convex decomposition: polytopes inside the solids of bodies and the parts of links.
 
-Flat faces are exact. Arcs are approximated within `SAGITTA` from inside, so that pieces touch only if the forms do.
+Flat faces are exact. Polygons inside the round faces deviate by at most `SAGITTA`: pieces touch only if the solids touch.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Form: TypeAlias = Shaped | Solid
 
 
 def form_of(part: Part) -> Form | None:
-    """Return the form of a link's part; none for a compliance matrix and an ideal joint.
+    """Return the part inside a link's part if it has a form; `None` for a compliance matrix or an ideal joint.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> form_of(Leaf("steel", 0.02, 0.001, 0.01)).span
@@ -36,7 +36,7 @@ def form_of(part: Part) -> Form | None:
 
 
 def is_flat(form: Form) -> bool:
-    """Return whether its pieces are exact (a form without arcs).
+    """Return whether the pieces of a form are exact, because it has no arcs.
 
     >>> from flexstage.parts.body import Block
     >>> is_flat(Block("steel", (0.1, 0.1, 0.1)))
@@ -47,9 +47,9 @@ def is_flat(form: Form) -> bool:
 
 @SESSION.keep(256)
 def pieces(form: Form, trim: float = 0.0) -> tuple[Convex, ...]:
-    """Return the convex pieces of a form in its own frame, without `trim` [m] at both ends of a link; none for an imported shape.
+    """Return the convex pieces of a form in its own frame; none for an imported shape.
 
-    Holes of the body in a solid are ignored.
+    For a link's part, a length `trim` [m] is removed at both ends. Holes of the body in a solid are ignored.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> len(pieces(Leaf("steel", 0.02, 0.001, 0.01)))

@@ -1,1 +1,1 @@
-"""Grammar of descriptions: fields and values of each class."""
+"""Grammar of descriptions: the fields of each class and the kinds of their values."""

@@ -1,7 +1,7 @@
 """Formulas of a description, stored with the computed values.
 
-A formula has the address of its number (`parts.leaf.length`, `numbers.half`). Values always equal their formulas: a change of a named
-number recomputes all dependent values (`address.set_value`), a change of a computed value removes its formula.
+A formula has the address of its number (`parts.leaf.length`, `numbers.half`). Values always equal their formulas. If a named number
+changes, all dependent values are recomputed (`address.set_value`). If a computed value is set, its formula is removed.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _NOT_FINITE = ("nan", "inf", "infinity")
 
 
 def scope_of(mechanism: Mechanism) -> dict[str, Amount]:
-    """Return the named numbers of a description.
+    """Return the named numbers of a description as amounts, by name.
 
     >>> scope_of(Mechanism("", numbers={"arm": NamedNumber(0.026, "mm")}))["arm"].noun()
     'a length'
@@ -55,7 +55,9 @@ def amount_of(number: NamedNumber) -> Amount:
 
 
 def formula_value(text: str, quantity: Quantity, scope: Scope, where: str) -> Number:
-    """Evaluate a formula of a quantity [SI]; raises `DesignError` at `where`, `UnknownAmountError`.
+    """Evaluate a formula that must have a given quantity; returns the value in SI.
+
+    Raises `DesignError` at `where`, or `UnknownAmountError` if the error of a named number is already reported.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> formula_value("2 * 3 mm", LENGTH, {}, "parts.leaf.length")
@@ -72,7 +74,7 @@ def formula_value(text: str, quantity: Quantity, scope: Scope, where: str) -> Nu
 
 
 def is_formula(text: str, scope: Scope) -> bool:
-    """Return whether a text (other than a plain number with a valid unit) is a formula.
+    """Return whether a text is a formula, not a plain number with a valid unit or another text.
 
     >>> is_formula("2 * 3 mm", {}), is_formula("3 furlong", {}), is_formula("steel", {}), is_formula("arm +", {})
     (True, False, False, True)
@@ -90,7 +92,7 @@ def is_formula(text: str, scope: Scope) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """Named numbers of a file: `values`, `scope` of formulas, their own formulas, and errors."""
+    """Named numbers of a file: their `values`, the `scope` for other formulas, their own `formulas`, and errors."""
 
     values: Mapping[str, NamedNumber]
     scope: Scope
@@ -170,7 +172,7 @@ def _evaluate(
 
 
 def shown_unit(amount: Amount) -> str:
-    """Return the display unit of a computed named number; raises `ExpressionError` if there is none.
+    """Return the unit in which a computed named number is displayed; raises `ExpressionError` if there is none.
 
     >>> shown_unit(amount_of(NamedNumber(0.026, "um")))
     'mm'
@@ -210,7 +212,7 @@ def dependents(mechanism: Mechanism, name: str) -> tuple[str, ...]:
 
 
 def depth(mechanism: Mechanism, name: str) -> int:
-    """Return the length of the chain of formulas of a named number.
+    """Return the number of formulas in the longest chain that computes a named number.
 
     >>> depth(Mechanism("", formulas={"numbers.half": "arm/2", "numbers.quarter": "half/2"}), "quarter")
     2
@@ -220,7 +222,7 @@ def depth(mechanism: Mechanism, name: str) -> int:
 
 
 def cycles(expressions: Mapping[str, Expression]) -> Iterator[tuple[str, ...]]:
-    """Yield circular dependencies: each once, from a name to itself.
+    """Yield circular dependencies, each once, as the names from one name back to itself.
 
     >>> list(cycles({"a": parse_expression("2*b"), "b": parse_expression("a")}))
     [('a', 'b', 'a')]
@@ -245,7 +247,7 @@ def cycle_findings(expressions: Mapping[str, Expression]) -> Iterator[Finding]:
 
 
 def spelling_findings(name: str) -> Iterator[Finding]:
-    """Findings about the name of a number: letters, digits and _, and no function.
+    """Yield errors in the name of a number: only letters, digits and _ are allowed, and no function name.
 
     >>> print(*spelling_findings("sin"))
     numbers.sin: sin is reserved in formulas. Rename the number, e.g. sin_1.
@@ -257,7 +259,7 @@ def spelling_findings(name: str) -> Iterator[Finding]:
 
 
 def unused_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors for named numbers that no formula and no requirement uses.
+    """Return errors for named numbers that are not used in any formula or requirement.
 
     >>> print(*unused_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "mm")})))
     numbers.arm: no formula uses it. Use it in a formula, or remove it.

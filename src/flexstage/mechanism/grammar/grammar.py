@@ -1,7 +1,8 @@
-"""Grammar of descriptions: fields of each class, from its annotations.
+"""Grammar of descriptions: a tree of nodes for each class, built from the annotations of its fields.
 
-One tree of nodes per class. The node's class has the behaviour for files, addresses and checks: containers here, single values in `node`. A
-field is thus written once, in its class. The names of alternatives in a file (`kind = "notch"`) are here too.
+The node of a value implements its behaviour for files, addresses and checks. This module has nodes for containers; `node` has nodes for
+single values. A field is thus declared only once, in its class. This module also has the names of alternatives in a file (`kind =
+"notch"`).
 """
 
 from __future__ import annotations
@@ -66,10 +67,10 @@ from flexstage.parts.shape import Elastic
 TAGS = "tags"
 LIKE = "like"
 RESERVED = (TAGS, LIKE)
-"""Keys allowed in any table of a file that are not fields."""
+"""Keys that any table of a file may have although they are not fields."""
 
 BY_FIELD = ""
-"""Key of alternatives that are distinguished by the field in the table; the name is the field's."""
+"""Discriminating key of alternatives that differ in a field of the table; the alternative has the name of this field."""
 
 _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
     Probe: (BY_FIELD, "body"),
@@ -89,7 +90,7 @@ _ALTERNATIVES: dict[type, tuple[str | None, str]] = {
     Pose: (None, "pose"),
 }
 TOLD_BY = "TOLD_BY"
-"""Class attribute of other alternatives: the discriminating key, or None, and their name in a file."""
+"""Name of a class attribute of alternatives: the discriminating key (or None) and the name of the alternative in a file."""
 
 _ALWAYS = ("gravity",)
 _TAGS_SCHEMA: dict[str, Any] = {
@@ -103,7 +104,7 @@ _ELSEWHERE = "Install the package of the kind, if another package provides it"
 
 @dataclass(frozen=True)
 class ListNode(RowNode):
-    """List of texts, choices, numbers or tables, of `length` (None: any)."""
+    """List of texts, choices, numbers or tables, with a fixed `length` (None: any)."""
 
     item: Node
     length: int | None
@@ -119,90 +120,90 @@ class ListNode(RowNode):
         return self.length
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Tables by number, from 1; other values at the address of the list."""
+        """Yield the items; a table has the address of its number, counted from 1, another item the address of the list."""
         numbered = isinstance(self.item, RecordNode | UnionNode)
         return ((str(number) if numbered else "", self.item, part) for number, part in enumerate(row, start=1))
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Items by number, from 1."""
+        """Yield the items by number, counted from 1."""
         return ((str(number), self.item, item) for number, item in enumerate(value, start=1))
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """JSON array."""
+        """Return the schema of a JSON array."""
         length = {} if self.length is None else {"minItems": self.length, "maxItems": self.length}
         return {"type": "array", "items": self.item.schema(definitions), **length}
 
 
 @dataclass(frozen=True)
 class NumbersNode(ListNode):
-    """List of numbers or points of any length, each with an address: its index from zero."""
+    """List of numbers or points of any length; the address of each item is its index from zero."""
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Values by index."""
+        """Yield the items by index."""
         return ((str(place), self.item, part) for place, part in enumerate(row))
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Values by index."""
+        """Yield the items by index."""
         return self.parts(value)
 
     def child(self, value: Any, name: str) -> Node:
-        """A number."""
+        """Return the node of an item."""
         return self.item
 
     def key(self, value: Any, name: str) -> int:
-        """Index of a number."""
+        """Return the index of an item."""
         return int(name)
 
 
 @dataclass(frozen=True)
 class TableNode(Node):
-    """Table of values by name."""
+    """Table of values of one kind, by name."""
 
     item: Node
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """A table of the values."""
+        """Return a table of the values that were read."""
         if not _is_table(raw, where, reader):
             return BAD
         items = {name: reader.read(self.item, part, join(where, name)) for name, part in _strip_tags(raw, where, reader).items()}
         return BAD if BAD in items.values() else Table(items)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
-        """A table."""
+        """Return a table for a file."""
         if TAGS in value:
             raise refuse(f"{where}.{TAGS}", f'"{TAGS}" is reserved', "Rename the entry")
         return {whole_text(name, where): writer.write(self.item, item, f"{where}.{name}") for name, item in value.items()}
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """JSON object with any keys."""
+        """Return the schema of a JSON object with any keys."""
         return {"type": "object", "properties": _tags_of(definitions), "additionalProperties": self.item.schema(definitions)}
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Values."""
+        """Yield the values by name."""
         return ((name, self.item, item) for name, item in value.items())
 
     def child(self, value: Any, name: str) -> Node:
-        """A value."""
+        """Return the node of a value."""
         return self.item
 
 
 @dataclass(frozen=True)
 class OpenNode(Node):
-    """Table of raw values by name; the name determines the kind of each. `said` is their description in a schema."""
+    """Table of unread values by name, whose names determine their kinds later. `said` is their description in a schema."""
 
     said: str
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Raw table."""
+        """Return the table without reading its values."""
         return Table(raw) if _is_table(raw, where, reader) else BAD
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """JSON object with any values."""
+        """Return the schema of a JSON object with any values."""
         return {"type": "object", "description": self.said}
 
 
 class JoinsNode(Node):
-    """Bodies joined by a link: two, or a table by port."""
+    """Bodies joined by a link: a list of two names, or a table of names by port."""
 
     shown = '["ground", "platform"]'
 
@@ -210,20 +211,20 @@ class JoinsNode(Node):
         return TableNode(TextNode()) if isinstance(value, Mapping) else ListNode(TextNode(), 2)
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Two texts, or a table of texts."""
+        """Return two names, or a table of names by port."""
         return self._node(raw).read(raw, where, reader)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """A list, or a table."""
+        """Return a list or a table of names for a file."""
         return self._node(value).write(value, where, writer)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """JSON array of two, or object."""
+        """Return the schema of a JSON array of two items, or of an object."""
         by_port = {"type": "object", "additionalProperties": {"type": "string"}}
         return {"oneOf": [ListNode(TextNode(), 2).schema(definitions), by_port]}
 
     def child(self, value: Any, name: str) -> Node:
-        """A name."""
+        """Return the node of a name."""
         return self._node(value).child(value, name)
 
 
@@ -232,7 +233,7 @@ OVERRIDES = OpenNode("Overrides by address: unit/link.field of all instances, in
 
 @dataclass(frozen=True)
 class RecordNode(Node):
-    """Description class with its fields.
+    """Object of one description class, with the nodes of its fields.
 
     >>> from flexstage.parts.rod import Rod
     >>> [address for address, _, _ in RecordNode(Rod).numbers(Rod("steel", length=0.03, diameter=0.001), "parts.wire")]
@@ -252,7 +253,7 @@ class RecordNode(Node):
         return _slots(self.record)
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Record of the table's entries and defaults."""
+        """Return an object built from the table's entries and the defaults."""
         if not _is_table(raw, where, reader):
             return BAD
         raw = _strip_tags(raw, where, reader)
@@ -274,7 +275,7 @@ class RecordNode(Node):
         return BAD if BAD in values.values() else self.record(**values)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
-        """Table of fields with other than default values, or with a formula."""
+        """Return a table of the fields that differ from their defaults or have a formula."""
         return dict(self._entries(value, where, writer))
 
     def _entries(self, record: Any, where: str, writer: Writer) -> Iterator[tuple[str, Any]]:
@@ -286,7 +287,7 @@ class RecordNode(Node):
                 yield self.key(record, name), writer.write(slot.node, value, join(where, name))
 
     def schema(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
-        """Reference to the definition of a class, with the discriminator `key = name`."""
+        """Return a schema reference to the definition of the class, with the discriminator `key = name`."""
         title = self.record.__name__
         if title not in definitions.known:
             definitions.known[title] = {}
@@ -294,7 +295,7 @@ class RecordNode(Node):
         return {"$ref": f"#/$defs/{title}"}
 
     def definition(self, definitions: Definitions, key: str | None = None, name: str | None = None) -> dict[str, Any]:
-        """Full schema of the class."""
+        """Return the full schema of the class, with the discriminator `key = name`."""
         properties: dict[str, Any] = {key: {"const": name}} if key else {}
         required = [key] if key else []
         wrapped: list[dict[str, Any]] = []
@@ -315,45 +316,45 @@ class RecordNode(Node):
         return shape | demand | {"additionalProperties": False}
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Fields."""
+        """Yield the fields."""
         for name, slot in self.fields.items():
             yield name, slot.node, getattr(value, name)
 
     def child(self, value: Any, name: str) -> Node:
-        """A field."""
+        """Return the node of a field."""
         return self.fields[name].node
 
     def key(self, value: Any, name: str) -> str:
-        """Key of a field, or the name of its alternative if the file has that."""
+        """Return the file key of a field, or the name of its alternative if files use this name as key (`polar`)."""
         slot = self.fields[name]
         return slot.key if slot.wrapped is None else slot.wrapped.name_of(getattr(value, name))
 
     def field_called(self, value: Any, key: str) -> str:
-        """Field of a file key that is an alternative's name: `polar` for `pattern`."""
+        """Return the field for a key of a file; the key may be the name of an alternative (`polar` for the field `pattern`)."""
         result = (name for name, slot in self.fields.items() if slot.wrapped is not None and self.key(value, name) == key)
         return next(result, key)
 
 
 @dataclass(frozen=True)
 class UnionNode(Node):
-    """One of several classes: identified by the value of the key `told_by`, or if None, by the name in the table."""
+    """Object of one of several classes: the value of the key `told_by` identifies the class, or if None, a key in the table."""
 
     told_by: str | None
     options: tuple[tuple[str, RecordNode], ...]
     usual: str | None = None
-    """Default alternative."""
+    """Name of the default alternative."""
 
     @property
     def records(self) -> tuple[type, ...]:
-        """Classes of its values."""
+        """Classes of its values: all alternatives."""
         return tuple(option.record for _, option in self.options)
 
     def name_of(self, value: Any) -> str:
-        """Name of a value's alternative."""
+        """Return the name of the alternative that a value belongs to."""
         return next(name for name, option in self.options if option.record is type(value))
 
     def option(self, value: Any) -> RecordNode:
-        """Node of a value's alternative."""
+        """Return the node of the alternative that a value belongs to."""
         return dict(self.options)[self.name_of(value)]
 
     @property
@@ -362,7 +363,7 @@ class UnionNode(Node):
         return f'{{ {self.told_by} = "{self.options[0][0]}", ... }}' if self.told_by else self.shown
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Record of the named alternative."""
+        """Return an object of the alternative that the table names."""
         if not _is_table(raw, where, reader):
             return BAD
         options = dict(self.options)
@@ -378,39 +379,39 @@ class UnionNode(Node):
         return options[name].read({item: value for item, value in raw.items() if item != key}, where, reader)
 
     def write(self, value: Any, where: str, writer: Writer) -> dict[str, Any]:
-        """Table with the name of its alternative."""
+        """Return a table for a file, with the name of the alternative."""
         inner = self.option(value).write(value, where, writer)
         name = self.name_of(value)
         return {self.told_by: name} | inner if self.told_by and name != self.usual else inner
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """One of the definitions."""
+        """Return a schema that allows each alternative."""
         schemas = [option.schema(definitions, None if name == self.usual else self.told_by, name) for name, option in self.options]
         return {"oneOf": schemas} if len(schemas) > 1 else schemas[0]
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Members of the alternative."""
+        """Yield the members, as the node of the alternative does."""
         return self.option(value).members(value)
 
     def child(self, value: Any, name: str) -> Node:
-        """Result of the alternative."""
+        """Return the node of a member, as the node of the alternative does."""
         return self.option(value).child(value, name)
 
     def key(self, value: Any, name: str) -> str:
-        """Result of the alternative."""
+        """Return the file key of a member, as the node of the alternative does."""
         return self.option(value).key(value, name)
 
     def field_called(self, value: Any, key: str) -> str:
-        """Result of the alternative."""
+        """Return the field for a key of a file, as the node of the alternative does."""
         return self.option(value).field_called(value, key)
 
 
 @dataclass(frozen=True)
 class FieldUnionNode(UnionNode):
-    """One of several classes, identified by the field in the table; by default the first."""
+    """Object of one of several classes, identified by a field in the table; without such a field, the first class."""
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Record of the alternative with the field in the table."""
+        """Return an object of the alternative whose field is in the table."""
         if not _is_table(raw, where, reader):
             return BAD
         return next((option for name, option in self.options if name in raw), self.options[0][1]).read(raw, where, reader)
@@ -418,7 +419,10 @@ class FieldUnionNode(UnionNode):
 
 @dataclass(frozen=True)
 class Slot:
-    """Field: its key in a file, its node, whether it may be `None`, and its default (`dataclasses.MISSING`: none; tables: empty)."""
+    """Field of a class: its file key, its node, whether it may be `None` (`optional`), and its default.
+
+    A field without a default has `dataclasses.MISSING`; a table is empty by default.
+    """
 
     key: str
     node: Node
@@ -432,21 +436,21 @@ class Slot:
 
     @property
     def wrapped(self) -> UnionNode | None:
-        """Alternatives with names instead of the key."""
+        """Union whose alternatives' names are used as keys instead of the field's key; else `None`."""
         return self.node if isinstance(self.node, UnionNode) and self.node.told_by is None else None
 
     @property
     def alternatives(self) -> tuple[tuple[str, Node], ...]:
-        """Possible keys, and their nodes."""
+        """Possible file keys of the field, each with its node."""
         return ((self.key, self.node),) if self.wrapped is None else self.wrapped.options
 
     @property
     def keys(self) -> list[str]:
-        """Possible keys."""
+        """Possible file keys of the field."""
         return [key for key, _ in self.alternatives]
 
     def alternative(self, raw: dict[str, Any], where: str, reader: Reader) -> tuple[str, Node]:
-        """Key of the field in a table, and its node."""
+        """Return the key that a table uses for the field, and its node."""
         present = [(key, node) for key, node in self.alternatives if key in raw]
         if len(present) > 1:
             reader.refuse(where, f"both {' and '.join(key for key, _ in present)} specified", "Remove one of them")

@@ -1,7 +1,7 @@
 """Grammar nodes of single values: number, vector, direction, matrix, text, choice.
 
-Each node class has the operations `read` and `write` for files, `schema`, `check` for the kind of a value, and `members`. `parse` reads the
-text of an assignment.
+Each node class has the operations `read` and `write` for files, `schema`, `check` for the kind of a value, and `members`. The operation
+`parse` reads the text of an assignment.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from flexstage.spatial.frame import COMPONENTS
 
 MOST_FINDINGS = 100
 LARGEST = 1e40
-"""Largest plausible number in SI (least nonzero: its reciprocal); powers of others exceed the range of floats."""
+"""Largest accepted number in SI; its reciprocal is the least nonzero number. Powers of larger numbers would exceed the range of floats."""
 
 _NUMBER = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?"
 _WITH_UNIT = rf"^(?![0-9.eE+-]*$){_NUMBER}(\s*[A-Za-zµμ°%/(].*|\s+1/.*)$"
@@ -47,22 +47,23 @@ _FORMULA = rf"^(?![0-9.eE+-]*$){_OPERAND}([-+*/]{_OPERAND})*$"
 
 
 class Bad:
-    """Marker of an unreadable value, with a reported error."""
+    """Marker for a value that cannot be read and whose error is already reported."""
 
 
 BAD = Bad()
 
 
 class EnoughError(Exception):
-    """Too many errors to continue."""
+    """Exception that stops reading after too many errors."""
 
 
 @dataclass
 class Reader:
-    """Result collector of reading: errors, tags by address, and sources of catalogue entries.
+    """State of reading a file: collects errors, tags by address, and sources of catalogue entries.
 
-    `tagged`: tables may have tags; otherwise `tags` is an ordinary name. `numbers` are named numbers for formulas (without: no formulas),
-    `formulas` are those read, by address. `bounds` are numbers out of their bounds, which a description may have until it is checked.
+    `tagged`: tables may have tags; otherwise `tags` is an ordinary name. `numbers` are the named numbers for formulas (None: no formulas
+    allowed). `formulas` are the formulas read, by address. `bounds` are errors of numbers outside their bounds, which are reported when the
+    description is checked.
     """
 
     tagged: bool = True
@@ -74,14 +75,14 @@ class Reader:
     bounds: list[Finding] = field(default_factory=list)
 
     def read(self, node: Node, raw: Any, where: str) -> Any:
-        """Value of `raw` by a `node`; `BAD` after an error."""
+        """Return the value of `raw` as read by a `node`; `BAD` after an error."""
         try:
             return node.read(raw, where, self)
         except DesignError as error:
             return self.note(error.findings)
 
     def formula(self, text: str, quantity: Quantity, where: str) -> Any:
-        """Value of a formula, which is stored; `BAD` if one of its numbers is unreadable."""
+        """Store a formula and return its value; `BAD` if one of its named numbers could not be read."""
         scope = self.numbers.scope if self.numbers is not None else {}
         try:
             value = formula_value(text, quantity, scope, where)
@@ -104,7 +105,7 @@ class Reader:
 
 @dataclass
 class Writer:
-    """Error collector of writing. Values with a formula, by address, are written as formulas."""
+    """State of writing a file: collects errors. Values that have a formula, by address, are written as formulas."""
 
     findings: list[Finding] = field(default_factory=list)
     formulas: Mapping[str, str] = field(default_factory=dict)
@@ -114,7 +115,7 @@ class Writer:
         return any(key == where or key.startswith(f"{where}.") for key in self.formulas)
 
     def write(self, node: Node, value: Any, where: str) -> Any:
-        """File form of a value; `None` after an error."""
+        """Return the file form of a value; `None` after an error."""
         try:
             return node.write(value, where, self)
         except DesignError as error:
@@ -124,10 +125,7 @@ class Writer:
 
 @dataclass
 class Definitions:
-    """Schemas of classes by name, for references, and the catalogue for `like`.
-
-    `tagged`: tables may have tags. `formulas`: numbers may be formulas.
-    """
+    """Schemas of classes by name, for schema references, and the catalogue for `like`."""
 
     tagged: bool = True
     formulas: bool = False
@@ -135,54 +133,54 @@ class Definitions:
 
 
 class Node:
-    """Kind of value, with default operations."""
+    """Kind of a value, with default operations for files, addresses and checks."""
 
     single: ClassVar[bool] = False
-    """Whether a single text can represent the value, as in an assignment."""
+    """Whether a single text can specify the value, as in an assignment."""
     components: ClassVar[bool] = False
-    """Whether its members are named x, y, z, rx, ry, rz."""
+    """Whether the members have the names x, y, z, rx, ry, rz."""
     shown: ClassVar[str] = "{ ... }"
 
     @property
     def example(self) -> str:
-        """Example text of a file."""
+        """Example text for a file."""
         return self.shown
 
     @property
     def measures(self) -> Quantity | None:
-        """Quantity of its number or of each component."""
+        """Quantity of the number, or of each component; `None` for other kinds."""
         return None
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Value of `raw`; `BAD` after an error. May raise `DesignError`."""
+        """Return the value of the file form `raw`; `BAD` after an error. May raise `DesignError`."""
         raise NotImplementedError
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """File form of a value; raises `DesignError` if it has none."""
+        """Return the file form of a value; raises `DesignError` if it has none."""
         raise NotImplementedError
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """JSON Schema of the file form."""
+        """Return the JSON Schema of the file form."""
         raise NotImplementedError
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Name, node and value of members."""
+        """Yield name, node and value of each member."""
         return iter(())
 
     def child(self, value: Any, name: str) -> Node:
-        """Node of the member of that name (see `path.member`); `value` selects an alternative."""
+        """Return the node of the member of that name (see `path.member`); `value` selects an alternative."""
         raise KeyError(name)
 
     def key(self, value: Any, name: str) -> Any:
-        """Key of a member in a file."""
+        """Return the key of a member in a file."""
         return COMPONENTS.index(name) if self.components else name
 
     def field_called(self, value: Any, key: str) -> str:
-        """Field of a file key that is an alternative's name (`polar` for `pattern`); else the key."""
+        """Return the field for a key of a file; the key may be the name of an alternative (`polar` for the field `pattern`)."""
         return key
 
     def parse(self, text: str, where: str) -> Any:
-        """Value of the text of an assignment (`1.4 mm`, `x`, `steel`); raises `DesignError` at `where`."""
+        """Return the value of an assignment's text (`1.4 mm`, `x`, `steel`); raises `DesignError` at `where`."""
         if not self.single:
             raise refuse(where, "it has several values", "Set one of them, e.g. its x")
         reader = Reader()
@@ -191,7 +189,7 @@ class Node:
         return value
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
-        """Address, value and node of every number of a value, without directions and absent values."""
+        """Yield address, value and node of every number in a value; directions and absent values are omitted."""
         if value is not None:
             for name, inner, item in self.members(value):
                 yield from inner.numbers(item, join(where, name))
@@ -199,7 +197,7 @@ class Node:
 
 @dataclass(frozen=True)
 class NumberNode(Node):
-    """A number of a quantity, within a bound. `zero`: zero is written without a unit, as in a matrix."""
+    """Number of a quantity, within a bound. `zero`: zero is written without a unit, as in a matrix."""
 
     quantity: Quantity
     bound: Bound | None = None
@@ -217,7 +215,7 @@ class NumberNode(Node):
         return self.quantity.example if self.quantity is RATIO else f'"{self.quantity.example}"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Number in SI, or the value of a formula."""
+        """Return the number in SI, or the value of a formula."""
         scope = {} if reader.numbers is None else reader.numbers.scope
         try:
             value = self.si(raw, where)
@@ -233,7 +231,7 @@ class NumberNode(Node):
         return value
 
     def si(self, raw: Any, where: str) -> float:
-        """Number in SI of a file value; raises `DesignError` at `where` if invalid."""
+        """Return the number of a file value in SI; raises `DesignError` at `where` if it is invalid."""
         if is_bare(raw) and raw == 0:
             return float(raw)
         if isinstance(raw, str):
@@ -245,7 +243,7 @@ class NumberNode(Node):
         return _float(raw, where)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Formula, or the shortest text that is read back to the same bits; a ratio as a number."""
+        """Return the formula, or the shortest text that is read back to the same bits; for a ratio, a number."""
         require_single(value, where)
         if where in writer.formulas:
             return writer.formulas[where]
@@ -254,7 +252,7 @@ class NumberNode(Node):
         return value if self.quantity is RATIO else show(value, self.quantity)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """JSON string with a unit as in the example."""
+        """Return the schema of a JSON string with a unit, with an example."""
         said = f", {self.bound.text()}" if self.bound and self.bound.text() else ""
         text = {"type": "string", "pattern": _WITH_UNIT}
         description = {"description": f"{self.quantity.name}{said}", "examples": [self.quantity.example]}
@@ -265,7 +263,7 @@ class NumberNode(Node):
         return {"anyOf": [{"type": "number", **_limits(self.bound)}, *texts]} | description | {"examples": [float(self.quantity.example)]}
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
-        """The number."""
+        """Yield this number."""
         if value is not None:
             yield where, value, self
 
@@ -317,64 +315,64 @@ def _outside(real: Any, bound: Bound) -> Any:
 
 @dataclass(frozen=True)
 class NamedNode(Node):
-    """Named number of any quantity, determined by its unit."""
+    """Named number of any quantity; its unit determines the quantity."""
 
     single: ClassVar[bool] = True
     shown: ClassVar[str] = '"26 mm"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Number of that name, read before other values."""
+        """Return the number of that name, which was read before all other values."""
         return reader.numbers.values.get(where.partition(".")[2], BAD) if reader.numbers is not None else BAD
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Formula, or the shortest text in its unit that is read back to the same bits."""
+        """Return the formula, or the shortest text in the number's unit that is read back to the same bits."""
         return self.child(value, "value").write(value.value, where, writer)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """A number, a text with a unit, or a formula."""
+        """Return the schema of a number, a text with a unit, or a formula."""
         texts = [{"type": "string", "pattern": pattern} for pattern in (_WITH_UNIT, _FORMULA)]
         said = 'named number for formulas: "26 mm", a ratio, or a formula of other named numbers, "arm / 2"'
         return {"anyOf": [{"type": "number"}, *texts], "description": said}
 
     def child(self, value: Any, name: str) -> NumberNode:
-        """Its value."""
+        """Return the node of its value."""
         return NumberNode(quantity_of_unit(value.unit))
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
-        """Its value."""
+        """Yield its value."""
         yield where, value.value, self.child(value, "value")
 
 
 class RowNode(Node):
-    """Values in brackets."""
+    """Row of values in square brackets."""
 
     @property
     def size(self) -> int | None:
-        """Number of values (default: any)."""
+        """Required number of values (None: any)."""
         return None
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Address, node and value of each element of a row."""
+        """Yield address, node and value of each element of a row."""
         raise NotImplementedError
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """One value per element."""
+        """Return a tuple with the value of each element."""
         if not is_row(self, raw, self.size, where, reader):
             return BAD
         return every([reader.read(node, part, join(where, name) if name else where) for name, node, part in self.parts(raw)])
 
     def write(self, value: Any, where: str, writer: Writer) -> list[Any]:
-        """One form per element."""
+        """Return a list with the file form of each element."""
         return [writer.write(node, part, join(where, name) if name else where) for name, node, part in self.parts(value)]
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Elements."""
+        """Yield the elements."""
         return self.parts(value)
 
 
 @dataclass(frozen=True)
 class VectorNode(RowNode):
-    """Vector by component: x, y, z; or rows of a matrix."""
+    """Vector with the components x, y, z, ...; or the rows of a matrix."""
 
     items: tuple[Node, ...]
     components: ClassVar[bool] = True
@@ -390,7 +388,7 @@ class VectorNode(RowNode):
         return f"[{', '.join(item.example for item in self.items)}]"
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """JSON array of texts."""
+        """Return the schema of a JSON array of texts."""
         return row_schema([item.schema(definitions) for item in self.items])
 
     @property
@@ -399,33 +397,33 @@ class VectorNode(RowNode):
         return len(self.items)
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Components."""
+        """Yield the components."""
         return zip(COMPONENTS, self.items, row, strict=False)
 
     def child(self, value: Any, name: str) -> Node:
-        """A component."""
+        """Return the node of a component."""
         return self.items[COMPONENTS.index(name)]
 
 
 @dataclass(frozen=True)
 class DirectionNode(VectorNode):
-    """Three components of a direction, of any length."""
+    """Direction: a vector with three components, of any length."""
 
     items: tuple[Node, ...] = (NumberNode(RATIO),) * 3
     single: ClassVar[bool] = True
 
     @property
     def example(self) -> str:
-        """A direction by name."""
+        """Example text for a file: a direction by name."""
         return '"x"'
 
     @property
     def measures(self) -> Quantity:
-        """A direction."""
+        """Quantity of the components: a direction."""
         return DIRECTION
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Direction by name, or three numbers without units."""
+        """Return the direction of a name, or of three numbers without units."""
         if isinstance(raw, str) and raw in DIRECTIONS:
             return DIRECTIONS[raw]
         if not isinstance(raw, list) or len(raw) != 3:
@@ -434,16 +432,16 @@ class DirectionNode(VectorNode):
         return super().read(raw, where, reader)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Name or components."""
+        """Return the name of the direction, or its components."""
         name = next((name for name, direction in DIRECTIONS.items() if repr(direction) == repr(value)), None)
         return super().write(value, where, writer) if name is None or writer.has_formula(where) else name
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """A name or three numbers."""
+        """Return the schema of a name or three numbers."""
         return {"oneOf": [{"enum": list(DIRECTIONS)}, super().schema(definitions)]}
 
     def numbers(self, value: Any, where: str = "") -> Iterator[tuple[str, Any, NumberNode]]:
-        """None: components do not vary individually."""
+        """Yield nothing: the components of a direction do not vary individually."""
         return iter(())
 
 
@@ -455,7 +453,7 @@ def _rows(*quantities: Quantity) -> tuple[VectorNode, ...]:
 
 @dataclass(frozen=True)
 class MatrixNode(VectorNode):
-    """Symmetric 6x6 of the quantity `name`; files and overrides specify the whole matrix or single entries.
+    """Symmetric 6x6 matrix of the quantity `name`. Files and overrides specify the whole matrix or single entries.
 
     >>> COMPLIANCES.child(None, "x").child(None, "rz").quantity.name, COMPLIANCES.child(None, "rx").child(None, "rx").quantity.name
     ('coupling compliance', 'rotational compliance')
@@ -465,7 +463,7 @@ class MatrixNode(VectorNode):
 
     @property
     def measures(self) -> None:
-        """None: its entries have several quantities."""
+        """None, because the entries have several quantities."""
 
     @property
     def example(self) -> str:
@@ -473,12 +471,12 @@ class MatrixNode(VectorNode):
         return f"[{self.items[0].example}, ...]"
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """Six rows."""
+        """Return the schema of six rows."""
         said = f"6x6 {self.name} about the centre, rows x, y, z, rx, ry, rz; zero without unit"
         return super().schema(definitions) | {"description": said}
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Entries on and above the diagonal."""
+        """Yield the entries on and above the diagonal."""
         for row, column in itertools.combinations_with_replacement(range(6), 2):
             name = COMPONENTS[column]
             yield f"{COMPONENTS[row]}.{name}", self.items[row].child(None, name), value[row][column]
@@ -496,7 +494,7 @@ class WholeNode(Node):
     shown: ClassVar[str] = "1"
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """A whole number of 64 bits."""
+        """Return an integer of at most 64 bits."""
         if not isinstance(raw, int) or isinstance(raw, bool) or abs(raw) >= 2**63:
             return reader.refuse(where, f"must be a whole number (got {kind(raw)})", "Remove the quotes or the fraction")
         if self.bound is not None and not self.bound.low <= raw <= self.bound.high:
@@ -504,11 +502,11 @@ class WholeNode(Node):
         return raw
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """The number."""
+        """Return the integer."""
         return value
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """An integer."""
+        """Return the schema of an integer."""
         return {"type": "integer", **_limits(self.bound)}
 
 
@@ -519,15 +517,15 @@ class FlagNode(Node):
     shown: ClassVar[str] = "true"
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """True or false."""
+        """Return true or false."""
         return raw if isinstance(raw, bool) else reader.refuse(where, f"must be a boolean (got {kind(raw)})", "Use true or false")
 
     def write(self, value: Any, where: str, writer: Writer) -> bool:
-        """True or false."""
+        """Return true or false."""
         return bool(value)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """A boolean."""
+        """Return the schema of a boolean."""
         return {"type": "boolean"}
 
 
@@ -539,30 +537,30 @@ class TextNode(Node):
     shown: ClassVar[str] = '"a name"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The text."""
+        """Return the text."""
         return raw if isinstance(raw, str) else reader.refuse(where, f"must be a text (got {kind(raw)})", "Put it in quotes")
 
     def write(self, value: Any, where: str, writer: Writer) -> str:
-        """The text."""
+        """Return the text."""
         return whole_text(value, where)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """A string."""
+        """Return the schema of a string."""
         return {"type": "string"}
 
 
 @dataclass(frozen=True)
 class ChoiceNode(Node):
-    """One of the values of an enumeration."""
+    """Member of an enumeration."""
 
     choices: type[Enum]
     only: tuple[Enum, ...] = ()
-    """Allowed choices, if not all."""
+    """Allowed members of the enumeration, if not all are allowed."""
     single: ClassVar[bool] = True
 
     @property
     def words(self) -> dict[str, Enum]:
-        """Choices by file name."""
+        """Allowed members by their names in files."""
         return {str(choice.value): choice for choice in self.only or self.choices}
 
     @property
@@ -571,7 +569,7 @@ class ChoiceNode(Node):
         return f'"{next(iter(self.words))}"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Choice of that name."""
+        """Return the member of that name."""
         if isinstance(raw, str) and raw in self.words:
             return self.words[raw]
         return reader.refuse(
@@ -581,46 +579,46 @@ class ChoiceNode(Node):
         )
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Name of the choice."""
+        """Return the name of the member."""
         return value.value
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """One of the names."""
+        """Return the schema of the allowed names."""
         return {"enum": list(self.words), "description": meaning(self.choices)}
 
 
 @dataclass(frozen=True)
 class AmountNode(Node):
-    """Raw number with its unit, or in percent; another field of the file determines its quantity."""
+    """Text with a number and its unit, or a percentage; another field of the file determines the quantity."""
 
     shown: ClassVar[str] = '"1.4 mm"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Raw text or number."""
+        """Return the text or the number unchanged."""
         if isinstance(raw, str) or is_bare(raw):
             return raw
         return reader.refuse(where, f"must be a number with its unit (got {kind(raw)})", f"Use e.g. {self.shown}")
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """A text with a unit, or a number."""
+        """Return the schema of a text with a unit, or a number."""
         return {"anyOf": [{"type": "number"}, {"type": "string", "pattern": _WITH_UNIT}], "description": "with its unit, or in percent"}
 
 
 @dataclass(frozen=True)
 class TextsNode(Node):
-    """A text, or several of them in a list."""
+    """One text, or a list of texts."""
 
     shown: ClassVar[str] = '["a name", "another"]'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """The texts as a tuple."""
+        """Return a tuple of the texts."""
         texts = [raw] if isinstance(raw, str) else raw
         if not isinstance(texts, list) or not texts:
             return reader.refuse(where, f"must be a text (got {kind(raw)}), or several", "Put it in quotes, several in brackets")
         return every([reader.read(TextNode(), text, where) for text in texts])
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """A string or an array of them."""
+        """Return the schema of a string, or of an array of strings."""
         return {"oneOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]}
 
 
@@ -628,7 +626,7 @@ class TextsNode(Node):
 
 
 def join(where: str, name: str) -> str:
-    """Return the address of a member."""
+    """Return the address of a member: the address `where`, a dot, and the name."""
     return f"{where}.{name}" if where else name
 
 
@@ -650,13 +648,13 @@ def kind(raw: Any) -> str:
 
 
 def short(raw: Any) -> str:
-    """Return a file's value, truncated if long."""
+    """Return the text of a file's value, truncated if it is long."""
     text = str(raw)
     return text if len(text) <= 40 else f"{text[:40]}..."
 
 
 def every(items: list[Any]) -> Any:
-    """Return the items if all are valid."""
+    """Return the items, or `BAD` if any of them is `BAD`."""
     return BAD if any(item is BAD for item in items) else tuple(items)
 
 
@@ -670,7 +668,7 @@ def is_row(node: Node, raw: Any, length: int | None, where: str, reader: Reader)
 
 
 def row_schema(items: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the schema of a list of these elements."""
+    """Return the schema of a list whose elements have the schemas `items`."""
     return {"type": "array", "prefixItems": items, "items": False, "minItems": len(items)}
 
 
@@ -680,7 +678,7 @@ def meaning(record: type) -> str:
 
 
 def whole_text(value: str, where: str) -> str:
-    """Return a text that a file can hold."""
+    """Return the text unchanged; raises `DesignError` at `where` if a file cannot contain it."""
     try:
         value.encode()
     except UnicodeEncodeError:
@@ -689,7 +687,7 @@ def whole_text(value: str, where: str) -> str:
 
 
 def require_single(value: Any, where: str) -> None:
-    """Raise `DesignError` for a number that a file cannot hold."""
+    """Raise `DesignError` at `where` for a number that a file cannot contain: an array or a complex number."""
     if not isinstance(value, (int, float)):
         raise refuse(where, "batches and complex numbers are not allowed in files", "Select one design before writing it")
 

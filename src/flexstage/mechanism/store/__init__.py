@@ -1,4 +1,4 @@
-"""Design file: serial form of a description, `load(dump(mechanism, path)) == mechanism`."""
+"""Design file: text form of a description. A file that is written and read again gives an equal description."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ __all__ = [
 def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
     """Read a design file and return the description.
 
-    Raises `DesignError` with all errors of the file; with `checked` also of the description (see `checks.check`).
-    Relative paths of imported solids and of parts' files are from the file's folder; the description has absolute paths.
+    Raises `DesignError` with all errors of the file; with `checked`, also with those of the description (see `checks.check`). Relative
+    paths of imported solids and of parts' files are relative to the file's folder. The description has absolute paths.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -54,7 +54,9 @@ def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
 
 @check_arguments
 def loads(text: str, *, where: str = "text", checked: bool = True, folder: Path | None = None) -> Mechanism:
-    """Read a design file's text and return the description; `where` names it in errors, relative paths are from `folder`.
+    """Read the text of a design file and return the description.
+
+    `where` is its name in errors. Relative paths are relative to `folder`. `checked` is as for `load`.
 
     >>> loads("format = 'flexstage 1'; name = 'empty'".replace("; ", chr(10)), checked=False).name
     'empty'
@@ -84,8 +86,8 @@ def dump(mechanism: Mechanism, path: str | os.PathLike[str], comments: Mapping[s
 def dumps(mechanism: Mechanism, comments: Mapping[str, str] | None = None) -> str:
     """Return the text of a description's design file.
 
-    Numbers are the shortest texts in the display units that are read back to the same bits. `comments` are above tables and values, by
-    address (`parts.neck`, `require`, "" for the whole file). Raises `DesignError` for batches and complex numbers.
+    Numbers are the shortest texts in the display units that are read back to the same bits. `comments`, by address (`parts.neck`, "" for
+    the whole file), are written above tables and values. Raises `DesignError` for batches and complex numbers.
 
     >>> print(dumps(Mechanism("empty"), {"": "Nothing yet."}), end="")
     # Nothing yet.

@@ -1,4 +1,4 @@
-"""File paths of solids and parts: absolute in a description, relative within the folder of the design file."""
+"""File paths of imported solids and parts: absolute in a description; in a design file, relative for files within its folder."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from flexstage.parts.shape import Elastic
 
 
 def anchor_paths(mechanism: Mechanism, folder: Path) -> Mechanism:
-    """Return the description with absolute paths of imported solids and of parts, from the folder of its file.
+    """Return the description with absolute paths of imported solids and of parts; relative paths are relative to `folder`.
 
     >>> anchor_paths(Mechanism("a"), Path()) == Mechanism("a")
     True
@@ -26,7 +26,7 @@ def anchor_paths(mechanism: Mechanism, folder: Path) -> Mechanism:
 
 
 def beside(mechanism: Mechanism, folder: Path) -> Mechanism:
-    """Return the description with paths of imported solids and of parts relative to a folder, if within it.
+    """Return the description with relative paths for those imported solids and parts whose files are within a folder.
 
     >>> beside(Mechanism("a"), Path()) == Mechanism("a")
     True

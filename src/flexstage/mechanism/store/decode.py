@@ -1,4 +1,4 @@
-"""Decoding of a file's tree: all errors are collected before they are raised."""
+"""Decoding of a file's tree into a description; all errors are collected and raised together."""
 
 from __future__ import annotations
 
@@ -27,13 +27,14 @@ from flexstage.mechanism.store.lines import with_lines
 
 _Record = TypeVar("_Record")
 CATALOGUE = "catalogue"
-"""Key of a file with the user's materials, actuators and sensors."""
+"""File key for the user's catalogue of materials, actuators and sensors."""
 
 
 def mechanism_from(raw: dict[str, Any], where: str = "", above: tuple[Path, ...] = ()) -> Mechanism:
     """Decode a file's tree into a description; raises `DesignError` with all errors.
 
-    Included files and files of mounted stages are relative to the folder of the file `where`; `above` are files being read.
+    Paths of included files and of mounted stages are relative to the folder of the file `where`. `above` are the files that are currently
+    being read, to detect circular references.
 
     >>> mechanism_from({"format": "flexstage 1", "name": "empty"}).name
     'empty'
@@ -68,14 +69,14 @@ def _unknown_names(raw: dict[str, dict[str, Any]]) -> Iterator[Finding]:
 
 
 def read_design(text: str, where: str) -> Mechanism:
-    """Decode a file's text into a description, unchecked."""
+    """Decode a file's text into a description without checks of the description."""
     return mechanism_from(parse_toml(text, where), where)
 
 
 def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged: bool = True) -> _Record:
-    """Decode a tree of `format` `form` into a record; raises `DesignError` with all errors.
+    """Decode a tree with `format = form` into an object of the class `record`; raises `DesignError` with all errors.
 
-    Its fields are annotated as in descriptions; a keyword as key has a field with a final underscore. `tagged`: its tables may have
+    The fields are annotated as in descriptions. If a key is a Python keyword, its field has a final underscore. `tagged`: tables may have
     tags, which are dropped.
 
     >>> from flexstage.parts.rod import Rod
@@ -192,7 +193,9 @@ def _mechanism(reader: Reader, raw: dict[str, Any], files: _Files, included: fro
 
 
 def dotted(where: str, table: dict[str, Any]) -> dict[str, Any]:
-    """Return a table by its dotted keys: `stroke.x` without quotes is a table `stroke` in TOML. Raises `DesignError` for a key given twice.
+    """Return a table with dotted keys instead of nested tables: in TOML, `stroke.x` without quotes is a table `stroke`.
+
+    Raises `DesignError` for a key that occurs twice.
 
     >>> dotted("requirements", {"stroke": {"x": "at least 5 um"}, "mass": "at most 2 kg"})
     {'stroke.x': 'at least 5 um', 'mass': 'at most 2 kg'}
@@ -212,7 +215,7 @@ def _entries(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def catalogue_of(name: Any, where: str) -> Catalogue:
-    """The shipped catalogue extended by the user's file of that name, from the folder of the design file."""
+    """Return the shipped catalogue, extended by the user's catalogue file `name` in the folder of the design file."""
     if name is None:
         return shipped_catalogue()
     if not isinstance(name, str):

@@ -21,8 +21,8 @@ _LAST = ("overrides", "requirements", "sources", TAGS)
 def tree_of(mechanism: Mechanism) -> dict[str, Any]:
     """Encode a description as the tree of its file.
 
-    Values equal to their defaults are omitted, except for gravity, and a formula that does not match its value. Raises `DesignError` for
-    batches and complex numbers.
+    Values equal to their defaults are omitted, except for gravity. A formula that does not match its value is also omitted. Raises
+    `DesignError` for batches and complex numbers.
 
     >>> tree_of(Mechanism("empty"))
     {'format': 'flexstage 1', 'name': 'empty', 'gravity': ['0 m/s^2', '0 m/s^2', '-9.80665 m/s^2']}
@@ -43,7 +43,7 @@ def tree_of(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def plain(node: Node, value: Any, where: str, formulas: Mapping[str, str] | None = None) -> Any:
-    """Encode a single value for a file, as its formula if it has one; raises `DesignError` if impossible.
+    """Encode a single value for a file, or its formula if it has one; raises `DesignError` if this is impossible.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.mechanism.grammar.node import NumberNode

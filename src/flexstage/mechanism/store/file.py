@@ -14,7 +14,7 @@ from flexstage.base.finding import DesignError, Finding, refuse, require
 from flexstage.base.storage.files import require_regular
 
 FORMAT = "flexstage 1"
-"""Format of a design file."""
+"""Value of `format` in a design file."""
 LARGEST = 5_000_000
 """Size limit of a file [bytes]: a thousand times a usual design."""
 LONGEST_LINE = 4_000
@@ -23,9 +23,11 @@ _OPEN_STREAMS = ("/dev/stdin", "/dev/fd/")
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
-    """Read the text of a design file; raises `DesignError` if missing, not a regular file, too large or not UTF-8.
+    """Read the text of a design file.
 
-    Open streams of a shell (`/dev/stdin`, `/dev/fd/63`) are read too; opening a named pipe could block.
+    Raises `DesignError` if the file is missing, not a regular file, too large or not UTF-8.
+
+    Open streams of a shell (`/dev/stdin`, `/dev/fd/63`) are accepted. A named pipe is refused, because opening it could block.
 
     >>> read_text("nowhere/stage.toml")
     Traceback (most recent call last):

@@ -15,30 +15,30 @@ from flexstage.mechanism.store.lines import with_lines
 
 INCLUDE = "include"
 SECTIONS = ("numbers", "materials", "parts", "sensors", "units", "sources")
-"""Sections of an included file: reusable entries without a position."""
+"""Sections allowed in an included file: reusable entries without a position."""
 _BESIDE = ("format", "name", INCLUDE)
 _LIST = 'Use a list of files: include = ["stock.toml"]'
 
 
 @dataclass(frozen=True, eq=False)
 class Included:
-    """The `tree` of a design with the entries of included files.
+    """Tree of a design that contains the entries of included files.
 
-    `origin` is the file and text of each included entry (`parts.neck`).
+    `origin` is the file of each included entry (`parts.neck`), and the text of the file.
     """
 
     tree: dict[str, Any]
     origin: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
     def located(self, findings: list[Finding]) -> Iterator[Finding]:
-        """Errors, with file and line for included entries."""
+        """Yield the errors; an error in an included entry gets the file and line of the entry."""
         for finding in findings:
             file, text = self.origin.get(entry_of(finding.where), ("", ""))
             yield from with_lines([finding], text, file) if file else (finding,)
 
 
 def entry_of(address: str) -> str:
-    """Return the entry of an address.
+    """Return the entry to which an address belongs: its first two names.
 
     >>> entry_of("parts.neck.profile.radius")
     'parts.neck'
@@ -47,9 +47,10 @@ def entry_of(address: str) -> str:
 
 
 def with_included(raw: dict[str, Any], where: str, above: tuple[Path, ...] = ()) -> tuple[Included, list[Finding]]:
-    """Return the tree with included entries, from the folder of the file `where`, and the errors.
+    """Return the tree with the entries of included files, and the errors.
 
-    `above` are the files being read. A repeated entry in another file is an error.
+    Paths are relative to the folder of the file `where`. `above` are the files that are currently being read. An entry that occurs in two
+    files is an error.
 
     >>> with_included({"name": "a", "include": "stock.toml"}, "stage.toml")[1][0].what
     'must be a list of files (got "stock.toml")'

@@ -29,7 +29,7 @@ else:
 def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
     """Return a design file's text with other values at some addresses: texts with units, or SI numbers.
 
-    Comments are preserved. Tags of the old values are removed: they do not apply to the new ones.
+    Comments are preserved. Tags of the old values are removed, because they do not apply to the new values.
 
     >>> text = 'format = "flexstage 1"' + chr(10) + 'name = "a"  # a stage' + chr(10) + 'max_mode_frequency = "1 kHz"  # enough'
     >>> print(patch(text, {"max_mode_frequency": "800 Hz"}))

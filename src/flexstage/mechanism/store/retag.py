@@ -23,7 +23,7 @@ else:
 
 
 def set_tags(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
-    """Return a design file's text with tags at some addresses, in the tables of the values, those of overrides in `[tags]`.
+    """Return a design file's text with `tags` by address, written in the tables of the values; tags of overrides are in `[tags]`.
 
     Raises `DesignError` if the file's layout does not allow it.
 

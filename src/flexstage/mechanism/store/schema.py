@@ -1,4 +1,4 @@
-"""JSON Schema (2020-12) of files, for editors: keys, alternatives, units with examples, meanings."""
+"""JSON Schema (2020-12) of files, for editors: keys, alternatives, units with examples, and descriptions."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ def schema() -> dict[str, Any]:
 def schema_of(
     record: type, form: str, title: str, *, tagged: bool = True, formulas: bool = False, tables: Mapping[str, type] = MappingProxyType({})
 ) -> dict[str, Any]:
-    """Return the JSON Schema of a file with one record and `format = form`; `tagged`: its tables may have tags.
+    """Return the JSON Schema of a file that contains one record of a class, and `format = form`.
 
-    `formulas`: its numbers may be formulas. `tables` of records are additional to the record's own.
+    `tagged`: tables may have tags. `formulas`: numbers may be formulas. `tables` are additional tables of records, by key.
 
     >>> from flexstage.parts.rod import Rod
     >>> schema_of(Rod, "rod 1", "rod")["properties"]["format"]

@@ -1,4 +1,4 @@
-"""Replacement of drawn parts by compliance matrices in a design file's text; drawn parts are renamed, comments preserved."""
+"""Replacement of drawn parts by compliance matrices in a design file's text. Drawn parts are renamed; comments are preserved."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ KEPT = "-drawn"
 
 @dataclass(frozen=True, eq=False)
 class ReplacementPart:
-    """A `compliance_matrix` part that replaces the drawn part named in its `replaces`, at the `links` (drawn addresses)."""
+    """Compliance matrix that replaces the drawn part named in its `replaces`, at the `links` (addresses in the description)."""
 
     given: ComplianceMatrix
     links: tuple[str, ...]
 
     @property
     def drawn_name(self) -> str:
-        """Original name of the drawn part.
+        """Original name of the drawn part, without the suffix `-drawn`.
 
         >>> ReplacementPart(ComplianceMatrix(((0.0,) * 6,) * 6, (), replaces="neck-drawn"), ()).drawn_name
         'neck'
@@ -42,9 +42,10 @@ class ReplacementPart:
 
 
 def write_stand_ins(text: str, parts: Mapping[str, ReplacementPart], tag: str, *, where: str = "text") -> str:
-    """Return the text of a design file with compliance matrices by name instead of drawn parts, renamed `<name>-drawn`.
+    """Return the text of a design file in which compliance matrices replace drawn parts of the same names.
 
-    The new matrices have the tag `tag`. Raises `DesignError` if links override such a part, or the file's layout does not allow it.
+    The drawn parts are renamed `<name>-drawn`. The new matrices get the tag `tag`. Raises `DesignError` if links override such a part, or
+    if the file's layout does not allow the change.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.store import dumps, loads

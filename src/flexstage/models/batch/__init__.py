@@ -1,1 +1,1 @@
-"""Batch solution of the lumped model: platform frequencies and their derivatives for many designs, by blocks on the graph of bodies."""
+"""Batch solution of the lumped model: platform frequencies of many designs and their derivatives, by block elimination of the bodies."""

@@ -1,9 +1,8 @@
-"""Platform frequencies: the lowest at which the modes contribute a tenth of the platform's static compliance, in each direction.
+"""Platform frequencies: those at which the modes reach a tenth of the platform's static compliance, in one more direction each.
 
-The platform twist in a mass-normalised mode is phi, its static compliance C = sum phi phi^T / omega^2. H(f) is the sum over the modes up to
-f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed `THRESHOLD`.
-
-The eigenvalues of H do not depend on units, reference point, basis of repeated modes, or modes above f.
+The platform twist in a mass-normalised mode is phi. The platform's static compliance is C = sum phi phi^T / omega^2. H(f) is the sum over
+the modes up to frequency f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed
+`THRESHOLD`. The eigenvalues of H do not depend on units, on the reference point, on the basis of repeated modes, or on modes above f.
 """
 
 from __future__ import annotations
@@ -19,11 +18,10 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.spatial.frame import COMPONENTS
 
 THRESHOLD = 0.1
-"""Fraction of the compliance in some direction that the modes must exceed. Most stages have equal results from 0.1 to 0.7.
-"""
+"""Fraction of the static compliance in some direction that the modes must exceed. Most stages give equal results from 0.1 to 0.7."""
 
 MARGIN = 5e-3
-"""Margin of the eigenvalues of H from the threshold for a decision by iteration, whose modes change H by 2e-3 at most."""
+"""Required distance of the eigenvalues of H from the threshold for a result by iteration, whose modes change H by 2e-3 at most."""
 
 _LOCKED = 1e-12
 """Relative square root of a compliance below which a direction is locked, with rotations taken over 0.1 m."""
@@ -32,7 +30,7 @@ _LENGTHS = np.array([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
 
 @dataclass(frozen=True)
 class Choice:
-    """Number of requested platform frequencies, and the relative frequency gap that joins modes to a cluster."""
+    """Number of requested platform frequencies, and the relative gap below which neighbouring frequencies form a cluster."""
 
     count: int = 6
     cluster: float = 1e-6
@@ -40,9 +38,9 @@ class Choice:
 
 @dataclass(frozen=True, eq=False)
 class ModeSelection:
-    """`mask` (b, k) of the platform modes; `exact` (b,): as many as requested.
+    """Selected modes of b designs: `mask` (b, k) of the platform modes; `exact` (b,) is true if their number is as requested.
 
-    If only some modes of a cluster are platform modes, those of largest participation represent them.
+    If only some modes of a cluster are platform modes, the modes with the largest participation are selected.
     """
 
     mask: Array
@@ -50,7 +48,7 @@ class ModeSelection:
 
 
 def platform_rows(model: LinearModel) -> Array:
-    """Return the platform twist (..., 6, n) by the coordinates of the model.
+    """Return the matrix (..., 6, n) from the coordinates of the model to the platform twist.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -61,7 +59,7 @@ def platform_rows(model: LinearModel) -> Array:
 
 
 def compliance_root(model: LinearModel, rows: Array) -> Array:
-    """Compute a root R (..., r, 6) of the static compliance C = R^T R of motions `rows` (..., 6, n); NaN for an indefinite K.
+    """Compute a root R (..., r, 6) of the static compliance C = R^T R of the motions `rows` (..., 6, n); NaN if K is not positive definite.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -84,9 +82,9 @@ def compliance_root(model: LinearModel, rows: Array) -> Array:
 def participation(root: Array, motions: Array, values: Array) -> Array:
     """Compute the modal participation C^-1/2 phi / omega (..., 6, k) in the compliance C = R^T R, with the `root` R (..., r, 6).
 
-    `motions` (..., 6, k) are the platform twists phi, `values` (..., k) lambda = omega^2. The squared length of a column is the fraction of
-    the compliance that the mode has in its own direction. Over all modes, columns times themselves add up to the unit matrix. Directions
-    without compliance are excluded.
+    `motions` (..., 6, k) are the platform twists phi, `values` (..., k) the eigenvalues omega^2. The squared length of column p is the
+    mode's fraction of the compliance in its own direction. Over all modes, the products p p^T add up to the unit matrix. Directions without
+    compliance are excluded.
 
     >>> participation(np.diag([0.5] * 6), np.eye(6), np.full(6, 4.0)).diagonal().tolist()  # springs of 4 N/m, masses of 1 kg
     [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
@@ -121,7 +119,7 @@ def choose(values: Array, parts: Array, choice: Choice) -> ModeSelection:
 
 
 def groups(values: Array, gap: float) -> Array:
-    """Number the clusters (b, k) of ascending values: a relative gap above `gap` starts a new one.
+    """Return cluster numbers (b, k) of ascending values. A relative gap above `gap` starts a new cluster.
 
     >>> groups(np.array([[1.0, 1.0 + 1e-9, 2.0]]), 1e-6).tolist()
     [[0, 0, 1]]

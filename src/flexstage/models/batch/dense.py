@@ -1,4 +1,4 @@
-"""All modes by dense matrices: for the nominal design, for small or locked stages, and for designs that the iteration rejects."""
+"""All modes by dense matrices: for the nominal design, for small stages or stages with locked DOFs, and for designs without iteration."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SINGULAR = 1e-11
 class AllModes:
     """All modes of one design: `values` lambda (k,) and `shapes` (n, k); empty where K is singular.
 
-    `parts` (6, k) is their participation in the platform compliance. Repeated modes are sorted by decreasing participation.
+    `parts` (6, k) is the participation of the modes in the platform compliance. Repeated modes are sorted by decreasing participation.
     """
 
     values: Array
@@ -28,7 +28,7 @@ class AllModes:
 
 
 def all_modes(stiffness: Array, inertia: Array, rows: Array, cluster: float) -> AllModes:
-    """Compute every mode of one design; `rows` (6, n) is the platform twist, `cluster` the gap of repeated modes.
+    """Compute every mode of one design; `rows` (6, n) gives the platform twist, `cluster` is the relative gap of repeated modes.
 
     >>> all_modes(np.diag([4.0, 1.0]), np.eye(2), np.eye(6, 2), 1e-6).values.tolist()
     [1.0, 4.0]
@@ -61,7 +61,7 @@ def _is_singular(scaled: Array) -> bool:
 
 
 def modes_of_designs(model: LinearModel, count: int, cluster: float) -> list[AllModes]:
-    """Compute every mode of each of `count` designs of a model.
+    """Compute all modes of each of the `count` designs of a model.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -76,5 +76,5 @@ def modes_of_designs(model: LinearModel, count: int, cluster: float) -> list[All
 
 
 def platform_values(modes: AllModes, choice: Choice) -> Array:
-    """Compute the eigenvalues (k,) of the platform modes of one design."""
+    """Compute the eigenvalues omega^2 (k,) of the platform modes of one design."""
     return modes.values[choose(modes.values[None], modes.parts[None], choice).mask[0]] if len(modes.values) else modes.values

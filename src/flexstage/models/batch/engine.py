@@ -1,9 +1,9 @@
 """Platform frequencies of many designs at once.
 
-Designs (`family`) are iterated in C (`kernel`) from the modes of the nominal design, in the elimination order of the bodies (`graph`).
-Designs without a proven result are solved by dense matrices (`dense`), as are all designs without a kernel.
+The iteration of the designs (`family`) is in C (`kernel`). It starts from the modes of the nominal design, and uses the elimination order
+of the bodies (`graph`). Designs without a proven result are solved by dense matrices (`dense`); without a kernel, all designs are.
 
-Every design is computed individually: results do not depend on the others.
+Every design is computed individually: its result does not depend on other designs.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ class Status(IntEnum):
     """Solution status of a design."""
 
     ITERATED = 0
-    """Solved by iteration, with proof."""
+    """Solved by iteration, with a proof that the result is correct."""
     WHOLE = 1
     """Solved by dense matrices."""
     NONE = 2
-    """Fewer platform frequencies than requested, or an invalid design: no result. A single-design solution reports the reason."""
+    """No result: fewer platform frequencies than requested, or an invalid design. Solve this design alone for the reason."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,9 +50,9 @@ class Plan:
     """Data computed once for a family of designs.
 
     - `tables`: topology for the kernel.
-    - `starts`: start values of the iteration, first with the modes that are needed, then with more if modes cross (empty: dense solution of
-      all designs).
-    - `surface`: the polynomial fit of the numbers over specified ranges.
+    - `starts`: start values of the iteration, first for the required modes, then for more modes in case modes cross. If empty, all designs
+      are solved by dense matrices.
+    - `surface`: the polynomial fit of the kernel's input over specified ranges.
     """
 
     family: Family
@@ -71,15 +71,16 @@ class PlatformModes:
 
 
 Ranges = tuple[Array, Array]
-"""Minimum and maximum values (P,) of the numbers that vary."""
+"""Minimum and maximum values (P,) of the P numbers that vary."""
 
 
 @one_thread
 def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None = None, ranges: Ranges | None = None) -> Plan:
-    """Plan a family of designs: a mechanism with other numbers at the addresses.
+    """Plan a family of designs, which differ in the numbers at the addresses.
 
-    With `ranges` the numbers are fitted by polynomials once (seconds), where these reach an error of 1e-10. Designs within the ranges then
-    cost less than a solution. Designs outside, and all designs without ranges, are described one by one.
+    With `ranges`, the kernel's input is fitted once by polynomials (in seconds), if their error is at most 1e-10. The input of a design
+    within the ranges then takes less time than its solution. Without a fit, or outside the ranges, the input is computed from the
+    description.
 
     Raises `DesignError` for unknown addresses, and for a mechanism whose nominal stiffness is singular.
 
@@ -138,10 +139,10 @@ def _shift(values: Array) -> float:
 def platform_modes(plan_: Plan, values: Array) -> PlatformModes:
     """Compute the platform frequencies of designs given by the numbers (b, P) at the plan's addresses.
 
-    They agree with `models.lumped` solved by dense matrices within 1e-6 (relative), proven for each design.
+    The frequencies agree with the dense solution of `models.lumped` within 1e-6 (relative), which is proven for each design.
 
-    Invalid designs do not affect the others: their `Status` says that no result exists. Causes are non-finite numbers, a stiffness that is
-    not positive, or outlines without a mass.
+    An invalid design has the status `NONE` and does not affect the other designs. Causes are non-finite numbers, a stiffness that is not
+    positive, or outlines without a mass.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = platform_modes(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1.54e-3], [1.60e-3], [np.nan]]))

@@ -19,17 +19,17 @@ from flexstage.mechanism.mechanism import GROUND, Mechanism
 from flexstage.models.batch.graph import SHAPES, Topology, distinct_links, topology
 
 INERTIA_ENTRIES = np.array([0, 1, 2, 0, 3, 4, 4, 5, 5, 5]), np.array([0, 5, 3, 4, 3, 3, 4, 3, 4, 5])
-"""Position of the numbers of an inertia in its 6x6 matrix."""
+"""Positions of an inertia's kernel numbers in its 6x6 matrix."""
 
 Draw = Callable[[tuple[Array, ...]], Mechanism]
-"""Function from numbers (...), one array each, to a description."""
+"""Function that returns a description for given numbers, each an array (...)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Designs that differ in P numbers, around a `mechanism`; `nominal` (P,) are its own.
+    """Designs that differ in P numbers from a nominal design, `mechanism`; `nominal` (P,) are the numbers of the nominal design.
 
-    `points` (3,): reference point of the nominal design in each body that does not specify one, used for all designs.
+    `points` (3,) are the nominal reference points of bodies that do not specify one. They are used for all designs.
     """
 
     mechanism: Mechanism
@@ -46,7 +46,7 @@ class Family:
 
 
 def family(mechanism: Mechanism, addresses: tuple[str, ...]) -> Family:
-    """Build the family of a design and the addresses of the numbers that vary; raises `DesignError` for unknown addresses.
+    """Build the family of designs that differ in the numbers at the addresses; raises `DesignError` for unknown addresses.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> family(double_triangle(), ("parts.neck.thickness",)).nominal.round(6).tolist()
@@ -60,7 +60,9 @@ def family(mechanism: Mechanism, addresses: tuple[str, ...]) -> Family:
 
 
 def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:
-    """Build the family of the descriptions that `draw` makes of numbers with these names, around the `nominal` ones (P,).
+    """Build the family of the descriptions that the function `draw` returns for P numbers with these names.
+
+    `nominal` (P,) are the numbers of the nominal design.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> def leaves(columns):
@@ -80,7 +82,7 @@ def _family(plain: Mechanism, names: tuple[str, ...], nominal: Array) -> Family:
 
 
 def describe(family_: Family, values: Array) -> Mechanism:
-    """Describe many designs by their numbers (b, P).
+    """Return one description, with arrays, of the designs with the numbers `values` (b, P).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = family(double_triangle(), ("parts.neck.thickness",))
@@ -97,7 +99,7 @@ def describe(family_: Family, values: Array) -> Mechanism:
 
 
 def numbers_of(family_: Family, values: Array) -> Array:
-    """Compute the kernel input of designs given by (b, P): (numbers, b), in the order of `graph.SHAPES`.
+    """Compute the kernel input (numbers, b) of the designs with the numbers `values` (b, P), in the order of `graph.SHAPES`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> numbers_of(family(double_triangle(), ("parts.neck.thickness",)), np.array([[1.5e-3], [1.6e-3]])).shape

@@ -26,7 +26,7 @@ SHAPES: Mapping[str, tuple[int, ...]] = {
     "second": (3,),
     "inertia": (10,),
 }
-"""Numbers of a design, in this order:
+"""Kinds of numbers of a design in the kernel input, with their shapes, in this order:
 
 - stiffness and mass of each distinct part in its link frame;
 - axes of each link in the stage, and arms from it to points of its two bodies;
@@ -36,9 +36,10 @@ SHAPES: Mapping[str, tuple[int, ...]] = {
 
 @dataclass(frozen=True)
 class Topology:
-    """Connectivity of the stage: `links` are (part, first body, second body), bodies by number, the platform first.
+    """Connectivity of the stage: `links` are the numbers of (part, first body, second body); body 0 is the platform.
 
-    `locked`: some DOF is locked or loose, or a part has coordinates of its own, so that a body does not have six free coordinates.
+    `locked`: bodies do not have exactly six free coordinates, because a DOF is locked or has no stiffness, or a part has internal
+    coordinates.
     """
 
     bodies: tuple[str, ...]
@@ -60,7 +61,7 @@ class Topology:
 
     @property
     def mirror(self) -> Array:
-        """For each number, the index of its equal by symmetry of the matrices, or its own index.
+        """Index of the symmetric entry of each number in its matrix; its own index for numbers without one.
 
         >>> Topology(("platform",), ((0, -1, 0),), 1, locked=False).mirror[:7].tolist()
         [0, 6, 12, 18, 24, 30, 1]
@@ -74,7 +75,7 @@ class Topology:
 
 
 def distinct_links(assembly: Assembly) -> dict[tuple[int, int], PlacedLink]:
-    """The first link of each distinct pair of part and material."""
+    """Return the first link of each distinct pair of part and material."""
     links: dict[tuple[int, int], PlacedLink] = {}
     for link in assembly.links.values():
         links.setdefault((id(link.part), id(link.material)), link)
@@ -82,7 +83,7 @@ def distinct_links(assembly: Assembly) -> dict[tuple[int, int], PlacedLink]:
 
 
 def topology(assembly: Assembly) -> Topology:
-    """Build the topology of an expanded stage; links of equal part and material share a number.
+    """Build the topology of an expanded stage. Links of equal part and material have the same part number.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -103,9 +104,9 @@ def topology(assembly: Assembly) -> Topology:
 
 @dataclass(frozen=True)
 class Elimination:
-    """Elimination order of bodies, the kept one last; `edges` are the pairs (first, later) of the filled graph, sorted by first.
+    """Elimination order of bodies, with the kept body last. `edges` are the pairs (first, later) of the filled graph, sorted by first.
 
-    All indices of edges are positions in that order.
+    The numbers in edges are positions in this order.
     """
 
     order: tuple[int, ...]
@@ -113,7 +114,7 @@ class Elimination:
 
     @cached_property
     def updates(self) -> tuple[tuple[int, int, int], ...]:
-        """Triples (edge, edge, target) of every product of two edges of one node; target -1 is the later node's own block."""
+        """Triples (edge, edge, target): two edges of an eliminated node, and the edge that their product changes (-1: diagonal block)."""
         place = {edge: number for number, edge in enumerate(self.edges)}
         triples: list[tuple[int, int, int]] = []
         for _, own in itertools.groupby(range(len(self.edges)), key=lambda number: self.edges[number][0]):

@@ -1,7 +1,7 @@
-"""Compiled iteration in C, several designs per vector register: used if it was built at installation, never required.
+"""Compiled iteration in C, for several designs per vector register. It is used if it was built at installation.
 
-Without the kernel, dense matrices give the same results. `FLEXSTAGE_KERNEL=off` disables it; `FLEXSTAGE_KERNEL=avx2` uses vectors of four
-on processors with vectors of eight.
+Without the kernel, dense matrices give the same results. `FLEXSTAGE_KERNEL=off` disables the kernel. `FLEXSTAGE_KERNEL=avx2` selects
+vectors of four numbers, also on processors with vectors of eight.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ SOURCE = Path(__file__).with_name("kernel.c")
 
 
 def kernel_name() -> str:
-    """Name the library by its lanes and content, or none. Equal names give results that are equal to the bit.
+    """Return a name of the library from its lanes and content, or "no kernel". Equal names give bit-identical results.
 
     >>> kernel_name()[:9] in {"no kernel", "kernel av", "kernel ss", "kernel ne", "kernel pl"}
     True
@@ -75,7 +75,7 @@ def kernel_name() -> str:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Start values of the iteration: inertial forces (6 bodies, m) of the nominal modes, and a `shift` between their eigenvalues.
+    """Start values of the iteration: inertial forces (6 bodies, m) of m nominal modes, and a `shift` between the eigenvalues.
 
     The first `needed` modes are computed one by one.
     """
@@ -87,7 +87,7 @@ class Start:
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """Arguments of a kernel call: the `task`, the arrays that it points to, and the arrays that it writes."""
+    """Arguments of a kernel call: the structure `task`, its input arrays, and its output arrays."""
 
     task: ctypes.Structure
     arrays: Mapping[str, Array]
@@ -95,7 +95,10 @@ class Job:
 
 
 def solve_designs(library: ctypes.CDLL, tables: Mapping[str, Array], numbers: Array, start: Start, choice: Choice) -> tuple[Array, Array]:
-    """Compute the platform eigenvalues (b, k) of designs by their numbers (numbers, b), ascending, and which designs (b,) are proven."""
+    """Compute the ascending platform eigenvalues (b, k) of b designs from their `numbers` (numbers, b).
+
+    Also returns a mask (b,) of the designs whose result is proven.
+    """
     job, count = kernel_job(library.flexstage_width(), tables, numbers, start, choice), numbers.shape[1]
     if library.flexstage_modes(ctypes.byref(job.task)):
         job.results["good"][:] = 0
@@ -103,7 +106,7 @@ def solve_designs(library: ctypes.CDLL, tables: Mapping[str, Array], numbers: Ar
 
 
 def kernel_job(width: int, tables: Mapping[str, Array], numbers: Array, start: Start, choice: Choice) -> Job:
-    """Build the kernel call of the designs for this number of lanes."""
+    """Build the arguments of a kernel call for the designs; `width` is the number of vector lanes."""
     count = numbers.shape[1]
     stride = -(-count // width) * width + 8  # rows a power of two apart would share cache lines
     arrays = {**tables, "force": np.ascontiguousarray(start.force), "numbers_": np.ascontiguousarray(numbers)}

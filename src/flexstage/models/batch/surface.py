@@ -1,9 +1,8 @@
-"""Polynomial fit of the numbers of designs over specified ranges: fitted once, checked, then evaluated for any number of designs.
+"""Polynomial fit of the kernel input over specified ranges: fitted once, checked, then evaluated for any number of designs.
 
-Terms are products of Chebyshev polynomials of the variables that a number depends on. Two lines per variable determine the degrees; terms
-with a high total degree are dropped if the validation designs permit. Coefficients follow from least squares at random points.
-
-Functions that are not smooth are not fitted, e.g. outlines whose overlaps change over the ranges.
+Terms are products of Chebyshev polynomials of the variables on which a number depends. The degree in each variable is found along two lines
+through the ranges. Terms of high total degree are dropped if the error at the validation designs remains small. The coefficients are fitted
+by least squares at random points. Functions that are not smooth are not fitted, e.g. outlines whose overlaps change over the ranges.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from flexstage.models.batch.family import INERTIA_ENTRIES, Family, numbers_of
 from flexstage.models.batch.graph import SHAPES
 
 TOLERANCE = 1e-10
-"""Maximum error of a number over its maximum value."""
+"""Accepted error of a number, relative to its maximum value."""
 _TAIL = 1e-12
 _NODES = 17
 _TERMS = 1500
@@ -39,7 +38,7 @@ class Piece:
     rows: Array
 
     def basis(self, table: Array) -> Array:
-        """Products (terms, designs) of the polynomials (degree, P, designs)."""
+        """Return the terms (terms, designs): products of the polynomials in `table` (degree, P, designs)."""
         result = np.ones((len(self.degrees), table.shape[-1]))
         for place, variable in enumerate(self.variables):
             result *= table[self.degrees[:, place], variable]
@@ -48,9 +47,10 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Every number of the designs of a family, for values from `low` to `high` (P,); `fixed` (numbers,) are the constant ones.
+    """Polynomial fit of the kernel input of a family for values from `low` to `high` (P,). `fixed` (numbers,) are the constant numbers.
 
-    `error` is the maximum at random designs, over the maximum value. Numbers below the diagonal of symmetric matrices are `fixed`, too.
+    `error` is the largest error at random designs, relative to the maximum value. Numbers below the diagonal of symmetric matrices are not
+    fitted: they have their `fixed` values.
     """
 
     low: Array
@@ -60,11 +60,11 @@ class Surface:
     error: float
 
     def holds(self, values: Array) -> Array:
-        """Whether designs (b, P) are within the ranges."""
+        """Return whether each design (b, P) is within the ranges."""
         return np.asarray(((values >= self.low) & (values <= self.high)).all(axis=1))
 
     def numbers(self, values: Array) -> Array:
-        """The numbers (numbers, b), as from `numbers_of`."""
+        """Return the kernel input (numbers, b) of the designs `values` (b, P), as `numbers_of` does."""
         result = np.repeat(self.fixed[:, None], len(values), axis=1)
         middle, half = _ranges(self.low, self.high)
         highest = max((int(piece.degrees.max(initial=0)) for piece in self.pieces), default=0)

@@ -1,12 +1,10 @@
-"""Block elimination of the constraints of a large stage, body by body: the cost grows linearly with the stage, not quadratically.
+"""Block elimination of the constraints of a large stage, body by body: the computing time is proportional to the number of bodies.
 
-A pivoted QR of the six columns of a body splits its rows. Some give its coordinates from the coordinates of its neighbours; the others do
-not contain the body and constrain the neighbours only.
+A pivoted QR decomposition of the six columns of a body splits the rows that contain the body. Some rows give the body's coordinates from
+the coordinates of its neighbours. The other rows no longer contain the body and constrain only its neighbours.
 
-Coordinates without a row are free internal modes; zero rows are redundant constraints.
-
-Bodies with the fewest neighbours come first, then those whose neighbours wait least, so that free internal modes involve few bodies. The
-platform and the strokes are kept.
+A coordinate without a row is a free internal mode. A zero row is a redundant constraint. Bodies with the fewest neighbours are eliminated
+first, so that free internal modes involve few bodies. The platform and the strokes are kept.
 """
 
 from __future__ import annotations
@@ -48,11 +46,10 @@ class _Solution:
 
 @dataclass(frozen=True, eq=False)
 class ConstraintSolution:
-    """Motions that satisfy the constraints.
+    """Motions that satisfy the constraints, over N coordinates.
 
-    `last` is the elimination of platform and strokes, `idle` (k rows, N) one free internal mode per unconstrained coordinate.
-
-    `redundant` has the numbers of the constraints of each self-stress state.
+    `last` is the elimination of the platform's coordinates and the strokes. `idle` are k rows (N,), one free internal mode per
+    unconstrained coordinate. `redundant` lists, for each state of self-stress, the numbers of its constraints.
     """
 
     last: Elimination
@@ -61,7 +58,9 @@ class ConstraintSolution:
 
 
 def eliminate_blocks(rows: Sequence[Sparse], scale: Array, bodies: int, strokes: int) -> ConstraintSolution:
-    """Eliminate constraints (1, N) over the twists of `bodies` (the platform's first) and the strokes, comparable by `scale` (N,).
+    """Eliminate constraints (1, N) over the twists of `bodies` bodies (the platform first) and the strokes.
+
+    `scale` (N,) makes the coordinates comparable.
 
     >>> rows = [Sparse(np.array([0, 6]), np.array([[1.0, -1.0]]), 12), Sparse(np.array([6]), np.array([[1.0]]), 12)]
     >>> result = eliminate_blocks([*rows, rows[1]], np.ones(12), bodies=2, strokes=0)

@@ -1,7 +1,7 @@
-"""Blockage: the locked DOFs that prevent a stroke, and those that must be freed.
+"""Blockage: the locked DOFs that prevent a stroke, and the DOFs to free.
 
-A stroke is blocked if it is a combination of constraints: forces of the locked DOFs, balanced on all bodies, work only against it. The
-solution with the fewest forces (least sum of magnitudes, a linear programme) names the links.
+A stroke is blocked if forces in locked DOFs are in equilibrium on all bodies and do work only on the stroke. Usually several sets of such
+forces exist. The set with the least sum of magnitudes (a linear programme) has few forces and gives the links.
 """
 
 from __future__ import annotations
@@ -23,10 +23,9 @@ _RANK = 1e-9
 class Blockage:
     """Cause of an immobile stroke: the locked DOFs that work against it, largest force first, and the DOFs to free.
 
-    `against` and `free` name them `link.freedom`. Any one of `free` is enough, or all of them are needed if `together`.
+    `against` and `free` contain names `link.freedom`. It is sufficient to free any one DOF of `free`; if `together`, all are necessary.
 
-    `ends` are ground or platform ends that the actuator joins directly, if its own locked DOFs work against its stroke: a hinge is
-    missing there.
+    `ends` are ground or platform if the actuator joins them directly and its own locked DOFs prevent its stroke: a hinge is missing there.
     """
 
     against: tuple[str, ...]
@@ -36,9 +35,10 @@ class Blockage:
 
 
 def blockage(constraints: Array, stroke: int, names: Sequence[str], intended: frozenset[str]) -> Blockage:
-    """Find the blockage of a stroke: comparable rows (m, N), their names, and the stroke's column; the first six are the platform's.
+    """Find the blockage of the stroke in column `stroke`, from scaled `constraints` (m, N) with `names`.
 
-    `wanted` are intended DOFs of their parts: they are freed first. Freeing must move the platform.
+    The first six columns belong to the platform. The DOFs to free must allow the stroke to move the platform. Names in `intended` (ideal
+    DOFs of their parts) are freed first.
 
     >>> rows = np.zeros((3, 7))
     >>> rows[0, [0, 6]], rows[1, 0], rows[2, 1] = (1.0, -1.0), 1.0, 1.0

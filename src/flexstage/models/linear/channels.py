@@ -1,4 +1,4 @@
-"""Inputs and outputs of a stage, with common names and order for all elastic models, so that results compare by name.
+"""Inputs and outputs of a stage. Names and order are the same for all elastic models, so that results can be compared by name.
 
 Inputs: strokes and forces of the actuators; wrenches on the platform and the named points.
 
@@ -27,7 +27,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Point (..., 3) [m] of a body where a twist is read or a wrench acts, in stage axes."""
+    """Point (..., 3) [m] of a body, in stage axes, where a twist is an output or a wrench is an input."""
 
     body: str
     point: Array
@@ -35,14 +35,17 @@ class Place:
 
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """Body motions by the coordinates of a model: the twist (..., 6, n) of each at its reference point, and of one `at` a frame."""
+    """Matrices (..., 6, n) that give the twists of bodies from n model coordinates.
+
+    There is one for each body at its reference point. The function `at` returns one for a body at a frame.
+    """
 
     bodies: Mapping[str, Array]
     at: Callable[[str, Frame], Array]
 
 
 def wrench_places(assembly: Assembly) -> dict[str, Place]:
-    """List the points of wrenches: the platform's reference point and the named points.
+    """Return the points where wrenches act: the platform's reference point and the named points.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -54,7 +57,7 @@ def wrench_places(assembly: Assembly) -> dict[str, Place]:
 
 
 def twist_places(assembly: Assembly) -> dict[str, Place]:
-    """List the points of twists: the points of wrenches, and the reference points of all other bodies.
+    """Return the points where twists are outputs: the points of wrenches, and the reference points of all other bodies.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -109,7 +112,7 @@ def _components(owners: Iterable[str], names: tuple[str, ...], units: tuple[str,
 
 
 def absolute(assembly: Assembly) -> Array:
-    """Return which outputs (p,) change under a rigid motion with the ground: twists do, gauges and links do not.
+    """Return a mask (p,) of the outputs that change if the whole stage moves rigidly with the ground: only twists.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -134,7 +137,7 @@ def place_twists(places: Mapping[str, Place], motions: Motions) -> list[Array]:
 
 
 def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
-    """Compute the reading (..., 1, n) of every gauge: body motions relative to their bases, along or about an axis, with weights.
+    """Compute the reading (..., 1, n) of every gauge per coordinate: weighted body motions against the base, along or about an axis.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -146,20 +149,22 @@ def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
 
 
 def reading(gauge: PlacedGauge, at: Callable[[str, Frame], Array]) -> Array:
-    """Compute the gauge reading (..., 1, n) of the twists (..., 6, n) of bodies at frames."""
+    """Compute the reading (..., 1, n) of a gauge per coordinate; `at` returns the twist (..., 6, n) of a body at a frame."""
     first, *others = (see(sight, at) for sight in gauge.sights)
     return sum(others, first)
 
 
 def see(sight: Sight, at: Callable[[str, Frame], Array]) -> Array:
-    """Compute the contribution (..., 1, n) of one weighted line of sight of a gauge, or of a stop."""
+    """Compute the contribution (..., 1, n) of one term (`Sight`) to the reading of a gauge, or the motion at a stop."""
     rows = slice(sight.component, sight.component + 1)
     motion = at(sight.body, sight.frame)[..., rows, :] - at(sight.base, sight.foot)[..., rows, :]
     return np.asarray(sight.weight)[..., None, None] * motion
 
 
 def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> dict[str, Array]:
-    """Compute the deformation (..., r, m) that every input imposes: a stroke imposes the deformation (..., r) of its link, others nothing.
+    """Compute the deformation (..., r, m) of each stroke actuator's link per unit of each input.
+
+    `deformations` (..., r) are per unit stroke, by link. Columns of other inputs are zero.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -172,9 +177,9 @@ def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> di
 
 
 def exerted_wrenches(assembly: Assembly) -> dict[str, Array]:
-    """Compute the wrench (..., 6, m) of every input on the second body of each link with a force actuator, in the link frame.
+    """Compute the wrench (..., 6, m) of each input on the second body of each force actuator's link, in the link frame.
 
-    The opposite acts on the first body, both at the link's centre.
+    The opposite wrench acts on the first body. Both act at the link's centre.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand

@@ -12,7 +12,7 @@ from flexstage.models.linear.model import LinearModel
 
 
 def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
-    """Return the requested damping, else the one of the model. Raises `DesignError` if neither exists: there is no default damping.
+    """Return the requested damping law, else the model's law. Raises `DesignError` if neither is specified: there is no default.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -31,9 +31,9 @@ def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
 
 
 def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
-    """Compute the damping ratio zeta_r (..., k) of each mode: of the law, plus the dampers, phi^T D phi / (2 omega_r).
+    """Compute the damping ratio zeta_r (..., k) of each mode: by the law, plus phi^T D phi / (2 omega_r) for the dampers D.
 
-    The latter is the uncoupled approximation: dampers couple modes, as `transfer` and `state_space` include. Modes at 0 Hz have no ratio:
+    The damper term neglects the coupling of modes by dampers, which `transfer` and `state_space` include. For modes at 0 Hz, the ratio is
     zero.
     """
     dampers = _diagonal(viscous_coupling(model, solved)) / (2.0 * np.sqrt(_nonzero(solved.values)))
@@ -41,7 +41,10 @@ def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
 
 
 def law_rates(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
-    """Compute 2 zeta_r omega_r (..., k) [1/s] of each mode by a law; at 0 Hz the mass factor of Rayleigh damping, else zero."""
+    """Compute 2 zeta_r omega_r (..., k) [1/s] of each mode by a law.
+
+    For a mode at 0 Hz, it is the mass factor of Rayleigh damping, and zero by other laws.
+    """
     rates = 2.0 * law_ratios(model, solved, damping) * np.sqrt(solved.values)
     own = np.asarray(damping.mass_factor)[..., None] if isinstance(damping, RayleighDamping) else 0.0
     return np.where(solved.values == 0.0, own, rates)
@@ -76,9 +79,9 @@ def law_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
     """Compute the damping ratio zeta_r (..., k) of each mode by a law.
 
     - Modal: as specified.
-    - Rayleigh: zeta_r = (alpha/omega_r + beta omega_r)/2, exact.
+    - Rayleigh: zeta_r = (alpha/omega_r + beta omega_r)/2 (exact), with the mass factor alpha and the stiffness factor beta.
     - Structural: zeta_r = sum_p eta_p phi^T K_p phi / (2 omega_r^2), the *equivalent* ratio by modal strain energy (Ungar and Kerwin 1962).
-      It is right at resonance for small loss factors.
+      The equivalent ratio is correct at resonance for small loss factors.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.mechanism import StructuralDamping
@@ -104,7 +107,7 @@ def law_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
 
 
 def structural_stiffness(model: LinearModel) -> Array:
-    """Compute K* = sum K_p (1 + j eta_p), complex (..., n, n): each part with the loss factor of its material.
+    """Compute the complex stiffness K* = sum K_p (1 + j eta_p) (..., n, n), with the loss factor eta_p of each part's material.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

@@ -18,14 +18,14 @@ _CLUSTER = 1e-5
 _BELOW = 1e-2
 """Eigenvalue of grounded floating motions over the lowest elastic one, so that they are the first."""
 WIDE = 128
-"""Number of coordinates above which a triangular solution is faster than numpy's for all matrices at once."""
+"""Number of coordinates above which triangular solutions one by one are faster than numpy's solution for all matrices at once."""
 ALL_MODES = 900
-"""Number of coordinates up to which all modes of a sparse model are computed if the lowest are requested."""
+"""Number of coordinates up to which all modes of a sparse model are computed, even if only the lowest are requested."""
 
 
 @dataclass(frozen=True, eq=False)
 class Eigen:
-    """Eigenvalues lambda = omega^2 (..., k) ascending and mass-normalised shapes (..., n, k) of K phi = lambda M phi, read-only."""
+    """Solution of K phi = lambda M phi: ascending eigenvalues lambda = omega^2 (..., k), mass-normalised shapes (..., n, k). Read-only."""
 
     values: Array
     shapes: Array
@@ -38,10 +38,10 @@ class Eigen:
 def eigen(model: LinearModel) -> Eigen:
     """Compute eigenvalues and shapes of the undamped model (Eq. 28 of Shin & Moon), without modes that have no inertia.
 
-    Solved as K^-1 M with K = L L^T, so that M may be singular. Sign rule: the largest component, rotations weighted with 0.1 m, is
-    positive. A design whose K is not positive definite gives NaN.
+    The problem is solved with K^-1 M and K = L L^T, so that M may be singular. Sign rule: the largest component of a shape, with rotations
+    multiplied by 0.1 m, is positive. A design whose K is not positive definite gives NaN.
 
-    Raises `DesignError` for batch designs with other numbers of modes, and for a large stage, for which `lowest_modes` gives some.
+    Raises `DesignError` for a batch of designs with different numbers of modes, and for a large stage (use `lowest_modes`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -72,7 +72,7 @@ def _solve(model: LinearModel) -> Eigen:
 
 
 def eigenvalues(model: LinearModel) -> Array:
-    """Compute only the values of `eigen`, faster; ascending.
+    """Compute only the ascending eigenvalues (..., k) of `eigen`, which is faster.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -87,7 +87,9 @@ def eigenvalues(model: LinearModel) -> Array:
 
 
 def lowest_modes(model: LinearModel) -> Eigen:
-    """Compute all modes; for a large sparse model about 30 of the lowest, without the last cluster, which may be incomplete.
+    """Compute all modes; for a large sparse model, only about 30 of the lowest modes.
+
+    The last cluster of these is omitted, because it may be incomplete.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -103,7 +105,7 @@ def lowest_modes(model: LinearModel) -> Eigen:
 
 
 def solve(stiffness: Array, inertia: Array, weights: Array) -> Eigen:
-    """Solve K phi = lambda M phi for eigenvalues and shapes; `weights` (n,) make coordinates comparable for the sign rule.
+    """Solve K phi = lambda M phi for eigenvalues and shapes. `weights` (n,) make the coordinates comparable for the sign rule.
 
     >>> solve(np.diag([4.0, 9.0]), np.eye(2), np.ones(2)).values.tolist()
     [4.0, 9.0]

@@ -1,9 +1,9 @@
 """Exact elimination of linear constraints by a pivoted partition of the coordinates.
 
-A z = 0 with rank r: r dependent coordinates follow from the independent ones, z_d = -A_d^-1 A_i z_i.
+For constraints A z = 0 of rank r, the independent coordinates z_i determine r dependent ones: z_d = -A_d^-1 A_i z_i.
 
-Pivots are chosen on real parts, so that the result is complex-analytic. `eliminate` uses the first design of a batch, `eliminate_each`
-every design.
+Pivots are chosen by real parts, so that complex steps remain valid. `eliminate` chooses the pivots from the first design of a batch,
+`eliminate_each` from every design.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _PREFERENCE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Elimination:
-    """z = `basis` z_independent, basis (..., N, f).
+    """Solution of the constraints: z = `basis` z_i with the f independent coordinates z_i; `basis` (..., N, f).
 
     `independent` and `dependent` are indices of coordinates, `rows` the constraints that determine the dependent ones.
     """
@@ -46,9 +46,9 @@ class Elimination:
 def eliminate(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
     """Eliminate the constraints A z = 0, A (..., m, N).
 
-    `scale` (N,) makes the coordinates comparable; `keep` are kept independent if possible.
+    `scale` (N,) makes the coordinates comparable. Coordinates in `keep` remain independent if possible.
 
-    Raises `DesignError` for batch designs in which the pivots of the first design are dependent or nearly so.
+    Raises `DesignError` if the pivots of the first design are linearly dependent, or nearly dependent, in another design of the batch.
 
     >>> eliminate(np.array([[1.0, 2.0]]), np.ones(2), keep=(0,)).basis.ravel().tolist()
     [1.0, -0.5]
@@ -78,17 +78,16 @@ def _require_none(others: Array) -> None:
 
 
 def unlike(number: int, what: str) -> DesignError:
-    """Build the error of a batch design, counted from 0, that does not agree with the choices of the first."""
+    """Build the error for a design of a batch (`number` from 0) that is inconsistent with the choices for the first design."""
     return refuse("designs", f"design {number + 1} of the batch {what}", "Analyse them one by one")
 
 
 def eliminate_each(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
-    """Eliminate as `eliminate`, each design of a batch by its own pivots: equal to the last bit to the single-design result.
+    """Eliminate as `eliminate`, but each design of a batch by its own pivots. The result is bit-identical to the single-design result.
 
-    `scale` is (..., N). Designs may differ in the coordinates outside `keep` that represent motions: the returned ones belong to the
-    first design.
+    `scale` is (..., N). Designs may differ in the independent coordinates outside `keep`; the returned indices belong to the first design.
 
-    Raises `DesignError` for designs with other independent coordinates in `keep`, or another number of independent coordinates.
+    Raises `DesignError` if designs differ in the independent coordinates within `keep`, or in the number of independent coordinates.
 
     >>> rows = np.array([[[1.0, 2.0, 0.0]], [[1.0, 0.0, 2.0]]])
     >>> eliminate_each(rows, np.ones((2, 3)), keep=(0,)).basis[:, :, 0].tolist()
@@ -162,7 +161,7 @@ def _solved(constraints: Array, choice: _Choice) -> Elimination:
 
 
 def imposed_motion(solution: Elimination, constraints: Array, imposed: Array) -> Array:
-    """Compute the motion z (..., N, m) of the dependent coordinates that gives the constraints A z = imposed (m of m columns).
+    """Compute z (..., N, m) with A z = `imposed` (rows, m) for constraints A; only dependent coordinates are nonzero.
 
     >>> rows = np.array([[1.0, 2.0]])
     >>> imposed_motion(eliminate(rows, np.ones(2), keep=(0,)), rows, np.array([[3.0]])).ravel().tolist()
@@ -212,7 +211,7 @@ def _rank(triangle: Array) -> int:
 
 
 def echelon(basis: Array) -> Array:
-    """Transform to reduced echelon form, with a unit in a pivot column of each row and zeros elsewhere: vectors with small support.
+    """Transform a basis to reduced echelon form: the pivot column of each row has 1 in this row and 0 in all other rows.
 
     >>> (echelon(np.array([[1.0, 1.0], [1.0, -1.0]])) + 0.0).tolist()
     [[1.0, 0.0], [0.0, 1.0]]

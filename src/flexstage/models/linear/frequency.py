@@ -26,7 +26,7 @@ _CHUNK = 4_000_000
 class Response(Result):
     """Frequency response: complex `values` (..., f, p, m), H_ij = output i over input j, for e^{+j omega t}.
 
-    `frequencies` (f,) in Hz; `outputs` and `inputs` have names and units; the unit of an entry is output unit / input unit. Batch axes
+    `frequencies` (f,) are in Hz. `outputs` and `inputs` have names and units; the unit of an entry is output unit / input unit. Batch axes
     lead.
     """
 
@@ -37,7 +37,7 @@ class Response(Result):
     provenance: str
 
     def at(self, output: str, input: str) -> Array:  # noqa: A002 the field's word
-        """One entry over frequency, complex (..., f).
+        """Return one entry over frequency, complex (..., f).
 
         >>> one = Response(np.array([1.0]), (Channel("x", "m"),), (Channel("fx", "N"),), np.array([[[2j]]]), "")
         >>> one.at("x", "fx").tolist()
@@ -77,7 +77,7 @@ class Response(Result):
         return np.imag(self.values)
 
     def to_xarray(self) -> Any:
-        """The response as an xarray DataArray with dimensions (batch..., frequency, output, input)."""
+        """Return the response as an xarray DataArray with dimensions (batch..., frequency, output, input)."""
         import xarray
 
         batch = [f"batch_{number}" for number in range(self.values.ndim - 3)]
@@ -86,12 +86,15 @@ class Response(Result):
 
 
 def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
-    """Compute H (..., f, p, m) at `frequencies` (f,) in Hz: y/u with M z'' + D z' + K z = B u - M_b u'', y = C z + D_f u.
+    """Compute the frequency response H (..., f, p, m) = y/u at `frequencies` (f,) in Hz.
+
+    The model is M z'' + D z' + K z = B u - M_b u'', y = C z + D_f u. Its solution depends on the damping:
 
     - Modal and Rayleigh damping: exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f. The residual
-      R = C K^-1 - C Phi Lambda^-1 Phi^T makes the DOFs without inertia exact.
-    - Structural damping: direct solutions of K* - omega^2 M. A stroke u exerts K_p (1 + j eta_p) u; a link force has the same loss.
-    - Dampers of parts (`LinearModel.viscous`) couple modes: direct solutions under any law.
+      R = C K^-1 - C Phi Lambda^-1 Phi^T is the static response of DOFs without inertia.
+    - Structural damping: direct solutions with K* - omega^2 M. A stroke u exerts K_p (1 + j eta_p) u; a link force has the same loss
+      factor.
+    - Dampers of parts (`LinearModel.viscous`) couple modes: direct solutions for any damping law.
 
     A frequency of zero gives the static gain.
 
@@ -156,7 +159,7 @@ def _law_matrix(model: LinearModel, damping: Damping) -> Array:
 
 
 def imposed_on(model: LinearModel, name: str, chosen: Ports) -> Array:
-    """Return the deformation (..., d, m) that the chosen inputs impose on a link: six rows, or as many as its damper has.
+    """Return the deformation (..., d, m) that the chosen inputs impose on a link; d is 6, or the number of rows of its damper.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports
@@ -174,7 +177,7 @@ def imposed_on(model: LinearModel, name: str, chosen: Ports) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Dampers:
-    """Damping matrix (..., n, n) of the coordinates, and forces per rate of the inputs through the dampers (..., n, m)."""
+    """Damping matrix (..., n, n) of the coordinates, and forces (..., n, m) per rate of each input, transmitted by dampers."""
 
     resisted: Array
     dragged: Array
@@ -183,7 +186,7 @@ class Dampers:
 def direct(stiffness: Array, inertia: Array, chosen: Ports, frequencies: Array, dampers: Dampers | None = None) -> Array:
     """Compute H (..., f, p, m) by solving (K - omega^2 M) z = (B + omega^2 M_b) u at each frequency; K may be complex.
 
-    `dampers` add j omega times their damping matrix on the left and their input forces on the right.
+    `dampers` add j omega times their damping matrix on the left-hand side, and their input forces on the right-hand side.
 
     >>> one, none = np.ones((1, 1)), np.zeros((1, 1))
     >>> force = Ports((Channel("fx", "N"),), (Channel("x", "m"),), one, none, one, none)
@@ -209,7 +212,9 @@ def _direct(stiffness: Array, inertia: Array, chosen: Ports, omega: Array, dampe
 
 
 def superpose(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
-    """Compute H (..., f, p, m) by modal superposition: as `transfer`, but structural damping by equivalent modal ratios, as in time domain.
+    """Compute H (..., f, p, m) by modal superposition: as `transfer`, but with equivalent modal ratios for structural damping.
+
+    This agrees with the time-domain model (`state_space`).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.mechanism import StructuralDamping
@@ -250,7 +255,7 @@ def modal_forces(solved: Eigen, chosen: Ports) -> tuple[Array, Array]:
 def residual(model: LinearModel, solved: Eigen, chosen: Ports) -> Array:
     """Compute C (K^-1 - Phi Lambda^-1 Phi^T) B (..., p, m): the static residual of omitted modes and of DOFs without inertia.
 
-    Motions of the ground add nothing: M_b is in the range of M, which the modes span.
+    Ground motion has no residual, because M_b is in the range of M, which the modes span.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports

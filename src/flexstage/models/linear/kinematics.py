@@ -21,7 +21,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 @dataclass(frozen=True)
 class FreeInternalMode:
-    """Free internal mode, independent of strokes and platform (a strut that spins): `bodies` that move, `links` that deform."""
+    """Free internal mode, independent of strokes and platform (a strut that spins): the `bodies` that move, the `links` that deform."""
 
     TABLE: ClassVar[Layout] = Layout("Free internal modes (zero stiffness)", "bodies links")
 
@@ -41,15 +41,16 @@ class RedundantConstraint:
 class Kinematics(Result):
     """Ideal kinematics of a stage with n strokes, g gauges and f ideal motions of its platform.
 
-    The platform twist is x = V xi at its reference point; xi are the platform coordinates named `coordinates` (all six for f = 6).
-    `actuation` is da/dxi (..., n, f), `sensing` ds/dx (..., g, 6), `motion` V (..., 6, f). `bodies` is the motion of all body coordinates
-    per xi (..., N, f). `strains` is the deformation of each link per xi (..., 6, f) in its frame (only intended DOFs and strokes
-    non-zero). `free` has the free DOFs of each link. `length` (...) is the scale that makes rotations comparable with translations.
-    `blocked` has the blockage of each immobile actuator. `gauge_units` are the units of the readings (absent: m), `sums` the weights of the
-    gauges in each sum of gauges.
+    The platform twist at its reference point is x = V xi; xi are the platform coordinates named in `coordinates` (all six for f = 6).
+    `actuation` is da/dxi (..., n, f) with the strokes a, `sensing` ds/dx (..., g, 6) with the readings s, `motion` is V (..., 6, f).
 
-    `actuators` are those with a stroke. Force actuators, `thrusts`, determine no motion. `thrust` (..., f, t) is the generalised force per
-    unit of their input (`thrust_inputs`, N or A) on xi, V^T W.
+    `bodies` (..., N, f) is the motion of all body coordinates per xi. `strains` (..., 6, f) is the deformation of each link per xi in its
+    frame, nonzero only in free DOFs and strokes. `free` has the free DOFs of each link. `length` (...) is the scale that makes rotations
+    comparable with translations. `blocked` has the blockage of each immobile actuator. `gauge_units` are the units of the readings (absent:
+    m), `sums` the weights of the gauges in each sum of gauges.
+
+    `actuators` are the stroke actuators, `thrusts` the force actuators, which do not determine motion. `thrust` (..., f, t) is V^T W, the
+    generalised force on xi per unit of a force actuator's input (`thrust_inputs`: N or A).
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a model", "fs.ideal(stage)")
@@ -81,20 +82,23 @@ class Kinematics(Result):
 
     @property
     def actuated(self) -> Annotated[bool, VIEW]:
-        """Whether the strokes determine the platform: R_a has full column rank, in all designs of a batch."""
+        """Whether the strokes determine the platform's motion: R_a has full column rank, in all designs of a batch."""
         scaled = np.real(self.actuation) * self._rotations_as_lengths
         return self.mobility > 0 and bool(np.all(np.linalg.matrix_rank(scaled, tol=1e-9) == self.mobility))
 
     @property
     def immobile(self) -> tuple[str, ...]:
-        """Actuators whose stroke no ideal motion of the platform changes, due to rigid links (of the first design)."""
+        """Actuators whose stroke is zero in all ideal motions of the platform, because rigid links block it (first design)."""
         scaled = first_design(np.real(self.actuation) * self._rotations_as_lengths, 2)
         size = np.max(np.abs(scaled), axis=-1, initial=0.0)
         return tuple(name for name, largest in zip(self.actuators, size, strict=True) if largest < 1e-9)
 
     @property
     def mapping(self) -> Annotated[Matrix, Called("R_a")]:
-        """R_a = da/dxi (Eq. 13 of Shin & Moon; da/dx for six DOFs). Raises `DesignError` if the stage is under-actuated."""
+        """R_a = da/dxi: strokes per platform motion (Eq. 13 of Shin & Moon; da/dx for six DOFs).
+
+        Raises `DesignError` if the stage is under-actuated.
+        """
         self._require_actuated()
         return Matrix(self.actuation, self.actuators, self.coordinates, ratio_units(("m",) * len(self.actuators), self._units))
 
@@ -102,11 +106,11 @@ class Kinematics(Result):
     def force_map(self) -> Annotated[Matrix, Called("W")]:
         """V^T W: generalised force on the platform's ideal motions per unit input of each force actuator, by virtual work.
 
-        With six DOFs V is the identity and this is the whole platform wrench at its reference point. W = R_f^T with R_f the force
-        actuators' d(elongation)/dx, times force per unit input.
+        With six DOFs, V is the identity, and the result is the whole wrench at the platform's reference point. W is R_f^T times the force
+        per unit input, where R_f = d(elongation)/dx of the force actuators.
 
-        With fewer DOFs only the work of W in the ideal motions is known; locked DOFs carry the other components. A row is then the
-        force conjugate to its coordinate. Positive inputs push apart.
+        With fewer DOFs, only the work of W in the ideal motions is known; locked DOFs carry the other components. A row is then the force
+        conjugate to its coordinate. Positive inputs push the faces of the actuator apart.
         """
         rows = [COMPONENTS.index(name) for name in self.coordinates]
         units = ratio_units(tuple(WRENCH_UNITS[row] for row in rows), self.thrust_inputs)
@@ -116,7 +120,8 @@ class Kinematics(Result):
     def commanded(self) -> Annotated[tuple[str, ...], VIEW]:
         """Platform coordinates that strokes and forces can command independently of all others (first design).
 
-        All ideal motions if R_a and V^T W together have rank f; without force actuators, those that the strokes determine.
+        They are all ideal motions if R_a and V^T W together have rank f. Without force actuators, they are those that the strokes
+        determine.
         """
         first = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)]), np.real(self.thrust[(0,) * (self.thrust.ndim - 2)])
         scale = first_design(self._rotations_as_lengths, 2)[0]
@@ -147,7 +152,7 @@ class Kinematics(Result):
 
     @property
     def gauge_mapping(self) -> Annotated[Matrix, Called("R_s")]:
-        """R_s = ds/dx (Eq. 14 of Shin & Moon)."""
+        """R_s = ds/dx: gauge readings per platform motion (Eq. 14 of Shin & Moon)."""
         return Matrix(self.sensing, self.gauges, COMPONENTS, ratio_units(self.reading_units, TWIST_UNITS))
 
     @property
@@ -157,18 +162,18 @@ class Kinematics(Result):
 
     @property
     def single_gauges(self) -> tuple[str, ...]:
-        """The gauges that are not sums of others."""
+        """Gauges that are not sums of other gauges."""
         return tuple(name for name in self.gauges if name not in self.sums)
 
     @property
     def telling(self) -> tuple[str, ...]:
-        """The gauges, including sums, that are not part of a sum: they determine the pose."""
+        """Gauges and sums of gauges that determine the pose: all that are not part of a sum."""
         taken = {member for members in self.sums.values() for member in members}
         return tuple(name for name in self.gauges if name not in taken)
 
     @property
     def selection(self) -> Array:
-        """Readings of the `telling` gauges by those of the `single_gauges` (..., t, s): ones, and the weights of sums."""
+        """Matrix (..., t, s) from readings of the `single_gauges` to readings of the `telling` gauges: ones, and the weights of sums."""
         rows = [[np.asarray(self.sums.get(name, {name: 1.0}).get(single, 0.0)) for single in self.single_gauges] for name in self.telling]
         batch = np.broadcast_shapes(*(item.shape for row in rows for item in row))
         flat = [np.broadcast_to(item, batch) for row in rows for item in row]
@@ -176,14 +181,14 @@ class Kinematics(Result):
 
     @property
     def seen(self) -> Array:
-        """Readings of the `telling` gauges per ideal motion (..., t, f)."""
+        """Readings (..., t, f) of the `telling` gauges per ideal motion."""
         if not self.sums:
             return self.sensing @ self.motion
         return self.sensing[..., [self.gauges.index(name) for name in self.telling], :] @ self.motion
 
     @property
     def inverse(self) -> Array:
-        """d xi/da (..., f, n): the inverse of R_a, its least-squares inverse for redundant strokes."""
+        """Inverse of R_a, d xi/da (..., f, n); the least-squares inverse for redundant strokes."""
         self._require_actuated()
         transposed = np.swapaxes(self.actuation, -1, -2)
         if self.actuation.shape[-1] == self.actuation.shape[-2]:
@@ -197,7 +202,7 @@ class Kinematics(Result):
 
     @property
     def projection(self) -> Array:
-        """V^+ (..., f, 6): projection of a platform twist on the ideal motions, rotations weighted with `length`."""
+        """Projection V^+ (..., f, 6) of a platform twist on the ideal motions, with rotations weighted by `length`."""
         weight = _scales(COMPONENTS, self.length)[..., None, :] ** 2
         weighted = np.swapaxes(self.motion, -1, -2) * weight
         return np.linalg.solve(weighted @ self.motion, weighted)
@@ -223,7 +228,7 @@ class Kinematics(Result):
 
     @property
     def blockages(self) -> tuple[Finding, ...]:
-        """Warnings of immobile strokes: the links that block them, largest force first, and the DOFs to free; equal ones are joined."""
+        """Warnings of immobile strokes: the links that block them, largest force first, and the DOFs to free. Equal warnings are merged."""
         return join_findings(
             Finding(
                 name, f"the stroke cannot move: it is blocked by the locked degrees of freedom of {_by_link(each.against)}", _freeing(each)

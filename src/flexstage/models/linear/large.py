@@ -1,10 +1,8 @@
 """Sparse stiffness and inertia of large stages: factors, exact solutions and the lowest modes.
 
-K = G^T k G with G the strains of all links. In a long chain rounding in K hides that rigid motions of a part have no energy. Solutions are
-therefore refined with the forces of the strains.
-
-If that does not converge, strains and motions are joint unknowns, for which rigid motions are exact. This is the augmented system of
-weighted least squares (Bjorck, BIT 7, 1, 1967).
+The stiffness is K = G^T k G, with G the strains of all links per coordinate. In a long chain, rounding in K gives rigid motions of a part a
+spurious energy. Solutions are therefore refined with forces computed from the strains. If the refinement does not converge, strains and
+motions are both unknowns, and rigid motions are exact. This is the augmented system of weighted least squares (Bjorck, BIT 7, 1, 1967).
 """
 
 from __future__ import annotations
@@ -23,7 +21,7 @@ from flexstage.base.number import Array
 from flexstage.base.sparse import Sparse, as_csr, block_diagonal
 
 SINGULAR = 1e-11
-"""Minimum pivot or eigenvalue over the diagonal of K."""
+"""Smallest accepted pivot or eigenvalue of K, relative to the diagonal of K."""
 _DEFINITE = 1e-12
 _EXACT = 1e-13
 _ENOUGH = 1e-9
@@ -49,26 +47,26 @@ def _fits(matrix: Any) -> Generator[None]:
 
 
 def symmetric_factor(matrix: Any) -> Any:
-    """Factorise a symmetric sparse matrix in minimum-degree order. Raises `DesignError` if it does not fit into memory."""
+    """Factorise a symmetric sparse matrix in minimum-degree order. Raises `DesignError` if the factor does not fit into memory."""
     with _fits(matrix):
         return scipy.sparse.linalg.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 @dataclass(frozen=True, eq=False)
 class Quadratic:
-    """Sum of contributions G^T k G with all their rows G (R, n) and laws k (R, R), both sparse."""
+    """Sum of contributions G^T k G: all operators stacked in G (R, n), all laws in the block-diagonal k (R, R), both sparse."""
 
     rows: Any
     law: Any
 
     @staticmethod
     def of(operators: Iterable[Sparse], laws: Iterable[Array], size: int) -> Quadratic:
-        """Build from operators (r, n) and laws (r, r)."""
+        """Build the sum from operators (r, n) and laws (r, r); `size` is n."""
         return Quadratic(as_csr(operators, size), block_diagonal(laws))
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Rows and columns, (n, n)."""
+        """Shape (n, n)."""
         return self.rows.shape[1], self.rows.shape[1]
 
     def __matmul__(self, motion: Array) -> Array:
@@ -91,13 +89,13 @@ class Quadratic:
 
 @dataclass(frozen=True, eq=False)
 class Solver:
-    """Solves K q = f of a large stage."""
+    """Solver of K q = f for a large stage."""
 
     stiffness: Quadratic
 
     @cached_property
     def scale(self) -> Array:
-        """Scale that makes the diagonal of K one."""
+        """Scale factors (n,) that make the diagonal of K equal to one."""
         diagonal = self.stiffness.matrix.diagonal()
         return np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
 
@@ -124,7 +122,7 @@ class Solver:
             return scipy.sparse.linalg.splu(whole), rows, pull
 
     def definite(self) -> bool:
-        """Whether K is positive definite: all pivots are large enough compared with its diagonal."""
+        """Whether K is positive definite: all pivots are large enough compared with the diagonal."""
         try:
             pivots = self._factor.U.diagonal()
         except RuntimeError:  # exactly singular
@@ -156,9 +154,9 @@ class Solver:
         return load - self.stiffness @ motion
 
     def follow(self, imposed: Array) -> Array:
-        """Compute q (n, k) of least energy for strains (R, k) in addition to those of q: K q = -G^T k `imposed`.
+        """Compute q (n, k) that minimises the energy if `imposed` strains (R, k) are added to the strains of q: K q = -G^T k `imposed`.
 
-        The strains are not converted to forces, whose balance rounding would destroy. Raises `DesignError` as `solve`.
+        The strains are not converted to forces, because rounding would disturb their equilibrium. Raises `DesignError` as `solve`.
         """
         motion, left = self._with_strains(np.zeros((len(self.scale), imposed.shape[1])), imposed)
         self._require(left)
@@ -180,10 +178,10 @@ class Solver:
 
 
 def least_strain(rows: Any, rigid: Array, imposed: Array) -> Array | None:
-    """Compute motions q (n, k): the strains `rows` q + `imposed` (R, k) are zero where `rigid` (R,), and minimal elsewhere.
+    """Compute motions q (n, k) for which the strains `rows` q + `imposed` (R, k) are zero where `rigid` (R,) is true, else minimal.
 
-    Strains and motions are joint unknowns. Rigid strains have a small compliance in the factor, so that it exists if they are redundant.
-    `None` if these equations do not determine the motions.
+    Strains and motions are both unknowns. In the factor, rigid strains have a small compliance, so that the factor exists for redundant
+    constraints. Returns `None` if these equations do not determine the motions.
     """
     count, size = rows.shape
     give = scipy.sparse.diags_array(np.where(rigid, 0.0, 1.0))
@@ -224,7 +222,10 @@ def _refine(load: Array, solve: Any, missing: Any, first: int = 0) -> tuple[Arra
 
 
 def surely_definite(laws: Iterable[Array], joins: Iterable[tuple[int, int]], bodies: int) -> bool:
-    """Return whether every law (6, 6) is positive definite and connects every body to the ground, number `bodies`: then K is definite."""
+    """Return whether K is certainly definite: every law (6, 6) is positive definite, and links connect every body to the ground.
+
+    `joins` are the pairs of body numbers; the ground has the number `bodies`.
+    """
     distinct = {id(law): law for law in laws}.values()
     for law in distinct:
         root = np.sqrt(np.maximum(np.diag(law), np.finfo(float).tiny))
@@ -236,9 +237,10 @@ def surely_definite(laws: Iterable[Array], joins: Iterable[tuple[int, int]], bod
 
 
 def lowest(solver: Solver, inertia: Quadratic, count: int = _LEAST) -> tuple[Array, Array]:
-    """Compute the lowest eigenvalues (k,) of K phi = lambda M phi and mass-normalised shapes (n, k), by shift and invert (Lanczos).
+    """Compute the lowest eigenvalues (k,) of K phi = lambda M phi and mass-normalised shapes (n, k) by shift-and-invert Lanczos.
 
-    The values are Rayleigh quotients of strains and motions. The start vector is constant, so that results are reproducible.
+    The eigenvalues are Rayleigh quotients, computed from strains and motions. The start vector is constant, so that results are
+    reproducible.
     """
     size = inertia.rows.shape[1]
     shape = (size, size)
@@ -255,9 +257,10 @@ def lowest(solver: Solver, inertia: Quadratic, count: int = _LEAST) -> tuple[Arr
 
 
 def least_ratios(solver: Solver, taken: Quadratic, count: int) -> tuple[Array, Array]:
-    """Compute the smallest mu (k,) of T x = mu K x, ascending, and shapes (n, k) with x^T K x = 1; the start vector is constant.
+    """Compute the smallest eigenvalues mu (k,) of T x = mu K x, ascending, and shapes (n, k) with x^T K x = 1, for T in `taken`.
 
-    Fewer than `count` if the values beyond the smallest are too close to converge, e.g. many near zero.
+    Returns fewer than `count` values if further ones are too close to each other to converge, e.g. many near zero. The start vector is
+    constant.
     """
     size = taken.rows.shape[1]
     stiffness, inverse = (

@@ -21,12 +21,12 @@ from flexstage.models.linear.large import Quadratic, Solver
 _DENSE = 3000
 """Number of coordinates up to which a sparse model makes dense matrices: all its modes take a minute."""
 WIDE = 128
-"""Number of coordinates above which each part is assembled over the coordinates that strain it; below, one full product is faster."""
+"""Number of coordinates above which each part is assembled only over its own coordinates. Below, one full product is faster."""
 
 
 @dataclass(frozen=True, eq=False)
 class Contribution:
-    """Contribution of one part to a matrix: `operator`^T `law` `operator`, operator (..., r, n), law (..., r, r)."""
+    """Contribution of one part to a matrix: `operator`^T `law` `operator`, with `operator` (..., r, n) and `law` (..., r, r)."""
 
     operator: Array
     law: Array
@@ -46,31 +46,28 @@ Contributions: TypeAlias = Mapping[str, Contribution]
 
 @dataclass(frozen=True, eq=False)
 class LinearModel(InNotebook, CheckedFields):
-    """M q'' + D q' + K q = B u - M_u u'', y = C q + D u, with K and M as named sums of contributions.
+    """Linear model: M q'' + D q' + K q = B u - M_u u'', y = C q + D_u u, with K and M as sums of named contributions.
 
     - `force` (..., n, m): direct generalised forces of the inputs.
-    - `imposed`: per stiffness contribution the deformation (..., r, m) that an input imposes (the free stroke of a stack): B = force + sum
-      G^T k imposed.
-    - `output` (..., p, n) and `feedthrough` (..., p, m).
-    - `rigid` (..., n, 6): motion of all coordinates with the ground (its twist at the platform's reference); `rigid_output` (..., p, 6): of
-      the outputs.
+    - `imposed` (..., r, m): for each stiffness contribution, the deformation that inputs impose (the free stroke of a stack): B = force +
+      sum G^T k imposed.
+    - `output` C (..., p, n) and `feedthrough` D_u (..., p, m).
+    - `rigid` (..., n, 6): motion of all coordinates if the stage moves rigidly with the ground, per ground twist at the platform's
+      reference point; `rigid_output` (..., p, 6): the outputs.
     - `base_inertia` (..., n, 6): inertial force per unit base acceleration.
-    - `inertial` (..., n, m): M_u, the inertia that imposed motions of inputs accelerate (absent: zero).
-    - `unknown`: outputs that the model does not determine, forces of locked DOFs.
+    - `inertial` (..., n, m): M_u, inertial forces due to motions that inputs impose (absent: zero).
+    - `unknown`: outputs that the model does not determine, i.e. forces of locked DOFs.
 
-    Batch axes lead, and only where something varies: an array without them is valid for every design.
+    Batch axes lead. An array without batch axes is valid for every design. `viscous` are the dampers (..., d, d) [N s/m] of parts, by
+    stiffness contribution. A damper resists the rate of the contribution's elastic deformation (G q minus the imposed deformation) in the
+    first d rows. The damping law of the model is added. Link forces do not include dampers.
 
-    `viscous` are the dampers (..., d, d) [N s/m] of parts, by stiffness contribution. They resist the rate of its deformation (G q less the
-    imposed one) in its first d rows. The damping law of the model is added. Link forces exclude dampers.
+    `idle` names coordinates without stiffness (free internal modes), which are removed. The kept coordinates are M-orthogonal to the
+    removed modes. Frequencies and shapes thus do not depend on the choice of coordinates. `idle_output` (..., p, k) are the outputs of the
+    k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground acceleration (both absent: none).
 
-    `idle` names coordinates without stiffness. They are removed with their zero modes: the kept ones are M-orthogonal to them, so that
-    frequencies and shapes do not depend on their choice.
-
-    `idle_output` (..., p, k) are the outputs of the k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground
-    acceleration (both absent: none).
-
-    `floating` (n, k) are the mass-normalised motions without stiffness of a platform that only forces drive (absent: none). K is singular
-    then, and `solve` returns the elastic displacement, without momentum in these motions (inertia relief).
+    `floating` (n, k) are the mass-normalised motions without stiffness of a platform that only forces drive (absent: none). K is then
+    singular, and `solve` returns the elastic displacement without momentum in these motions (inertia relief).
 
     The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`). `solve` and `momenta` use no dense
     matrix; K and M are assembled on request.
@@ -112,7 +109,7 @@ class LinearModel(InNotebook, CheckedFields):
         return _freeze(assemble(self.inertia, len(self.coordinates)))
 
     def grounded(self, square: Number = 1.0) -> Array:
-        """K with the floating motions on springs: their eigenvalue is `square` [1/s^2], all others and the shapes are unchanged."""
+        """Return K with springs on the floating motions, which give them the eigenvalue `square` [1/s^2]; other modes are unchanged."""
         if self.floating is None:
             return self.stiffness_matrix
         momentum = self.inertia_matrix @ self.floating
@@ -126,7 +123,7 @@ class LinearModel(InNotebook, CheckedFields):
 
     @property
     def is_sparse(self) -> bool:
-        """Whether operators and outputs are sparse, of one design."""
+        """Whether operators and outputs are sparse; only for a single design."""
         return isinstance(self.output, Rows)
 
     @cached_property
@@ -136,7 +133,7 @@ class LinearModel(InNotebook, CheckedFields):
 
     @cached_property
     def masses(self) -> Quadratic:
-        """M of a sparse model."""
+        """Mass matrix M of a sparse model."""
         return self._quadratic(self.inertia)
 
     def _quadratic(self, contributions: Contributions) -> Quadratic:
@@ -144,7 +141,7 @@ class LinearModel(InNotebook, CheckedFields):
         return Quadratic.of(operators, (item.law for item in contributions.values()), len(self.coordinates))
 
     def solve(self, load: Array) -> Array:
-        """K^-1 load (..., n, k)."""
+        """Return K^-1 load (..., n, k) for loads (..., n, k)."""
         if self.is_sparse:
             return self.solver.solve(load)
         if self.floating is None:
@@ -154,13 +151,13 @@ class LinearModel(InNotebook, CheckedFields):
 
     @property
     def scale(self) -> float:
-        """An eigenvalue within the range of the model [1/s^2]: the median of the coordinates' stiffness over inertia."""
+        """Typical eigenvalue of the model [1/s^2]: the median over the coordinates of stiffness over inertia."""
         stiff, heavy = (np.real(np.diag(each)) for each in (self.stiffness_matrix, self.inertia_matrix))
         used = (stiff > 0.0) & (heavy > 0.0)
         return float(np.median(stiff[used] / heavy[used])) if used.any() else 1.0
 
     def follow(self, strains: Mapping[str, Array]) -> Array:
-        """Compute the motion (..., n, k) of least energy for strains (..., r, k) by part in addition to its own, -K^-1 sum G^T k strain."""
+        """Compute the motion (..., n, k) of least energy under added strains (..., r, k) by part: -K^-1 sum G^T k strain."""
         if self.is_sparse:
             return self.solver.follow(np.concatenate([strains[name] for name in self.stiffness]))
         forces = (_transpose(part.operator) @ (part.law @ strains[name]) for name, part in self.stiffness.items())
@@ -171,7 +168,7 @@ class LinearModel(InNotebook, CheckedFields):
         return self.masses @ motion if self.is_sparse else self.inertia_matrix @ motion
 
     def seen(self, rows: list[int], motion: Array) -> Array:
-        """Compute outputs (..., p, k) of some rows for a motion (..., n, k); in a large stage by row selection after the product."""
+        """Compute the outputs `rows` (..., p, k) for a motion (..., n, k)."""
         return (self.output @ motion)[rows] if self.is_sparse else self.output[..., rows, :] @ motion
 
     @property
@@ -181,12 +178,12 @@ class LinearModel(InNotebook, CheckedFields):
 
     @property
     def input_matrix(self) -> Array:
-        """B (..., n, m): direct forces and the forces of imposed deformations."""
+        """Input matrix B (..., n, m): direct forces, and the forces of imposed deformations."""
         return self.force + self._of_imposed(lost=False)
 
     @property
     def loss_matrix(self) -> Array:
-        """Compute the contribution of structural damping to B (..., n, m), times j: an imposed deformation has the same loss."""
+        """Compute the imaginary part of B (..., n, m) under structural damping: imposed deformations have the part's loss factor."""
         return self._of_imposed(lost=True)
 
     def _of_imposed(self, *, lost: bool) -> Array:
@@ -198,7 +195,7 @@ class LinearModel(InNotebook, CheckedFields):
         return total
 
     def output_index(self, names: tuple[str, ...]) -> list[int]:
-        """Return positions of outputs by name; raises `DesignError` for unknown names."""
+        """Return the indices of outputs by name; raises `DesignError` for unknown names."""
         return _places(names, self._output_places, "output")
 
     @cached_property
@@ -206,7 +203,7 @@ class LinearModel(InNotebook, CheckedFields):
         return {channel.name: index for index, channel in enumerate(self.outputs)}
 
     def input_index(self, names: tuple[str, ...]) -> list[int]:
-        """Return positions of inputs by name; raises `DesignError` for unknown names."""
+        """Return the indices of inputs by name; raises `DesignError` for unknown names."""
         return _places(names, {channel.name: index for index, channel in enumerate(self.inputs)}, "input")
 
     @property
@@ -216,7 +213,7 @@ class LinearModel(InNotebook, CheckedFields):
 
     @property
     def actuators(self) -> tuple[str, ...]:
-        """Names of the actuator inputs, strokes and forces; all others are components of wrenches."""
+        """Names of the actuator inputs, strokes and forces. All other inputs are components of wrenches."""
         return tuple(channel.name for channel in self.inputs if "." not in channel.name)
 
 
@@ -265,7 +262,7 @@ def _sum_by_columns(contributions: Contributions, size: int) -> Array:
 
 
 def strain_forces(contributions: Contributions, strains: Mapping[str, Array]) -> Array:
-    """Compute generalised forces (..., n, k) of given strains (..., r, k): sum of operator^T law strain over the contributions.
+    """Compute generalised forces (..., n, k) of strains (..., r, k) by contribution: the sum of operator^T law strain.
 
     >>> half = Contribution(np.array([[1.0, -1.0]]), np.array([[0.5]]))
     >>> strain_forces({"a": half, "b": half}, {"a": np.array([[2.0]]), "b": np.array([[4.0]])}).tolist()
@@ -295,7 +292,7 @@ def _transpose(matrix: Array) -> Array:
 
 
 def label(model: LinearModel, values: Array, rows: tuple[str, ...], columns: tuple[str, ...]) -> Matrix:
-    """Label a matrix from the model's inputs to outputs, with units from its channels.
+    """Return a labelled matrix of `values` from inputs (columns) to outputs (rows), with units from the model's channels.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -21,8 +21,8 @@ class Ports:
 
     - `force` (..., n, m), `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m).
     - For ground motion, z is relative to the ground, y absolute; `inertial` is zero for inputs that impose no motion.
-    - `lost` (..., n, m): contribution of structural damping to the force, times j (see `LinearModel.loss_matrix`).
-    - `loss` (..., p): loss factor of the link whose force an output is, else zero.
+    - `lost` (..., n, m): imaginary part of the force with structural damping (see `LinearModel.loss_matrix`).
+    - `loss` (..., p): for an output that is a link force, the loss factor of the link; else zero.
     """
 
     inputs: tuple[Channel, ...]
@@ -38,13 +38,13 @@ class Ports:
 def ports(model: LinearModel, outputs: str | Iterable[str], inputs: str | Iterable[str]) -> Ports:
     """Select outputs and inputs by name.
 
-    A name is a channel (`platform.x`, `S1`, `B4/pivot.mz`) or a group: `platform` means its six components. Inputs are:
+    A name is a channel (`platform.x`, `S1`, `B4/pivot.mz`) or a group: `platform` means its six components. Inputs can be:
 
     - the model inputs (strokes; wrenches on platform and points);
     - wrench components on any body whose twist is an output (`B1/tip.fx`, at the reference point of the body, stage axes);
     - absolute ground motion `ground.x` ... `ground.rz` (m, rad; at the platform's reference point).
 
-    Raises `DesignError` for every unknown name, with the most similar known ones.
+    Raises `DesignError` for all unknown names, each with the most similar known names.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

@@ -18,7 +18,7 @@ from flexstage.models.linear.port import Ports
 
 @dataclass(frozen=True, eq=False)
 class StateSpace:
-    """x' = A x + B u, y = C x + D u with A (..., 2k, 2k), B (..., 2k, m), C (..., p, 2k), D (..., p, m), SI.
+    """State space x' = A x + B u, y = C x + D u with A (..., 2k, 2k), B (..., 2k, m), C (..., p, 2k), D (..., p, m) [SI].
 
     `states` are modal coordinates `mode1`, ... and their rates `mode1'`, ...; `ratios` (..., k) are the damping ratios.
 
@@ -50,14 +50,14 @@ class StateSpace:
 
 
 def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int | None = None) -> StateSpace:
-    """Build the modal state space between chosen ports, with the lowest `modes` modes (absent: all) and the others as a static term in D.
+    """Build the modal state space between chosen ports, with the lowest `modes` modes (absent: all). Other modes are a static term in D.
 
     eta'' + R eta' + omega^2 eta = Phi^T B u - Phi^T M_b u'', with R = 2 zeta omega plus the dampers of parts, Phi^T D Phi.
 
-    A ground displacement as input is absorbed into the states, eta + Phi^T M_b u, so that no input is differentiated.
+    With ground displacement as input, the states are eta + Phi^T M_b u, so that no input is differentiated.
 
-    Modal damping is exact; Rayleigh damping is exact except for omitted coordinates. Structural damping has no time-domain form: each mode
-    has its equivalent ratio, as listed in `note`.
+    Modal damping is exact. Rayleigh damping is exact except for omitted coordinates. Structural damping has no time-domain form; each mode
+    has its equivalent ratio, as `note` states.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports

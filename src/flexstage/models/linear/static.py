@@ -11,7 +11,7 @@ from flexstage.models.linear.undetermined import require_known, require_still, r
 
 
 def displacement(model: LinearModel, load: Array) -> Array:
-    """Compute coordinates q = K^-1 load (..., n, k) under generalised forces (..., n, k).
+    """Compute the coordinates q = K^-1 load (..., n, k) under generalised forces `load` (..., n, k).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -24,9 +24,9 @@ def displacement(model: LinearModel, load: Array) -> Array:
 
 
 def input_motion(model: LinearModel, columns: list[int], amounts: Array | None = None) -> Array:
-    """Compute coordinates q = K^-1 B u (..., n, k) of the inputs in some columns, of one unit each or of `amounts` (..., columns, k).
+    """Compute the coordinates q = K^-1 B u (..., n, k) under some inputs: one unit of each, or `amounts` (..., columns, k).
 
-    Strokes of a large stage are imposed as strains: as forces, rounding in a long chain would destroy their balance.
+    Strokes of a large stage are imposed as strains. Imposed as forces, rounding in a long chain would disturb their equilibrium.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -1,4 +1,4 @@
-"""Quantities that a model does not determine, refused by name: free internal modes (zero stiffness), and forces of locked DOFs."""
+"""Checks for quantities that a model does not determine: free internal modes (zero stiffness), and forces of locked DOFs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ADVICE = "Add stiffness in that degree of freedom to a link of these bodies, or
 
 
 def require_known(model: LinearModel, outputs: Iterable[str]) -> None:
-    """Refuse forces of locked DOFs, which no elastic deformation determines.
+    """Raise `DesignError` for outputs that are forces of locked DOFs: elastic deformations do not determine them.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -35,7 +35,9 @@ def require_known(model: LinearModel, outputs: Iterable[str]) -> None:
 
 
 def require_still(model: LinearModel, outputs: Iterable[str]) -> None:
-    """Refuse gauges that see a free internal mode, whose static displacement is undetermined; twists of the idle bodies are permitted.
+    """Raise `DesignError` for gauges that measure a free internal mode, because its static displacement is undetermined.
+
+    Twists of the bodies that move in the mode are permitted outputs.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -51,7 +53,7 @@ def require_still(model: LinearModel, outputs: Iterable[str]) -> None:
 
 
 def require_unmoved(model: LinearModel, inputs: Iterable[str]) -> None:
-    """Refuse wrenches that drive a free internal mode, for which no static response exists.
+    """Raise `DesignError` for wrenches that drive a free internal mode, because no static response exists.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -71,7 +73,7 @@ def require_unmoved(model: LinearModel, inputs: Iterable[str]) -> None:
 
 
 def floats(model: LinearModel, inputs: tuple[str, ...]) -> list[bool]:
-    """Whether each input drives a motion without stiffness of the platform.
+    """Return for each input whether it drives a motion of the platform that has no stiffness.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -87,7 +89,7 @@ def floats(model: LinearModel, inputs: tuple[str, ...]) -> list[bool]:
 
 
 def require_held(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> None:
-    """Refuse wrenches that drive a free internal mode that one of the outputs sees: its displacement is unbounded.
+    """Raise `DesignError` for wrenches that drive a free internal mode, if one of the outputs measures it: its displacement is unbounded.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -104,9 +106,9 @@ def require_held(model: LinearModel, outputs: Iterable[str], inputs: Iterable[st
 
 
 def require_balanced(model: LinearModel, where: str, load: Array, rows: list[int] | None = None) -> None:
-    """Refuse a static load that drives a free internal mode: no equilibrium exists.
+    """Raise `DesignError` for a static load that drives a free internal mode: no equilibrium exists.
 
-    `load` is a wrench (6,) on the body whose twist is the output `rows` or, without rows, the acceleration of gravity (6,).
+    `load` is a wrench (6,) on the body whose twist is in the outputs `rows`. Without rows, it is the acceleration of gravity (6,).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

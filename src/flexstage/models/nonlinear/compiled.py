@@ -1,4 +1,4 @@
-"""Interface to the compiled kernel in C: tables and cases of a stage, and the results."""
+"""Interface to the compiled kernel in C: it passes tables and cases of a stage, and returns the results."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class _Task(ctypes.Structure):
 
 @dataclass(frozen=True, eq=False)
 class CompiledResult:
-    """Poses of b cases after their iterations, with `status`, `count` of iterations, last step `moved` and last residual `lack` (b,)."""
+    """Poses of b cases after the iterations; `status`, number of iterations `count`, last step `moved`, last residual `lack` (b,)."""
 
     pose: Pose
     status: Array
@@ -65,7 +65,7 @@ class CompiledResult:
 
 @dataclass(frozen=True, eq=False)
 class Tables:
-    """Kernel input of a stage: sizes and tables of each group of flexures, by name."""
+    """Kernel input of a stage: sizes and named arrays for each group of flexures."""
 
     sizes: tuple[Mapping[str, int], ...]
     arrays: tuple[Mapping[str, Array], ...]
@@ -102,9 +102,9 @@ def tables(model: Nonlinear) -> Tables | None:
 
 
 def iterate_compiled(model: Nonlinear, start: Pose, loads: Loads, options: SolverOptions, other: OtherTerms | None) -> CompiledResult:
-    """Iterate every case in C; with a `other`, valid at these poses, at most once. Requires `kernel` and `tables`.
+    """Iterate every case in C; requires `kernel` and `tables`. With `other` terms, which are valid only at these poses, iterate once.
 
-    Equal to `newton.iterate` up to rounding; to the bit independent of the other cases of a call.
+    The result equals `newton.iterate` up to rounding. The result of a case is bit-identical for any other cases in the call.
     """
     library = kernel()
     assert library is not None  # noqa: S101  (the caller has asked)

@@ -37,11 +37,11 @@ LESS = "Reduce the load, or compute the buckling mode with flexstage buckle"
 
 @dataclass(frozen=True, eq=False)
 class State(InNotebook):
-    """Static equilibrium of a stage under loads, in cases of any shape (...).
+    """Static equilibria of a stage, for load cases of any shape (...).
 
-    `status` is how each solution ended, after `iterations` and with `residual` (over lengths and stiffnesses).
+    `status` is the outcome of each solution after `iterations`, with a `residual` relative to lengths and stiffnesses.
 
-    A case that did not converge is NaN. `reached` is its largest load fraction with an equilibrium, and `reasons` has the message.
+    A case that did not converge is NaN. `reached` is the largest load fraction with an equilibrium, and `reasons` has a message.
 
     `reactions` (..., h) act on the `held` coordinates [N, N m].
     """
@@ -60,7 +60,7 @@ class State(InNotebook):
 
     @property
     def converged(self) -> Array:
-        """Convergence of each case (...)."""
+        """Whether each case (...) converged."""
         return self.status == Status.CONVERGED
 
     @property
@@ -77,21 +77,21 @@ class State(InNotebook):
         return self._known(-self.pose.held[:, count:])
 
     def displacement(self, place: str = "platform") -> Array:
-        """Displacement (..., 3) of a body's reference or of a named point from its nominal position [m]."""
+        """Return the displacement (..., 3) [m] of a body's reference point or of a named point from its nominal position."""
         body, arm = self.place(place)
         moved = self.pose.position[:, body] + (self.pose.turn[:, body] @ (self.model.growth[body] * arm)) - self.model.reference[body] - arm
         return self._known(moved)
 
     def rotation(self, body: str = "platform") -> Array:
-        """Rotation vector (..., 3) of a body, or of the body of a named point [rad]."""
+        """Return the rotation vector (..., 3) [rad] of a body, or of the body of a named point."""
         return self._known(logarithm(self.pose.turn[:, self.place(body)[0]]))
 
     def twist(self, place: str = "platform") -> Array:
-        """Displacement and rotation vector (..., 6) of a body or point [m, rad]."""
+        """Return displacement and rotation vector (..., 6) [m, rad] of a body or point."""
         return np.concatenate([self.displacement(place), self.rotation(place)], axis=-1)
 
     def wrench(self, link: str) -> Array:
-        """Wrench (..., 6) of the second body on a flexure's end, in the frame of its start, about its end [N, N m]."""
+        """Return the wrench (..., 6) [N, N m] of the second body on a flexure's end, about the end, in the frame of the flexure's start."""
         for number, group in enumerate(self.model.flexures):
             if link in group.names:
                 place = group.names.index(link)
@@ -101,14 +101,14 @@ class State(InNotebook):
         raise refuse(link, "not a flexure of this stage", suggest_nearest(link, names))
 
     def case(self, number: int) -> State:
-        """Select one case by its number."""
+        """Return the state of one case by its index."""
         cases = np.array([number])
         status, iterations, residual, reached = (getattr(self, name).ravel()[number] for name in RESULT_FIELDS)
         loads, hold, pose = self.loads.of(cases), self.hold.of(cases), self.pose.of(cases)
         return State(self.model, loads, hold, pose, (), status, iterations, residual, reached, self.held)
 
     def place(self, name: str) -> tuple[int, Array]:
-        """Number of a body, and nominal arm of its reference or of a named point on it."""
+        """Return the number of a body, and the nominal arm of its reference point or of a named point on it."""
         return place(self.model, name)
 
     def _known(self, values: Array) -> Array:
@@ -117,7 +117,7 @@ class State(InNotebook):
 
 
 def failure_reason(status: int, share: float) -> str:
-    """Describe why a case has no result, with the load fraction of its path; empty if it has one."""
+    """Return the reason why a case has no result, with the load fraction reached; empty if it has a result."""
     if status == Status.CONVERGED:
         return ""
     if status == Status.CRITICAL:
@@ -130,7 +130,10 @@ def failure_reason(status: int, share: float) -> str:
 
 
 def require_equilibrium(solution: State) -> None:
-    """Refuse a case without an equilibrium that continues the unloaded stage, with the load of the critical point or path end."""
+    """Raise `DesignError` if a case has no equilibrium on the load path from the unloaded stage.
+
+    The message contains the load of the critical point, or of the end of the path.
+    """
     if not bool(solution.converged):
         status, share = int(solution.status), float(solution.reached)
         progress = f": equilibrium was followed to {share:.3g} of them" if share else ""
@@ -140,7 +143,7 @@ def require_equilibrium(solution: State) -> None:
 
 
 def place(model: Nonlinear, name: str) -> tuple[int, Array]:
-    """Return the body number and the nominal arm of a body's reference or a named point; raises for other names."""
+    """Return the body number and the nominal arm of a body's reference point or a named point; raises `DesignError` for other names."""
     if name in model.bodies:
         return model.body(name), np.zeros(3)
     known = wrench_places(model.assembly)
@@ -163,17 +166,17 @@ def equilibrium(
 ) -> State:
     """Compute the equilibrium under `loads`: strokes and forces by actuator, wrenches by component (`platform.fy`).
 
-    Loads are numbers, or arrays of cases. `hold` fixes coordinates of bodies and points (`platform.y`: displacement [m]; `platform.rz`:
-    component of the rotation vector [rad]) and computes their reactions. `weight` and `stated` are fractions of gravity and of specified
-    forces and preloads. Wrenches keep their directions.
+    Loads are numbers, or arrays of cases. `hold` fixes coordinates of bodies and points: `platform.y` is a displacement [m], `platform.rz`
+    a component of the rotation vector [rad]. Their reactions are computed. `weight` is the fraction of gravity, `stated` the fraction of
+    specified forces and preloads. Wrenches keep their directions in space.
 
-    Every case starts from the nominal position, or from `start`, under its whole load. If that fails, the load grows in steps, then by arc
-    length up to a limit point. A case without a result is NaN, with the reason in `status`.
+    Every case is solved from the nominal position, or from `start`, under its whole load. If this fails, the load is increased in steps,
+    then by arc length up to a limit point. A case without a result is NaN, with the reason in `status`.
 
-    From the nominal position, an unstable state is also NaN, as is one that does not continue the unloaded stage as all loads and fixed
-    coordinates grow together. `options` with `past` limits or without `arcs` permit such states.
+    From the nominal position, an unstable state is also NaN. So is a state that is not on the path of equilibria from the unloaded stage,
+    along which all loads and fixed coordinates grow in proportion. `options` with `past` or without `arcs` permit such states.
 
-    Raises `DesignError` for names that the stage does not have.
+    Raises `DesignError` for unknown names.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -200,8 +203,7 @@ def equilibria(
 ) -> list[State]:
     """Compute the states of several designs of one structure under the same loads, each as by `equilibrium`.
 
-    `hold` applies to all designs, or has one entry per design. Links about centres and fixed coordinates are evaluated for all designs
-    together.
+    `hold` applies to all designs, or has one entry per design.
 
     Raises `DesignError` if bodies, links or their connections differ.
 
@@ -277,10 +279,10 @@ def corrected(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> State:
-    """Correct a state for a slightly different model by two Newton steps: right to first order in the difference.
+    """Correct a state for a slightly different model by two Newton steps; the result is correct to first order in the difference.
 
-    One step would suffice if the stiffness were the derivative of the residual to more than the 1e-6 of its rule. Loads and fixed
-    coordinates belong to `start`. Cases without a state in `start` have none in the result.
+    One step is not sufficient, because the stiffness is the derivative of the residual only to 1e-6. The loads and fixed coordinates must
+    be those of `start`. Cases without a state in `start` have none in the result.
     """
     request = _request(model, loads or {}, hold or {}, weight, stated)
     pose = _first(model, start, request.hold, len(request.loads.inputs))
@@ -316,7 +318,7 @@ def _request(model: Nonlinear, loads: Mapping[str, Number], held: Mapping[str, N
 def state(
     model: Nonlinear, loads: Loads, hold: FixedCoordinates, solution: EquilibriumSolution, labels: tuple[tuple[int, ...], tuple[str, ...]]
 ) -> State:
-    """Build the state of a solution, with its cases in a shape and its fixed coordinates by name."""
+    """Build the state of a solution; `labels` are the shape of its cases and the names of its fixed coordinates."""
     shape, held = labels
     status, iterations, residual, reached = (getattr(solution, name).reshape(shape) for name in RESULT_FIELDS)
     return State(model, loads, hold, solution.pose, shape, status, iterations, residual, reached, held)

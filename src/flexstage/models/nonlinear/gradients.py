@@ -1,4 +1,4 @@
-"""Batches of designs at large displacements, and gradients of results by the numbers of a description (docs/nonlinear.md, 31)."""
+"""Results of many designs at large displacements, and gradients of results by numbers of the description (docs/nonlinear.md, 31)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _AT_ONCE = 32
 """Designs whose models are in memory at once."""
 
 Results = Callable[[State], Any]
-"""Function of a state: `State.twist`, frequencies, a buckling load factor of its model."""
+"""Function that computes results from a state, e.g. `State.twist`, frequencies, or a buckling load factor."""
 
 
 @check_arguments
@@ -40,10 +40,10 @@ def evaluate_designs(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Evaluate results (d, ...) for a batch of d designs, a description with arrays as numbers; for a single design (...).
+    """Evaluate results (d, ...) for a batch of d designs, given as one description with arrays; for a single design, (...).
 
-    Loads and fixed coordinates are as in `equilibrium`, with cases on the axes after the axis of designs. Results are NaN without an
-    equilibrium, as from `results`. Leaves of equal proportions share their tables.
+    Loads and fixed coordinates are as in `equilibrium`; axes of cases come after the axis of designs. For a design without an equilibrium,
+    the state is NaN, and so are the results.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.addresses.address import set_value
@@ -71,14 +71,12 @@ def gradients(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Compute gradients (a, ...) of results by the numbers at a addresses, per SI unit, for constant loads and fixed coordinates.
+    """Compute gradients (a, ...) of results by the numbers at `names` (a addresses), per SI unit, for constant loads.
 
-    By the implicit function theorem: dq/dp = - K^-1 dF/dp. K is the tangent stiffness, including the inner unknowns of flexures, dF/dp the
-    derivative of the residual at the known state. Residual and results are differentiated by a fourth-order central difference with four
-    points.
-
-    The error is about 1e-8 of the result over the number. Gradients are NaN without an equilibrium. Raises `DesignError` for addresses that
-    are not a single number.
+    By the implicit function theorem, dq/dp = - K^-1 dF/dp. K is the tangent stiffness, including the inner unknowns of flexures. dF/dp is
+    the derivative of the residual at the known state. Residual and results are differentiated by a fourth-order central difference with
+    four points. The error is about 1e-8 of the result divided by the number. Gradients are NaN without an equilibrium. Raises `DesignError`
+    for addresses that are not a single number.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> stage = parallelogram()

@@ -1,4 +1,4 @@
-"""Residual and stiffness of the stage at a pose: links condensed to their bodies, six unknowns per body (docs/nonlinear.md, 17 to 20)."""
+"""Residual and stiffness of the stage at a pose, with links condensed to six unknowns per body (docs/nonlinear.md, 17 to 20)."""
 
 from __future__ import annotations
 
@@ -23,14 +23,13 @@ from flexstage.spatial.rotation import cross, exponential, logarithm
 
 @dataclass(frozen=True, eq=False)
 class FlexureState:
-    """A group of flexures at a pose: frames and arms (l, b, ...) in space, configurations, and responses of their own systems.
+    """State of a group of l flexures at a pose of b cases: frames and arms (l, b, ...) in space, configurations, and responses.
 
-    `lever` is h, from the first body's reference to the end; `arm` a_j, from the second body's; `onset` a_i.
+    `lever` is h, from the first body's reference point to the end. `arm` is a_j, from the second body's reference point to the end. `onset`
+    is a_i, from the first body's reference point to the start. `weight` (l, b, 3) is the weight per length, divided by E I / L^3, in the
+    start frames (absent without gravity). `gap` (l, b, 6) is the distance of the end from the second body.
 
-    `weight` (l, b, 3) is the weight over E I / L^3 in the start frames, absent without gravity. `gap` (l, b, 6) is the distance of the end
-    from its body.
-
-    `wrench` (l, b, 6) is the wrench of that body on the end after its own system is solved.
+    `wrench` (l, b, 6) is the wrench of the second body on the end after the flexure's own unknowns are solved.
     """
 
     frame: Array
@@ -47,7 +46,7 @@ class FlexureState:
 
 @dataclass(frozen=True, eq=False)
 class OtherTerms:
-    """Terms of all elements but flexures: `residual` (b, n) and `stiffness` (b, n, n) of links about centres and fixed coordinates."""
+    """Terms of all elements except flexures (links about centres, fixed coordinates): `residual` (b, n) and `stiffness` (b, n, n)."""
 
     residual: Array
     stiffness: Array
@@ -55,7 +54,7 @@ class OtherTerms:
 
 @dataclass(frozen=True, eq=False)
 class ResidualSum:
-    """A residual (b, n) and a stiffness in assembly, including the ground rows."""
+    """Residual (b, n) and stiffness during assembly; they include rows of the ground."""
 
     residual: Array
     stiffness: Sum
@@ -63,7 +62,10 @@ class ResidualSum:
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Residual (b, n) and stiffness of body DOFs and reactions, one array or sparse matrix per case; groups of flexures at the pose."""
+    """System of equations of b cases: residual (b, n) and stiffness for body DOFs and reactions, and the state of the flexures.
+
+    The stiffness is one array, or one sparse matrix per case.
+    """
 
     residual: Array
     matrix: Array | tuple[Any, ...]
@@ -75,12 +77,12 @@ class System:
         return self.matrix if isinstance(self.matrix, np.ndarray) else np.stack([each.toarray() for each in self.matrix])
 
     def solved(self, right: Array) -> Array:
-        """Solve for right sides (b, n): (b, n); NaN if a case is singular."""
+        """Solve the system for right sides (b, n); returns (b, n), NaN if a case is singular."""
         return solved(self.matrix, right)
 
 
 def assemble(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates) -> System:
-    """Assemble residual and stiffness of the stage, for flexures with updated forces."""
+    """Assemble residual and stiffness of the stage at a pose. The unknowns of each flexure are first solved for this pose."""
     residual, kept = _nothing(model, pose, hold)
     tally = ResidualSum(residual, empty_sum(*residual.shape))
     bent = tuple(flexure_state(group, pose, number, loads) for number, group in enumerate(model.flexures))
@@ -116,7 +118,7 @@ def _add_rest(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates
 
 
 def flexure_state(group: Flexures, pose: Pose, number: int, loads: Loads) -> FlexureState:
-    """Evaluate a group of flexures between its bodies."""
+    """Compute the state of a group of flexures for a pose of its bodies."""
     law = group.law
     turn, other = _gather(pose.turn, group.first), _gather(pose.turn, group.second)
     frame = turn @ group.turn[:, None]
@@ -135,7 +137,7 @@ def flexure_state(group: Flexures, pose: Pose, number: int, loads: Loads) -> Fle
 
 
 def end_motion(law: FlexureLaw, bent: FlexureState) -> Array:
-    """Compute T (l, b, 6, 12): relative end motion in the start frame by the motions of both bodies (docs/nonlinear.md, 17)."""
+    """Compute T (l, b, 6, 12): relative end motion in the start frame per motion of both bodies (docs/nonlinear.md, 17)."""
     back = _transpose(bent.frame)
     none, eye = np.zeros_like(back), np.broadcast_to(np.eye(3), back.shape)
     place = back @ np.concatenate([-eye, cross_matrix(bent.lever), eye, -cross_matrix(bent.arm)], axis=-1)
@@ -144,7 +146,7 @@ def end_motion(law: FlexureLaw, bent: FlexureState) -> Array:
 
 
 def weight_motion(bent: FlexureState) -> Array:
-    """Compute the change of the weight in the start frame (l, b, 3, 12) by the rotation of the first body."""
+    """Compute the change of the weight (l, b, 3, 12) in the start frame per rotation of the first body."""
     assert bent.weight is not None  # noqa: S101  (asked for only where there is weight)
     back = _transpose(bent.frame)
     result = np.zeros((*back.shape[:-1], 12))
@@ -268,7 +270,7 @@ def _add_loads(model: Nonlinear, pose: Pose, loads: Loads, tally: ResidualSum) -
 
 
 def exerted_by(model: Nonlinear, pose: Pose, rate: Loads) -> Array:
-    """Compute the generalised forces (b, n) of loads on bodies and locked DOFs at a pose, linear in the loads."""
+    """Compute the generalised forces (b, n) of input loads on bodies and locked DOFs at a pose; they are linear in the loads."""
     cases, size = len(pose.position), model.freedoms + 6 + len(model.hinges.locked)
     result = []
     for inputs in (0.0 * rate.inputs, rate.inputs):
@@ -305,7 +307,10 @@ def _scatter(tally: ResidualSum, links: Flexures | Hinges, force: Array, own: Ar
 
 
 def advance(model: Nonlinear, pose: Pose, bent: tuple[FlexureState, ...], step: Array, share: Array) -> tuple[Pose, Array]:
-    """Advance the pose by a fraction (b,) of the step (b, n), with inner unknowns of flexures; return also the largest inner step (b,)."""
+    """Advance the pose by a fraction (b,) of a step (b, n), including the inner unknowns of flexures.
+
+    Also returns the largest step (b,) of the inner unknowns.
+    """
     cases = len(pose.position)
     moved = np.concatenate([step[:, : model.freedoms], np.zeros((cases, 6))], axis=1).reshape(cases, -1, 6)
     strain, wrench, largest = [], [], np.zeros(cases)
@@ -322,7 +327,7 @@ def advance(model: Nonlinear, pose: Pose, bent: tuple[FlexureState, ...], step: 
 
 
 def end_displacement(model: Nonlinear, bent: tuple[FlexureState, ...], step: Array) -> Array:
-    """Return the largest relative motion (b,) of flexure ends in a step (b, n), over the length and in radians."""
+    """Return the largest relative motion (b,) of flexure ends in a step (b, n): translations over the length, rotations in radians."""
     moved = np.concatenate([step[:, : model.freedoms], np.zeros((len(step), 6))], axis=1).reshape(len(step), -1, 6)
     largest = [np.zeros(len(step))]
     for group, each in zip(model.flexures, bent, strict=True):
@@ -332,7 +337,7 @@ def end_displacement(model: Nonlinear, bent: tuple[FlexureState, ...], step: Arr
 
 
 def follow(group: Flexures, bent: FlexureState, moved: Array) -> Array:
-    """Compute the step (l, b, q + 6) of the inner unknowns of flexures for body motions (b, n + 1, 6)."""
+    """Compute the step (l, b, q + 6) of the flexures' inner unknowns that results from body motions (b, n + 1, 6)."""
     both = np.concatenate([np.moveaxis(moved[:, each], 1, 0) for each in (group.first, group.second)], axis=-1)[..., None]
     step = bent.answer.moved[..., :6] @ (end_motion(group.law, bent) @ both)
     if bent.weight is not None:
@@ -341,7 +346,7 @@ def follow(group: Flexures, bent: FlexureState, moved: Array) -> Array:
 
 
 def flexure_weight(law: FlexureLaw, frame: Array, loads: Loads) -> Array | None:
-    """Return the weight per length of flexures over E I / L^3 in their start frames; `None` without gravity."""
+    """Return the weight per length of flexures, divided by E I / L^3, in their start frames; `None` without gravity."""
     if not np.any(loads.gravity):
         return None
     density = law.line_mass * law.length**3 / law.rigidity

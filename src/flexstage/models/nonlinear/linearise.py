@@ -1,4 +1,4 @@
-"""Linearisation about a state to a `LinearModel`: coordinates are the bodies and the flexure amplitudes (docs/nonlinear.md, 25)."""
+"""Linearisation about a state, giving a `LinearModel` of body motions and flexure amplitudes (docs/nonlinear.md, 25)."""
 
 from __future__ import annotations
 
@@ -88,16 +88,17 @@ class _Coordinates:
 
 @check_arguments
 def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -> LinearModel:
-    """Linearise about a state, with all cases as a batch: modes, responses and losses of a displaced or loaded stage.
+    """Linearise about a state: a linear model for modes, responses and losses of a displaced or loaded stage.
 
-    - Fixed coordinates are released: stiffness is that of the free stage under the reaction, which keeps its direction. For a rotation the
-      reaction is the moment conjugate to its component of the rotation vector. Coordinates in `locked`, a subset of the fixed ones, stay
-      fixed.
-    - Plate fields follow without mass.
-    - Stiffness is symmetrised, and split by link, with one more contribution, `geometric`.
+    The cases of the state are the batch axes of the model.
+
+    - Fixed coordinates are released: the stage is free under their reactions, which keep their directions. The reaction of a rotation is
+      the moment conjugate to the component of the rotation vector. Fixed coordinates in `locked` remain fixed.
+    - Plate fields are quasi-static, without mass.
+    - The stiffness is symmetrised. It has one contribution per link, and the contribution `geometric`.
     - Forces inside flexures are `unknown`. Gauges measure along their nominal lines.
-    - Without `inner` coordinates flexures follow their bodies statically, each as a 6x6 about its middle, in the frame of its start.
-      Statics is equal link by link, as lost motion and drift require; modes follow from Guyan reduction.
+    - Without `inner` coordinates, each flexure is a 6x6 about its middle, in the frame of its start, as for lost motion and drift. Its
+      statics is unchanged; modes are by Guyan reduction.
 
     Raises `DesignError` if no case has a state, for `locked` names that are not fixed, and if matrices take more than 8 GB.
 
@@ -322,9 +323,10 @@ def _arms(group: Flexures, bent: FlexureState) -> Array:
 
 
 def modal_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> tuple[Array, dict[str, Array]]:
-    """Compute body and flexure motions of shapes (n, k) of `linearise(state, locked=locked)`, in the first case.
+    """Compute the motions of bodies and flexures for mode shapes (n, k) of `linearise(state, locked=locked)`, in the first case.
 
-    Twists of bodies about their references (k, bodies, 6), and of flexure centre lines by name (k, points + 2, 6), including ends.
+    Returns the twists of bodies at their reference points (k, bodies, 6), and of flexure centre lines by name (k, points + 2, 6), including
+    both ends.
     """
     model = state.model
     whole = assemble(model, state.pose, state.loads, state.hold)
@@ -351,7 +353,7 @@ def _with_ends(bent: FlexureState, number: int, points: Array, moved: Array) -> 
 
 
 def flexure_motions(group: Flexures, bent: FlexureState, moved: Array, inner: Array) -> dict[str, Array]:
-    """Compute twists (points + 2, 6) of centre lines in the first case, by body twists (n + 1, 6) and inner unknowns (l, q + 6)."""
+    """Compute twists (points + 2, 6) of centre lines in the first case, from body twists (n + 1, 6) and inner unknowns (l, q + 6)."""
     law = group.law
     paths, turned, soft = (each[:, 0] for each in mode_paths(law, bent.lies))
     frame, arms = bent.frame[:, 0, None], _arms(group, bent)[:, 0]

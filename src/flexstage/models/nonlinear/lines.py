@@ -17,7 +17,7 @@ from flexstage.models.nonlinear.paths.critical_load import Critical
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """Centre line of a flexure at `shares` (s,) of its length, from 0 to 1, in b cases.
+    """Centre line of a flexure in b cases, at s points; `shares` (s,) are fractions of the length, from 0 to 1.
 
     `place` (b, s, 3) [m] is in the stage frame, `turn` (b, s, 3, 3) is the rotation of its sections from the nominal configuration.
     """
@@ -29,14 +29,14 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """Small motions about a state: twists of bodies about their references (k, n, 6), and of flexures' centre lines (k, s, 6)."""
+    """Small motions about a state: twists of bodies at their reference points (k, n, 6), and of flexures' centre lines (k, s, 6)."""
 
     bodies: Array
     lines: dict[str, Array]
 
 
 def centre_lines(state: State) -> dict[str, Line]:
-    """Compute the centre lines of all flexures by name, on one axis of cases: at the points of their rule and at both ends.
+    """Compute the centre lines of all flexures by name, at the points of their rule and at both ends, with one axis of cases.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
@@ -68,13 +68,16 @@ def _lines(state: State) -> Iterator[tuple[str, Line]]:
 
 
 def mode_motions(state: State, shapes: Array, locked: Sequence[str] = ()) -> Motions:
-    """Compute motions of shapes (n, k) of `linearise(state, locked=locked)`, in the first case; real parts."""
+    """Compute the real motions of mode shapes (n, k) of `linearise(state, locked=locked)`, in the first case."""
     bodies, lines = modal_motions(state, np.real(shapes), locked)
     return Motions(bodies, lines)
 
 
 def critical_motion(critical: Critical) -> Motions:
-    """Compute the buckling mode about the last stable state: of bodies, with flexures that follow; or of one flexure between fixed ends."""
+    """Compute the buckling mode about the last stable state, as motion of all bodies and flexures.
+
+    If a single flexure buckles between fixed ends, only this flexure moves.
+    """
     state = critical.state
     whole = assemble(state.model, state.pose, state.loads, state.hold)
     motions = np.zeros((1, len(state.model.bodies) + 1, 6))

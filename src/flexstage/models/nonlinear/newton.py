@@ -21,7 +21,7 @@ _CHUNK, _STREAM, _DESIGNS = 128, 2048, 32
 
 USUAL = SolverOptions()
 RESULT_FIELDS = ("status", "iterations", "residual", "reached")
-"""Fields of the result of every case."""
+"""Names of the result fields that have one value per case."""
 _GOES_ON = -1
 _OF_DESIGNS = ("turn", "arm_first", "arm_second", "stiffness", "stroke", "thrust", "push", "strut", "bow")
 """Fields of links about centres that differ from design to design."""
@@ -29,9 +29,9 @@ _OF_DESIGNS = ("turn", "arm_first", "arm_second", "stiffness", "stroke", "thrust
 
 @dataclass(frozen=True, eq=False)
 class EquilibriumSolution:
-    """Poses of b cases with status, iterations, last residual of flexures, and load fraction `reached`.
+    """Poses of b cases with status, number of iterations, last residual of flexures, and load fraction `reached`.
 
-    A failed case has the pose of that fraction if it is above zero, else its start pose.
+    A failed case has the pose at the fraction reached; if this is zero, its start pose.
     """
 
     pose: Pose
@@ -41,12 +41,12 @@ class EquilibriumSolution:
     reached: Array
 
     def of(self, cases: Array) -> EquilibriumSolution:
-        """Select cases."""
+        """Return the solution of some cases."""
         return EquilibriumSolution(self.pose.of(cases), *(getattr(self, name)[cases] for name in RESULT_FIELDS))
 
 
 def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: FixedCoordinates, options: SolverOptions = USUAL) -> EquilibriumSolution:
-    """Solve the equilibrium of every case under its whole load; failed cases are loaded in steps."""
+    """Compute the equilibrium of every case under its whole load. If this fails for a case, its load is applied in steps."""
     cases = np.arange(len(loads.inputs))
     most = _STREAM if _all_compiled(model, hold) else _CHUNK
     chunks = [search(model, start.of(part), loads.of(part), hold.of(part), options) for part in _split(cases, most)]
@@ -55,7 +55,7 @@ def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: FixedCoordina
 
 
 def equilibrate_designs(tasks: Sequence[Task], options: SolverOptions = USUAL) -> list[EquilibriumSolution]:
-    """Solve several designs of one structure, as many at once as one chunk of cases permits."""
+    """Compute the equilibria of several designs of one structure, several designs at a time."""
     several = min(_DESIGNS, max(1, _CHUNK // len(tasks[0].loads.inputs)))
     if several == 1:
         return [equilibrate(*_parts(each), options) for each in tasks]
@@ -116,14 +116,14 @@ def _by_steps(
 
 
 def merge(solution: EquilibriumSolution, cases: Array, other: EquilibriumSolution) -> EquilibriumSolution:
-    """Replace some cases of a result."""
+    """Return a result in which some cases are replaced by those of another result."""
     return EquilibriumSolution(
         solution.pose.put(cases, other.pose), *(put(getattr(solution, name), cases, getattr(other, name)) for name in RESULT_FIELDS)
     )
 
 
 def search(model: Nonlinear, start: Pose, loads: Loads, hold: FixedCoordinates, options: SolverOptions) -> EquilibriumSolution:
-    """Iterate all cases together; finished cases leave. In C if a kernel supports all flexures of the stage."""
+    """Iterate all cases together until each is finished; in C if the kernel supports all flexures of the stage."""
     (solutions,) = search_designs((Task(model, start, loads, hold),), options)
     return solutions
 
@@ -138,7 +138,7 @@ class Task:
     hold: FixedCoordinates
 
     def of(self, cases: Array, pose: Pose) -> Task:
-        """Select cases, from poses of all."""
+        """Return the task for some cases, with their poses taken from `pose`, which has all cases."""
         return Task(self.model, pose.of(cases), self.loads.of(cases), self.hold.of(cases))
 
 
@@ -183,7 +183,7 @@ class _Step:
 
 
 def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[EquilibriumSolution]:
-    """Iterate several designs of one structure, each with its cases; elements other than flexures are evaluated together."""
+    """Iterate several designs of one structure, each with its cases. Elements other than flexures are evaluated for all together."""
     first = tasks[0]
     if _all_compiled(first.model, first.hold):
         return [_search_compiled(task, options) for task in tasks]
@@ -268,14 +268,14 @@ def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates, 
 
 
 def motion(model: Nonlinear, step: Array, length: float) -> Array:
-    """Return the largest motion (b,) in a step (b, n): translations over a length, and radians."""
+    """Return the largest motion (b,) in a step (b, n): translations over a length, rotations in radians."""
     moved = step[:, : model.freedoms].reshape(len(step), -1, 6)
     over = np.array([length] * 3 + [1.0] * 3)
     return np.max(np.abs(moved) / over, axis=(1, 2))
 
 
 def lack(model: Nonlinear, system: System) -> Array:
-    """Return the largest flexure residual (b,): gaps, and forces on amplitudes over their stiffness; also of locked DOFs."""
+    """Return the largest residual (b,) of flexures (end gaps, and forces on amplitudes over their stiffness) and of locked DOFs."""
     largest = [np.zeros(len(system.residual))]
     for group, bent in zip(model.flexures, system.bent, strict=True):
         stiff = np.max(np.diagonal(group.law.form, axis1=-2, axis2=-1), axis=-1)[:, None]

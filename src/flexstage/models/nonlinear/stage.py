@@ -37,7 +37,10 @@ from flexstage.spatial.frame import spatial_rotation, transport
 
 @dataclass(frozen=True, eq=False)
 class Flexures:
-    """Flexures with tables of one shape: bodies by number, nominal start frame `turn` (l, 3, 3), arms (l, 3) to start and end."""
+    """Group of l flexures whose tables have the same shape: body numbers, nominal start frames `turn` (l, 3, 3), arms (l, 3).
+
+    `arm_first` is from the first body's reference point to the start, `arm_second` from the second body's to the end.
+    """
 
     names: tuple[str, ...]
     law: FlexureLaw
@@ -50,7 +53,7 @@ class Flexures:
 
 @dataclass(frozen=True, eq=False)
 class LoadPoints:
-    """Points of constant-direction loads: the number of a body and the nominal arm (d, 3) from its reference."""
+    """Points of d constant-direction loads: body numbers (d,), and nominal arms (d, 3) from the bodies' reference points."""
 
     body: Array
     arm: Array
@@ -60,10 +63,10 @@ class LoadPoints:
 class Nonlinear(InNotebook):
     """Nonlinear model of a stage; see `nonlinear`.
 
-    `bodies` are named in order, the ground is the last number; `reference` (n + 1, 3) is nominal. Loads act at `places`: first the wrench
-    inputs, then the specified forces `stated` (d, 3), then the `masses` (d,).
+    `bodies` are the names of the n bodies in order; the ground has the number n. `reference` (n + 1, 3) are the nominal reference points.
+    Loads act at `places`: first the wrench inputs, then the specified forces `stated` (d, 3), then the `masses` (d,).
 
-    `growth` (n + 1,) is the thermal scale factor of bodies.
+    `growth` (n + 1,) is the thermal expansion factor of the bodies.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a nonlinear model", "fs.nonlinear(stage)")
@@ -93,7 +96,7 @@ class Nonlinear(InNotebook):
 
     @cached_property
     def reach(self) -> float:
-        """Length scale of translation steps [m]: bodies on long arms move far under a rotation."""
+        """Length scale of translation steps [m]: `size` or the largest arm, because bodies on long arms move far under a rotation."""
         groups = (*self.flexures, self.hinges)
         arms = [np.max(np.linalg.norm(each, axis=-1), initial=0.0) for group in groups for each in (group.arm_first, group.arm_second)]
         return float(max(self.size, *arms))
@@ -120,7 +123,7 @@ class Nonlinear(InNotebook):
         )
 
     def constant_wrenches(self, loads: Loads) -> Array:
-        """Return the constant-direction wrenches (b, d, 6) at the points."""
+        """Return the wrenches of constant direction (b, d, 6) at the load points."""
         wrench = np.zeros((len(loads.inputs), len(self.places.body), 6))
         columns = [index for index, channel in enumerate(self.inputs) if "." in channel.name]
         count = len(columns) // 6
@@ -151,14 +154,14 @@ class _NominalBodies:
 
 @check_arguments
 def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, temperature: float = 0.0, ground: str | None = None) -> Nonlinear:
-    """Build the nonlinear model of a stage: one spectral element per flexure, bodies with finite motions (docs/nonlinear.md).
+    """Build the nonlinear model of a stage: one spectral element per flexure, finite motions of bodies (docs/nonlinear.md).
 
-    Leaves, rods, notches and necks bend; all other links have their 6x6, and superelements their matrices, in a corotated frame. Valid for
-    small strains in the flexures. Batches of designs are refused.
+    Leaves, rods, notches and necks are flexures that bend. All other links have a 6x6, and superelements their matrices, in a corotated
+    frame. The model is valid for small strains in the flexures. Batches of designs raise `DesignError`.
 
-    `temperature` is a uniform change [K] in addition to the `temperatures` of the description. Bodies and parts expand freely, a part at
-    the mean temperature of its ends. The `ground` expands about the origin (of this material; absent: as in `drift`). Incompatible
-    expansion bends the parts. Moduli are constant. A temperature requires the expansion of every material.
+    `temperature` is a uniform change [K] in addition to the `temperatures` of the description. Bodies and parts expand freely; a part has
+    the mean temperature of its ends. The ground expands about the origin; `ground` names its material (absent: as in `drift`). Incompatible
+    expansion bends the parts. Moduli are constant. With a temperature change, every material must have an expansion coefficient.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [group.names for group in nonlinear(parallelogram()).flexures]

@@ -12,13 +12,13 @@ from flexstage.base.arguments import CheckedFields
 from flexstage.base.number import Array
 
 WEIGHT = "weight"
-"""Name of the load that is the weight of the stage, including payloads."""
+"""Name of the load that represents the weight of the stage, including payloads."""
 STATED = "stated forces"
-"""Name of the load of all specified forces and preloads."""
+"""Name of the load that represents all specified forces and preloads."""
 
 
 class Status(IntEnum):
-    """Status of an equilibrium solution; `CRITICAL`: a limit point or a bifurcation is on the path, `NOT_FOLLOWED`: the path ends."""
+    """Status of an equilibrium solution. `CRITICAL`: a limit point or a bifurcation is on the load path. `NOT_FOLLOWED`: the path ends."""
 
     CONVERGED = 0
     NOT_CONVERGED = 1
@@ -29,13 +29,14 @@ class Status(IntEnum):
 
 @dataclass(frozen=True)
 class SolverOptions(CheckedFields):
-    """Solver options of equilibria.
+    """Options of the equilibrium solver.
 
-    An iteration ends at steps below `step` (lengths over the flexures', radians, amplitudes) and gaps below `gap`, or after `iterations`.
+    An iteration ends if the step is below `step` (lengths over the flexures' length, radians, amplitudes) and the gaps are below `gap`, or
+    after `iterations`.
 
-    `limit` is the largest step, translations over the stage's `reach`. Failed cases are loaded in steps, the smallest 2^-`halvings` of the
-    load, then by arc length with at most `arcs` steps. With `past`, the path also passes limit points: the load may decrease and increase
-    again to its whole value, as in a snap-through.
+    `limit` is the largest step, with translations over the stage's `reach`. Failed cases are solved with load steps, down to 2^-`halvings`
+    of the load, then by arc length with at most `arcs` steps. With `past`, the path also passes limit points: the load may decrease and
+    then increase to its whole value, as in a snap-through.
     """
 
     step: float = 1e-9
@@ -49,9 +50,9 @@ class SolverOptions(CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class Loads:
-    """Loads of b cases: `inputs` (b, m) by the model's channels, `gravity` (b, 3) [m/s^2], fraction `constant` (b,) of specified forces.
+    """Loads of b cases: `inputs` (b, m) of the model's channels, `gravity` (b, 3) [m/s^2], fraction `constant` (b,) of specified forces.
 
-    Preloads count as specified forces. Wrenches of inputs keep the directions of their forces and moments in space.
+    Preloads count as specified forces. Forces and moments of wrench inputs keep their directions in space.
     """
 
     inputs: Array
@@ -59,19 +60,20 @@ class Loads:
     constant: Array
 
     def of(self, cases: Array) -> Loads:
-        """Select cases."""
+        """Return the loads of some cases."""
         return Loads(self.inputs[cases], self.gravity[cases], self.constant[cases])
 
     def times(self, share: Array) -> Loads:
-        """Scale each case by a fraction (b,)."""
+        """Return the loads with each case multiplied by a fraction (b,)."""
         return Loads(self.inputs * share[:, None], self.gravity * share[:, None], self.constant * share)
 
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """Configuration of b cases: body references `position` (b, n + 1, 3) and `turn` (b, n + 1, 3, 3), the ground last.
+    """Configuration of b cases: `position` (b, n + 1, 3) of body reference points and rotation `turn` (b, n + 1, 3, 3), the ground last.
 
-    `strain` (l, b, q) and `wrench` (l, b, 6) are by group of flexures, `held` (b, c) are the reactions of locked and fixed DOFs.
+    Each group of flexures has amplitudes `strain` (l, b, q) and end wrenches `wrench` (l, b, 6). `held` (b, c) are the reactions of locked
+    and fixed DOFs.
     """
 
     position: Array
@@ -81,12 +83,12 @@ class Pose:
     held: Array
 
     def of(self, cases: Array) -> Pose:
-        """Select cases."""
+        """Return the pose of some cases."""
         strain, wrench = (tuple(each[:, cases] for each in group) for group in (self.strain, self.wrench))
         return Pose(self.position[cases], self.turn[cases], strain, wrench, self.held[cases])
 
     def put(self, cases: Array, other: Pose) -> Pose:
-        """Replace some cases."""
+        """Return a pose in which some cases are replaced."""
         strain, wrench = (
             tuple(put(one, (slice(None), cases), new) for one, new in zip(mine, theirs, strict=True))
             for mine, theirs in ((self.strain, other.strain), (self.wrench, other.wrench))

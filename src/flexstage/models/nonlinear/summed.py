@@ -1,4 +1,4 @@
-"""Block sums over the unknowns of a stage: dense for about ten bodies, sparse for many (docs/decisions/0078)."""
+"""Assembly of matrices from blocks over the unknowns of a stage: dense for few bodies, sparse for many (docs/decisions/0078)."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from flexstage.base.number import Array
 from flexstage.models.nonlinear.elements.condense import solve
 
 MANY = 400
-"""Number of unknowns above which sums are sparse."""
+"""Number of unknowns above which assembled matrices are sparse."""
 
 
 class Sum(Protocol):
-    """Protocol of a matrix of b cases to which blocks are added."""
+    """Protocol for matrices of b cases that are assembled by adding blocks."""
 
     def add(self, rows: slice, columns: slice, block: Array) -> None:
         """Add a block (b, r, c)."""
@@ -24,12 +24,12 @@ class Sum(Protocol):
         """Add blocks (l, b, r, c), each by its first row and column (l,)."""
 
     def total(self, kept: Array) -> Array | tuple[Any, ...]:
-        """Return the kept rows and columns: (b, n, n), or sparse matrices."""
+        """Return the matrix with only the rows and columns `kept`: (b, n, n), or sparse matrices."""
         ...
 
 
 class Dense:
-    """Dense sum."""
+    """Dense matrices of b cases, assembled from blocks."""
 
     def __init__(self, cases: int, size: int) -> None:
         self._whole = np.zeros((cases, size, size))
@@ -45,12 +45,12 @@ class Dense:
             self._whole[:, row : row + high, column : column + wide] += block
 
     def total(self, kept: Array) -> Array:
-        """Return (b, n, n)."""
+        """Return the matrices (b, n, n) with only the rows and columns `kept`."""
         return self._whole[:, kept[:, None], kept]
 
 
 class Blocks:
-    """Sparse sum: the blocks, each with its first row and column."""
+    """Sparse matrices of b cases, stored as blocks, each with its first row and column."""
 
     def __init__(self, cases: int, size: int) -> None:
         self._cases, self._size = cases, size
@@ -88,7 +88,7 @@ def empty_sum(cases: int, size: int) -> Sum:
 
 
 def solved(matrix: Array | tuple[Any, ...], right: Array) -> Array:
-    """Solve for right sides (b, n): (b, n); NaN if a case is singular."""
+    """Solve linear systems for right sides (b, n); returns (b, n), NaN if a case is singular."""
     if isinstance(matrix, np.ndarray):
         return solve(matrix, right[..., None])[..., 0]
     return np.stack([_solved(one, each) for one, each in zip(matrix, right, strict=True)])
@@ -104,7 +104,7 @@ def _solved(matrix: Any, right: Array) -> Array:
 def negative_pivots(matrix: Any, freedoms: int) -> int:
     """Count the negative eigenvalues of the symmetric form of [K, C^T; C, 0] with `freedoms` in K, by Sylvester's law of inertia.
 
-    Those of K by the signs of its pivots, plus those of - C K^-1 C^T.
+    The count is the number of negative pivots of K plus the number of negative eigenvalues of - C K^-1 C^T.
     """
     even = (0.5 * (matrix + matrix.T)).tocsc()
     factor = scipy.sparse.linalg.splu(
@@ -116,9 +116,11 @@ def negative_pivots(matrix: Any, freedoms: int) -> int:
 
 
 def nearest_descent(matrix: Any, scale: Array) -> tuple[float, Array]:
-    """Compute the lowest eigenvalue of K over `scale` (n,) on both sides in the null space of C, and its vector (n,), of [K, C^T; C, 0].
+    """Compute the lowest eigenvalue of the scaled K in the null space of C, and its vector (n,), for a matrix [K, C^T; C, 0].
 
-    Lanczos' method on the inverse: the negative one of the two eigenvalues nearest to zero, if any.
+    Rows and columns of K are divided by `scale` (n,).
+
+    Lanczos' method on the inverse gives the two eigenvalues nearest to zero; the negative one, if any, is returned.
     """
     count = len(scale)
     whole = np.concatenate([scale, np.ones(matrix.shape[0] - count)])

@@ -1,7 +1,7 @@
-"""Body poses of large stages by their flexures: along a spanning tree from the ground, without gaps in its links.
+"""Body poses of large stages from the flexures along a spanning tree, which starts at the ground, without gaps between its links.
 
-A step rotates bodies finitely and displaces them to first order. Along a chain of many links the difference opens every link. The restoring
-forces are then wrong, as those of displacement elements.
+A solution step rotates bodies by finite rotations, but displaces them to first order. Along a chain of many links, this difference opens a
+gap at every link, which causes wrong restoring forces.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from flexstage.models.nonlinear.state import Loads, Pose
 
 @dataclass(frozen=True)
 class Step:
-    """Flexure of the tree by group and number, the body at its outer end, and whether its `start` is nearer to the ground."""
+    """Step of the tree: a flexure by group and number, the body at its outer end, and whether its `start` is nearer to the ground."""
 
     group: int
     link: int
@@ -31,7 +31,7 @@ class Step:
 
 @SESSION.keep(16)
 def tree(model: Nonlinear) -> tuple[Step, ...]:
-    """Return the flexures that reach bodies from the ground, nearest first; bodies beyond other links are not reached.
+    """Return the flexures of a spanning tree from the ground, nearest first. Bodies connected only by other links are not included.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -55,7 +55,7 @@ def tree(model: Nonlinear) -> tuple[Step, ...]:
 
 
 def walk_tree(model: Nonlinear, pose: Pose, loads: Loads) -> Pose:
-    """Compute the pose with bodies at the ends of the tree's flexures, by their amplitudes and forces."""
+    """Return the pose in which each body of the tree is at the end of its flexure, computed from the flexure's amplitudes and forces."""
     ends, turns = [], []
     for number, group in enumerate(model.flexures):
         frame = np.moveaxis(pose.turn[:, group.first], 1, 0) @ group.turn[:, None]

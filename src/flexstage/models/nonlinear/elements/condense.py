@@ -13,9 +13,9 @@ from flexstage.models.nonlinear.elements.element import Tangent, field_system
 
 @dataclass(frozen=True, eq=False)
 class FlexureResponse:
-    """Response of the unknowns (..., q + 6) of a flexure: `still` at a fixed end, and `moved` (..., q + 6, 6) per motion of its end.
+    """Response of a flexure's q + 6 unknowns: `still` (..., q + 6) with fixed end, and `moved` (..., q + 6, 6) per motion of the end.
 
-    A flexure with weight has three more columns: per change of the weight in its start frame.
+    For a flexure with weight, `moved` has three more columns: the response per change of the weight in the start frame.
     """
 
     still: Array
@@ -23,7 +23,7 @@ class FlexureResponse:
 
 
 def system(tangent: Tangent) -> Array:
-    """Build the matrix (..., q + 6, q + 6) of amplitudes, end force and end moment; symmetric if H is."""
+    """Build the matrix (..., q + 6, q + 6) for the unknown amplitudes, end force and end moment."""
     size = tangent.hessian.shape[-1]
     result = np.zeros((*tangent.hessian.shape[:-2], size + 6, size + 6))
     result[..., :size, :size] = tangent.hessian
@@ -35,7 +35,10 @@ def system(tangent: Tangent) -> Array:
 
 
 def condense(tangent: Tangent, gap: Array) -> FlexureResponse:
-    """Solve for the motions of the end and for the residual; `gap` (..., 6) is the distance of the end from its body. NaN if singular."""
+    """Solve for the response to end motions and to the residual; NaN if singular.
+
+    `gap` (..., 6) is the distance of the end from its body.
+    """
     matrix = system(tangent)
     size = tangent.hessian.shape[-1]
     right = np.zeros((*matrix.shape[:-1], 7 if tangent.hung is None else 10))
@@ -49,9 +52,10 @@ def condense(tangent: Tangent, gap: Array) -> FlexureResponse:
 
 
 def relax_fields(law: FlexureLaw, strain: Array) -> Array:
-    """Compute amplitudes (..., b, q) with plate fields of least energy, which is quadratic in them, at the curvatures.
+    """Replace the amplitudes (..., b, q) of plate fields by those of least energy for the given curvatures.
 
-    A joint Newton iteration on fields and curvatures overshoots in thin leaves, where stretching depends on their squared product.
+    The energy is quadratic in the fields. A joint Newton iteration on fields and curvatures would overshoot in thin leaves, where
+    stretching depends on the square of their product.
     """
     count = law.modes.shape[-1]
     if strain.shape[-1] == count:
@@ -61,7 +65,7 @@ def relax_fields(law: FlexureLaw, strain: Array) -> Array:
 
 
 def solve(matrix: Array, right: Array) -> Array:
-    """Solve a batch of systems (..., n, m), NaN for singular or non-finite ones."""
+    """Solve a batch of linear systems with right sides (..., n, m); NaN for singular or non-finite systems."""
     try:
         return np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError:

@@ -1,8 +1,8 @@
-"""Superelements at large displacements: linear in a corotated frame of their ports (docs/nonlinear.md, 31).
+"""Superelements at large displacements: linear in a corotated frame that follows their ports (docs/nonlinear.md, 31).
 
-The frame R is the mean rotation of the port bodies: the sum of log(R^T R_i) is zero. In it the ports have the displacements u_i = R^T (x_i
-- x) - (X_i - X), x and X the means of their current and nominal positions, and the rotations log(R^T R_i). The linear stiffness acts on
-their non-rigid part.
+The frame R is the mean rotation of the port bodies: the sum of log(R^T R_i) is zero. In this frame, the ports have the displacements u_i =
+R^T (x_i - x) - (X_i - X) and the rotations log(R^T R_i). x and X are the means of the current and nominal port positions. The linear
+stiffness acts on the non-rigid part of these motions.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _TURNS = 8
 
 @dataclass(frozen=True, eq=False)
 class Corotated:
-    """A superelement: numbers (p,) of the bodies of its p ports, nominal arms (p, 3) to them, port axes (p, 3, 3), in stage axes.
+    """Superelement: body numbers (p,) of its p ports, nominal arms (p, 3) from the bodies, port axes (p, 3, 3), in stage axes.
 
     - `place` (p, 3): nominal positions of the ports.
     - `relative` (6 (p - 1), 6 p): from port motions in stage axes to the strains of `stiffness` (6 (p - 1), 6 (p - 1)), as in the linear
@@ -51,9 +51,9 @@ class Corotated:
 
 @dataclass(frozen=True, eq=False)
 class PortMotion:
-    """Ports in the corotated frame: motions (..., 6 p), and their derivatives (..., 6 p, 6 p) by the body motions.
+    """Motions (..., 6 p) of the ports in the corotated frame, and their derivatives (..., 6 p, 6 p) by the body motions.
 
-    `frame` (..., 3, 3), and the derivatives of its rotation (..., 3, 6 p) and of the mean position (..., 3, 6 p).
+    Also the `frame` (..., 3, 3), and the derivatives (..., 3, 6 p) of its rotation and of the mean position.
     """
 
     motion: Array
@@ -95,7 +95,7 @@ def port_motion(element: Corotated, position: Array, turn: Array) -> PortMotion:
 
 
 def resist(element: Corotated, position: Array, turn: Array, gravity: Array) -> Array:
-    """Compute the internal forces (..., 6 p) on the port bodies, less the weight under `gravity` (..., 3)."""
+    """Compute the internal forces (..., 6 p) on the port bodies, minus the weight under `gravity` (..., 3) [m/s^2]."""
     ports = port_motion(element, position, turn)
     strain = (element.relative @ ports.motion[..., None])[..., 0]
     force = (element.relative.T @ (element.stiffness @ strain[..., None]))[..., 0]

@@ -1,7 +1,7 @@
-"""One flexure at large displacements: the mixed functional's residual and its derivatives (docs/nonlinear.md, 1 to 8).
+"""Single flexure at large displacements: residual of the mixed functional, and its derivatives (docs/nonlinear.md, 1 to 8).
 
-Everything is in the flexure's start frame, lengths over its length, forces over E I / L^2. Tables of a law lead with axes of flexures;
-states have one more axis, of loads: amplitudes (..., b, q), force and moment (..., b, 3).
+All quantities are in the flexure's start frame. Lengths are divided by the flexure's length, forces by E I / L^2. Tables of a law have
+leading axes of flexures. States have one more axis, of b load cases: amplitudes (..., b, q), force and moment (..., b, 3).
 """
 
 from __future__ import annotations
@@ -19,12 +19,10 @@ from flexstage.spatial.rotation import cross, exponential, magnus
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """Configuration of a flexure: curvatures (..., b, n, 3) and fields (..., b, n, 2) at its points, rotation there and at its end.
+    """Configuration of a flexure: curvatures (..., b, n, 3) and fields (..., b, n, 2) at its n points, rotations at points and end.
 
-    `rate` (..., b, n, 3) is r', `place` (..., b, n, 3) is r, `end` (..., b, 3) is r at its end. `soft` (..., b, n, 3, 3) is R C_n R^T,
-    `tension` (..., b, n) is N.
-
-    `force` at the end and `weight` are its loads.
+    `place` (..., b, n, 3) is the position r, `rate` (..., b, n, 3) is r', `end` (..., b, 3) is r at the end. `soft` (..., b, n, 3, 3) is
+    the compliance R C_n R^T, `tension` (..., b, n) the axial force N. The loads are the `force` at the end and the `weight`.
     """
 
     rule: Rule
@@ -43,7 +41,7 @@ class Shape:
 
 @dataclass(frozen=True, eq=False)
 class Tangent:
-    """Residual `gradient` (..., b, q) of the amplitudes and the blocks of the derivative (docs/nonlinear.md, 6).
+    """Residual `gradient` (..., b, q) of the amplitudes, and the blocks of its derivative (docs/nonlinear.md, 6).
 
     `hessian` (..., b, q, q) is H, `reach` (..., b, 3, q) is B_f, `turning` (..., b, 3, q) is J_th, `soft` (..., b, 3, 3) is F_n.
 
@@ -118,7 +116,7 @@ def tangent(law: FlexureLaw, strain: Array, moment: Array, config: Shape) -> Tan
 
 
 def mode_paths(law: FlexureLaw, config: Shape) -> tuple[Array, Array, Array]:
-    """Compute displacement (..., b, n, 3, k) and rotation of points by unit curvature amplitudes, for a fixed start and end force.
+    """Compute displacements (..., b, n, 3, k) and rotations of the points per unit curvature amplitude, with fixed start and end force.
 
     Also returns the integrals (..., b, 2, n, 3, 3) of R C_n R^T to each point: displacement per force and per weight (docs/nonlinear.md,
     25).
@@ -153,7 +151,7 @@ def field_system(law: FlexureLaw, strain: Array) -> tuple[Array, Array]:
 
 
 def energy(law: FlexureLaw, strain: Array, config: Shape) -> Array:
-    """Compute the strain energy (..., b) over E I / L from the straight state, including stretch and shear by the end force."""
+    """Compute the strain energy (..., b), divided by E I / L, relative to the straight state, including stretch and shear."""
     quadratic = np.sum(strain * (0.5 * strain @ law.form - law.rest[..., None, :]), axis=-1)
     gauss_two, gauss_four = _gaussian(config)
     stretch = law.stretch[..., None, None, :]

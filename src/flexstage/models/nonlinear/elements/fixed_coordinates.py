@@ -15,12 +15,10 @@ _STEP = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class FixedCoordinates:
-    """Fixed coordinates: of bodies by number (h,), at nominal arms (h, 3), `component` (h,) 0 to 5, at `value` (b, h) [m, rad].
+    """h fixed coordinates: body numbers (h,), nominal arms (h, 3) of the points, `component` (h,) 0 to 5, and `value` (b, h) [m, rad].
 
-    A translation is the displacement of the point, a rotation a component of the rotation vector log R; its reaction is the moment T^-T e.
-    `origin` (h, 3) are the nominal points.
-
-    If designs differ from case to case, arms and origins are (b, h, 3).
+    A translation is the displacement of the point; a rotation is a component of the rotation vector log R, with the moment T^-T e as
+    reaction. `origin` (h, 3) are the nominal points. If the cases belong to different designs, arms and origins are (b, h, 3).
     """
 
     body: Array
@@ -30,7 +28,7 @@ class FixedCoordinates:
     value: Array
 
     def of(self, cases: Array) -> FixedCoordinates:
-        """Select cases."""
+        """Return the fixed coordinates of some cases."""
         return FixedCoordinates(self.body, self.arm, self.component, self.origin, self.value[cases])
 
 
@@ -41,7 +39,7 @@ def no_coordinates(cases: int) -> FixedCoordinates:
 
 
 def values(hold: FixedCoordinates, place: int, pose: Pose) -> Array:
-    """Compute the value (b,) of a fixed coordinate at a pose."""
+    """Compute the value (b,) of the fixed coordinate with index `place` at a pose."""
     body = hold.body[place]
     return _coordinate(hold, place, pose.position[:, body], pose.turn[:, body])[0]
 

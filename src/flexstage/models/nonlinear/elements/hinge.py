@@ -1,10 +1,8 @@
 """Links with a 6x6 about a centre, at large displacements: springs, stacks, specified matrices, joints (docs/nonlinear.md, 15).
 
-Both bodies are extended to the centre, to frames a and b. The deformation is psi = log(R_a^T R_b) and d = R_m^T (x_b - x_a) in the half-way
-frame R_m = R_a exp(psi / 2): equal for exchanged ends.
-
-A strut (a spring with a length L) turns about both ends: its d_x is |x_b - x_a + (R_a + R_b) e_1 L / 2| - L. Its force then acts along the
-line of its ends.
+Both bodies are rigidly extended to frames a and b at the centre. The deformation is psi = log(R_a^T R_b) and d = R_m^T (x_b - x_a) in the
+half-way frame R_m = R_a exp(psi / 2). It does not depend on the order of the ends. A strut (a spring with a length L) turns about both
+ends: d_x = |x_b - x_a + (R_a + R_b) e_1 L / 2| - L. Its force acts along the line between its ends.
 
 A part with a length also shortens by its own bending: 1/2 e^T G e is added to e = (d, psi) (`beams.geometric.foreshortening`).
 """
@@ -24,16 +22,16 @@ _STEP = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Hinges:
-    """Links about centres: bodies by number, nominal link axes `turn` (l, 3, 3), arms (l, 3) from the body references.
+    """l links with a 6x6 about a centre: body numbers, nominal link axes `turn` (l, 3, 3), arms (l, 3) from the body references.
 
     - `stiffness` (l, 6, 6).
     - `stroke`, `thrust` (l, 6, m): free deformation and wrench on the second body per input.
     - `push` (l, 6): nominal wrench on the second body.
     - `strut` (l,): length [m] between the ends that a strut turns about, zero for a link about its centre.
-    - `bow` (l, 6, 6, 6): G.
+    - `bow` (l, 6, 6, 6): the foreshortening matrices G.
     - `locked` (c, 2): pairs of link and DOF without deformation.
 
-    If designs differ from case to case, all but `first`, `second` and `locked` have an axis of cases, (l, b, ...).
+    If the cases belong to different designs, all arrays except `first`, `second` and `locked` have an axis of cases, (l, b, ...).
     """
 
     names: tuple[str, ...]
@@ -105,7 +103,7 @@ def _of(values: Array, links: Array) -> Array:
 
 
 def exerted(hinges: Hinges, deformation: Array, inputs: Array, pushing: Array, held: Array) -> Array:
-    """Compute the internal wrenches (..., l, b, 6): elastic, less those of inputs (b, m) and pushes, plus `held` of locked DOFs."""
+    """Compute the internal wrenches (..., l, b, 6): elastic minus inputs (b, m) minus preloads, plus `held`, the forces of locked DOFs."""
     own = _by_input(hinges.thrust, inputs) + pushing[:, None] * _by_case(hinges.push, 1)
     return (_by_case(hinges.stiffness, 2) @ (deformation - imposed(hinges, inputs))[..., None])[..., 0] - own + held
 
@@ -125,7 +123,7 @@ def _by_case(table: Array, axes: int) -> Array:
 
 
 def stiffen(hinges: Hinges, ends: Ends, inputs: Array, pushing: Array, held: Array) -> tuple[Array, Array, Array, Array]:
-    """Compute residual (l, b, 12), its derivative (l, b, 12, 12) by complex steps, deformations and their derivatives."""
+    """Compute the residual (l, b, 12) on both bodies, its derivative (l, b, 12, 12), deformations and their derivatives."""
     deformation, rows = deform(hinges, ends)
     residual = _work(rows, exerted(hinges, deformation, inputs, pushing, held))
     stepped, stepped_rows = deform(hinges, _nudge(ends))

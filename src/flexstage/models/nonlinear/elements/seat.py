@@ -18,9 +18,9 @@ _Links = TypeVar("_Links", Flexures, Hinges)
 
 
 def seat(model: Nonlinear, links: Collection[str], place: Array) -> Nonlinear:
-    """Build the model with a body `seat`, its reference at `place` (3,), that connects `links` instead of the ground.
+    """Build a model in which `links` are connected to a body `seat` instead of the ground; its reference point is `place` (3,).
 
-    The seat is free: fix its six coordinates. Raises `DesignError` if none of the links connects to the ground.
+    The seat is free: the caller must fix its six coordinates. Raises `DesignError` if none of the links is connected to the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear

@@ -32,9 +32,9 @@ _ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
 
 @dataclass(frozen=True, eq=False)
 class Strains:
-    """Results of every flexure by name: the largest strain along it (..., l), and b^2 k / t of its strongest bending (..., l).
+    """Strains of l flexures by name: the largest strain (..., l), and b^2 k / t (..., l) for the largest curvature k.
 
-    `stress` (..., l) is the largest von Mises stress on its faces [Pa]; `limit` (l,) the lowest yield limit of its material, NaN if
+    `stress` (..., l) is the largest von Mises stress on the faces [Pa]; `limit` (l,) the lowest stress limit of the material, NaN if
     unknown.
     """
 
@@ -48,11 +48,9 @@ class Strains:
 def strains(state: State) -> Strains:
     """Compute strains at the ends and the points of every flexure, at its thinnest section.
 
-    |N| / E A + |k_z| t / 2 + |k_y| b / 2 + k_x^2 b^2 / 12, the largest possible sum at an edge of the section. A leaf's section at a
-    clamped end has 1 / (1 - nu^2) times the stress of a beam of that strain.
-
-    Stress includes stretch, bending about both axes, section curvature of a leaf, and Saint-Venant torsion. Restrained warping and stress
-    concentration at fillets are neglected.
+    The strain is |N| / E A + |k_z| t / 2 + |k_y| b / 2 + k_x^2 b^2 / 12, the largest possible sum at an edge of the section. At a clamped
+    end of a leaf, the stress is 1 / (1 - nu^2) times the stress of a beam with this strain. Stress includes stretch, bending about both
+    axes, section curvature of a leaf, and Saint-Venant torsion. Restrained warping and stress concentration at fillets are neglected.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
@@ -83,13 +81,11 @@ def strains(state: State) -> Strains:
 
 
 def law_reserve(state: State) -> tuple[float, str]:
-    """Return the remaining range of the link laws at a state, 1 if undeformed, 0 at the limit; and the reason.
+    """Return the remaining range of the link laws at a state (1 undeformed, 0 at the limit), and a text with the limiting link.
 
-    Flexures have a limit strain of 5 %. The 6x6 of a link or superelement ends where a law of small motions is 10 % wrong. This is at a
-    relative rotation of its ends of 0.46 rad, or a displacement of 0.3 of its length.
-
-    If the length is unknown, the extent of the stage replaces it; a spring with a length ends at twice that displacement. Links without
-    stiffness have no limit.
+    The strain limit of flexures is 5 %. The limit of a 6x6 of a link or superelement is a 10 % error of a law of small motions: a relative
+    rotation of its ends of 0.46 rad, or a displacement of 0.3 of its length. If the length is unknown, the extent of the stage is used. For
+    a spring with a length, the displacement limit is twice as large. Links without stiffness have no limit.
     """
     model, pose, hinges = state.model, state.pose, state.model.hinges
     used = [(float(np.max(strains(state).largest, initial=0.0)) / _STRAIN, f"a flexure has a strain of {_STRAIN:.0%} there")]

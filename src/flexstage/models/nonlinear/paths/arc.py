@@ -1,4 +1,4 @@
-"""Arc-length continuation of equilibria along a load: past limit points, and into a branch at a bifurcation (docs/nonlinear.md, 27)."""
+"""Arc-length continuation of equilibria along a load: past limit points, and onto a branch at a bifurcation (docs/nonlinear.md, 27)."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ _AIM, _SHORTER, _LONGER, _AHEAD = 0.5, 1e-3, 8.0, 1.05
 
 @dataclass(frozen=True, eq=False)
 class ProportionalLoading:
-    """Loads and fixed coordinates of one case that depend on a factor: values at zero, and gains per unit of the factor.
+    """Loads and fixed coordinates of one case that are linear in a load factor: values at factor zero, and gains per unit of the factor.
 
-    `options` are for each equilibrium solution; stability is evaluated in the rows `kept` of its system.
+    `options` are used for each equilibrium solution. Stability is evaluated in the rows `kept` of its system.
     """
 
     model: Nonlinear
@@ -63,12 +63,12 @@ class ProportionalLoading:
 
     @property
     def plain(self) -> bool:
-        """Whether only inputs change, in which residuals are linear."""
+        """Whether the factor changes only inputs, in which residuals are linear."""
         return not (np.any(self.gain.gravity) or np.any(self.gain.constant) or np.any(self.moved))
 
     @property
     def scale(self) -> Array:
-        """Scale that makes body motions (n,) comparable, without reactions."""
+        """Scale factors (n,) that make body motions comparable; reactions are not included."""
         model = self.model
         others = np.zeros(len(model.hinges.locked) + len(self.hold.body))
         return np.concatenate([np.tile([1.0 / model.size] * 3 + [1.0] * 3, len(model.bodies)), others])
@@ -76,7 +76,7 @@ class ProportionalLoading:
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Reference stiffnesses at the start of a path: of the stage, in units `scale` (n,), and of a flexure."""
+    """Reference stiffnesses at the start of a path: of the stage, for motions scaled by `scale` (n,), and of the weakest flexure."""
 
     scale: Array
     stage: float
@@ -85,14 +85,14 @@ class Reference:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """An equilibrium on a load path: its `found` pose, `factor`, and the scaled `step` (n,) from the previous point.
+    """Equilibrium on a load path: the pose `found`, the load `factor`, and the scaled `step` (n,) from the previous point.
 
-    - `along` (n,): unit tangent of the path in scaled body motion; `slope`: change of the factor along it; `steepest`: maximum slope so
-      far.
+    - `along` (n,): unit tangent of the path in scaled body motion; `slope`: change of the factor along the tangent; `steepest`: maximum
+      slope up to this point.
     - `motions`: number of independent motions that decrease the potential.
-    - `stiffness`: product of the lowest stiffness of the stage and of the weakest flexure between fixed ends, over those of the
-      `reference`. The first has a pole where the second is zero; the product has none. It is negative for unstable states, and NaN without
-      a reference.
+    - `stiffness`: product of the lowest stiffness of the stage and the stiffness of the weakest flexure between fixed ends, relative to the
+      `reference`. Where the flexure's stiffness is zero, the stage's has a pole, but not the product. It is negative for unstable states,
+      and NaN without a reference.
     """
 
     found: EquilibriumSolution
@@ -108,9 +108,9 @@ class Point:
 
 
 def continue_path(loading: ProportionalLoading, begin: Point, length: float, points: int) -> Iterator[Point]:
-    """Generate equilibria beyond `begin`, at most `length` apart in body motion, over the stage size and in radians.
+    """Generate equilibria beyond `begin`, at most `length` apart in body motion (translations over the stage size, rotations in radians).
 
-    Ends after `points` times the length, or if no equilibrium is found at a small fraction of it.
+    The path ends after `points` times the length, or if there is no equilibrium at a small fraction of the length.
     """
     gone = 0.0
     for point in march(loading, begin, length, longest=length):
@@ -121,12 +121,10 @@ def continue_path(loading: ProportionalLoading, begin: Point, length: float, poi
 
 
 def march(loading: ProportionalLoading, begin: Point, length: float, *, longest: float = np.inf) -> Iterator[Point]:
-    """Generate equilibria beyond `begin` with step control by the path curvature and the prediction errors.
+    """Generate equilibria beyond `begin`; the step length is controlled by the path curvature and the prediction errors.
 
-    A step is repeated with a shorter length if the tangent turns, the equilibrium is off the tangent, or slope and stiffness differ from
-    their prediction. So no step skips two events.
-
-    Ends if the step is too small a fraction of the longest previous one.
+    A step is repeated with a shorter length if the tangent rotates, the equilibrium is off the tangent, or slope and stiffness differ from
+    their prediction. Therefore, no step skips two events. The path ends if the step is too small a fraction of the longest previous step.
     """
     before, last, most = None, begin, 0.0
     while length > max(_FINEST * most, _SHORTEST):
@@ -143,7 +141,7 @@ def _change(error: float) -> float:
 
 
 def misfit(scale: Array, before: Point | None, last: Point, after: Point) -> float:
-    """Return the largest error of a step over its bound; a step is accepted up to 1."""
+    """Return the largest ratio of a step's errors to their bounds; a step with a ratio up to 1 is accepted."""
     length = float(np.linalg.norm(after.step))
     turned, aside = (float(np.linalg.norm(each - scale * last.along)) for each in (scale * after.along, after.step / length))
     rise, steep = after.factor - last.factor, length * max(abs(last.slope), abs(after.slope))
@@ -174,9 +172,9 @@ def _ahead(before: Point | None, last: Point) -> float:
 
 
 def step_along(loading: ProportionalLoading, last: Point, length: float) -> Point | None:
-    """Compute the equilibrium one step length further, or `None` without convergence (E. Riks, Int. J. Solids Structures 15, 1979).
+    """Compute the next equilibrium at a step length, or `None` without convergence (E. Riks, Int. J. Solids Structures 15, 1979).
 
-    Corrections keep the factor if the path is steep; else they are normal to the step so far, and the factor follows.
+    If the path is steep, corrections keep the load factor constant. Otherwise they are normal to the step, and the factor is an unknown.
     """
     scale, options, model = loading.scale, loading.options, loading.model
     whole, change, system, pose = length * last.along, length * last.slope, last.system, last.found.pose
@@ -229,9 +227,10 @@ def first_point(loading: ProportionalLoading, pose: Pose, factor: float) -> Poin
 
 
 def critical_point(loading: ProportionalLoading, pose: Pose, factor: float, into: Array | None) -> Point:
-    """Build the first point at a limit point, or at a bifurcation with the motion `into` (n,) of its branch.
+    """Build the first point of a path at a limit point, or at a bifurcation in the direction `into` (n,) of the branch.
 
-    Just before a limit point the factor increases along the path; just past it, with an unstable motion, it decreases.
+    The pose is close to a limit point. If it is stable, the factor increases along the path; if it has an unstable motion, the factor
+    decreases.
     """
     point = first_point(loading, pose, factor)
     along = (-point.along if point.motions else point.along) if into is None else into / np.linalg.norm(loading.scale * into)
@@ -262,7 +261,7 @@ def point_at(
 def complete_paths(
     model: Nonlinear, loads: Loads, hold: FixedCoordinates, solution: EquilibriumSolution, options: SolverOptions
 ) -> EquilibriumSolution:
-    """Continue the cases with a partial load by arc length to the whole load or to the limit point."""
+    """Continue cases that reached only a part of their load by arc length, to the whole load or to the limit point."""
     partly = np.flatnonzero((solution.status != Status.CONVERGED) & (solution.reached > 0.0))
     for case in partly if options.arcs else ():
         one = np.array([case])

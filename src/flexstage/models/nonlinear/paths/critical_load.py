@@ -30,11 +30,11 @@ _EQUAL = 1e-3
 
 
 class NoCriticalLoadError(DesignError):
-    """No critical load up to the maximum factor."""
+    """Error: no critical load up to the maximum load factor."""
 
 
 class Kind(Enum):
-    """The type of a critical point: a `LIMIT` point, which the load cannot pass, or a `BIFURCATION` into another path."""
+    """Type of a critical point: a `LIMIT` point, a maximum of the load, or a `BIFURCATION` into another path."""
 
     LIMIT = "limit"
     BIFURCATION = "bifurcation"
@@ -44,10 +44,10 @@ class Kind(Enum):
 class Critical:
     """Critical point: the `factor` on a load, the buckling mode `shape` (n, 6) of its `bodies`, and its `kind`.
 
-    The largest component of the shape, translations over the stage size, is positive; the first one of equal components.
+    The sign of the shape: its largest component, with translations over the stage size, is positive (of equal components, the first).
 
-    `link` names a flexure that buckles between fixed ends, else it is empty. `state` is the last stable one. `bend` is the factor of an
-    earlier imperfect bifurcation, or `None`.
+    `link` names a flexure that buckles between fixed ends; otherwise it is empty. `state` is the last stable state. `bend` is the factor of
+    an earlier imperfect bifurcation, or `None`.
     """
 
     factor: float
@@ -62,9 +62,9 @@ class Critical:
 def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Array:
     """Return the number (...) of independent motions that decrease the potential of each case: 0 if stable, -1 without a state.
 
-    Negative eigenvalues of the stage stiffness, plus those of the own system of each flexure beyond its six multipliers.
+    It is the number of negative eigenvalues of the stage stiffness and of each flexure's own system (without its six multipliers).
 
-    Of the fixed coordinates, those in `locked` stay fixed (absent: all); the others are released under their reactions.
+    Fixed coordinates in `locked` remain fixed (absent: all). Other fixed coordinates are released under their reactions.
     """
     whole = assemble(state.model, state.pose, state.loads, state.hold)
     count = count_descents(state.model, whole, kept_rows(state.model, state.held, state.held if locked is None else locked))
@@ -88,13 +88,13 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     """Compute the critical load: the factor on `load` at which equilibrium becomes unstable, with all other loads constant.
 
     The other loads are `rest`, weight and specified forces. Loads are named as in `equilibrium`. Coordinates in `hold` can be part of
-    `load`: their values then grow. `weight` in `load` is the weight of the stage, as a load only if the argument `weight` is zero. `stated
-    forces` are the forces and preloads of the description, likewise.
+    `load`: their values then grow. The name `weight` in `load` is the weight of the stage; it requires the argument `weight` = 0. The name
+    `stated forces` is the forces and preloads of the description; it requires `stated` = 0. Other coordinates in `hold` keep their values.
+    For stability, coordinates that are not in `locked` (absent: all are) are free under their reactions.
 
-    Other coordinates in `hold` keep their values; those that are not `locked` (absent: all are) count as free under their reactions.
-
-    The path starts without load, or from the `known` state under the whole load. Arc-length steps resolve its curvature and the change of
-    its lowest stiffness. The result is the first limit point or bifurcation, where that stiffness is zero to `tolerance`.
+    The path starts without load, or from the `known` state under the whole load. Arc-length steps resolve the path's curvature and the
+    change of the lowest stiffness. The result is the first limit point or bifurcation, where the lowest stiffness is zero (relative
+    `tolerance` of the factor).
 
     It raises:
 
@@ -139,10 +139,10 @@ def _at(
 
 
 def require_continuation(start: State, end: State) -> None:
-    """Refuse a stable state that is not the continuation of another one, as loads and fixed coordinates change in proportion.
+    """Raise `DesignError` if a stable state `end` is not reached from `start` by proportional change of loads and fixed coordinates.
 
-    Raises `DesignError` at the first limit point or bifurcation, at the end of the path, and for a path to another equilibrium. An unstable
-    state, or one whose path starts unstable, is accepted.
+    The cause is a limit point or bifurcation on the path, an end of the path, or a path to another equilibrium. An unstable state, or a
+    state whose path starts unstable, is accepted.
     """
     one, other = (Task(each.model, each.pose, each.loads, each.hold) for each in (start, end))
     continuation = continued(one, other)
@@ -155,7 +155,7 @@ def require_continuation(start: State, end: State) -> None:
 def proportional_loading(
     start: State, load: Mapping[str, float], factor: float, options: SolverOptions, *, locked: Sequence[str] | None = None
 ) -> ProportionalLoading:
-    """Build the load path of a load that is proportional to a factor, from a state at a given factor."""
+    """Build the loading of a state in which `load` is proportional to a factor; `factor` is its value at the state."""
     model = start.model
     rate = np.array([[load.get(channel.name, 0.0) for channel in model.inputs]])
     gain = Loads(rate, load.get(WEIGHT, 0.0) * model.gravity[None], load.get(STATED, 0.0) * np.ones(1))

@@ -1,4 +1,4 @@
-"""Path following to the first critical point, or to loads with a known equilibrium (docs/nonlinear.md, 25)."""
+"""Path following to the first critical point, or to a known equilibrium (docs/nonlinear.md, 25)."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from flexstage.models.nonlinear.state import Loads, Pose, SolverOptions, Status
 from flexstage.spatial.rotation import logarithm
 
 FIRST = 1e-4
-"""First step in body motion, over the stage size and in radians."""
+"""Length of the first step in body motion: translations over the stage size, rotations in radians."""
 NEAR = SolverOptions(halvings=0, iterations=15, arcs=0)
-"""Solver options for states that start from an adjacent one."""
+"""Solver options for solutions that start from a neighbouring state."""
 _POINTS, _JUMPS = 400, 8
 """Maximum number of equilibria along a path, and of steps onto another path."""
 VANISHED = 1e-5
-"""Stiffness over that at the start which counts as zero; a step onto another path leaves a larger value."""
+"""Stiffness, relative to the start of the path, below which it counts as zero. A step onto another path leaves a larger value."""
 _SAME = 1e-6
 """Distance of two equal poses, over the stage size and in radians."""
 _FLAT, _SOON, _WELL = 0.01, 1.01, 1.25
@@ -35,12 +35,12 @@ _NEXT, _ROUND = 1e-9, 1e-7
 """Last stable state before a critical one, over the last step; permitted rounding of the factor between them."""
 
 Reserve = Callable[[Point], tuple[float, str]]
-"""Function that returns the remaining law range at a point, negative beyond it, and the first law beyond its range."""
+"""Function that returns the remaining range of the laws at a point (negative beyond it), and the law with the least range."""
 
 
 @dataclass(frozen=True, eq=False)
 class FollowedPath:
-    """A path from its start: last stable point, first critical point if any, and factors of its bend and of its end."""
+    """Followed path: last stable point, first critical point if any, load factor of an imperfect bifurcation, and final factor."""
 
     last: Point
     event: Point | None
@@ -51,10 +51,10 @@ class FollowedPath:
 def follow_to_event(
     loading: ProportionalLoading, begin: Point, most: float, tolerance: float, *, length: float = FIRST, reserve: Reserve | None = None
 ) -> FollowedPath:
-    """Follow a path to the first zero of its stiffness, or to the factor `most`; its first step has a `length`.
+    """Follow a path to the first zero of the stiffness, or to the factor `most`; `length` is the length of the first step.
 
-    Raises `LowerBoundError` if the path ends earlier: without an equilibrium or, with a `reserve`, at its zero and well beyond an imperfect
-    bifurcation.
+    Raises `LowerBoundError` if the path ends earlier, without a further equilibrium. With a `reserve`, the path also ends where the reserve
+    is zero, and well beyond an imperfect bifurcation.
     """
     last, bent = begin, None
     for _ in range(_JUMPS):
@@ -98,13 +98,13 @@ def _first_event(loading: ProportionalLoading, last: Point, point: Point, bent: 
 
 
 def continued(start: Task, end: Task) -> EquilibriumSolution:
-    """Compute the equilibrium (of one case) that continues `start` as loads and fixed coordinates grow in proportion to `end`.
+    """Compute the equilibrium of one case that is reached from `start` as loads and fixed coordinates change in proportion to `end`.
 
-    An equilibrium `end` is returned unchanged if it is next to the start, or if its path starts unstable. So is an unstable one whose path
-    bends off earlier.
+    The equilibrium `end` is returned unchanged if it is near the start, or if its path starts unstable. An unstable `end` is also unchanged
+    if its path bends off earlier.
 
-    Else `status` is `CRITICAL` for a path with a limit point or a bifurcation, and `NOT_FOLLOWED` for a path that ends, each at the
-    fraction `reached`.
+    Without such an equilibrium, `status` is `CRITICAL` for a limit point or a bifurcation on the path, or `NOT_FOLLOWED` for a path that
+    ends. `reached` is the load fraction of this point.
     """
     model, hold = end.model, end.hold
     whole = EquilibriumSolution(end.start, np.array([Status.CONVERGED]), np.zeros(1, int), np.zeros(1), np.ones(1))
@@ -136,13 +136,13 @@ def continued(start: Task, end: Task) -> EquilibriumSolution:
 
 
 def pose_distance(model: Nonlinear, one: Pose, other: Pose) -> float:
-    """Return the distance of bodies from another pose, over the stage size and in radians."""
+    """Return the largest motion of bodies between two poses: translations over the stage size, rotations in radians."""
     shift = np.max(np.abs(one.position - other.position)) / model.size
     return float(max(shift, np.max(np.abs(one.turn - other.turn))))
 
 
 def between(one: Pose, other: Pose) -> Array:
-    """Return the body motion (n,) from one pose to another, without reactions."""
+    """Return the body motions (n,) from one pose to another."""
     motions = np.concatenate([other.position - one.position, logarithm(other.turn @ np.swapaxes(one.turn, -1, -2))], axis=-1)
     return np.append(motions[0, :-1], np.zeros(other.held.shape[1]))
 

@@ -1,4 +1,4 @@
-"""Inertia of the tangent stiffness: negative eigenvalues of the stage and of the own system of every flexure (docs/nonlinear.md, 22)."""
+"""Inertia (number of negative eigenvalues) of the tangent stiffness, for the stage and for each flexure (docs/nonlinear.md, 22)."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ from flexstage.models.nonlinear.summed import nearest_descent, negative_pivots
 
 
 def kept_rows(model: Nonlinear, held: Sequence[str], locked: Sequence[str]) -> list[int]:
-    """Return the rows of a system without fixed coordinates that are not locked."""
+    """Return the indices of the system's rows, without rows of fixed coordinates that are not locked."""
     first = model.freedoms + len(model.hinges.locked)
     return [*range(first), *(first + place for place, name in enumerate(held) if name in locked)]
 
 
 def count_descents(model: Nonlinear, whole: System, kept: list[int]) -> Array:
-    """Count the independent motions (b,) that decrease the potential: negative eigenvalues beyond those of constraints and multipliers."""
+    """Count the independent motions (b,) that decrease the potential energy.
+
+    These are the negative eigenvalues, without those due to constraints and multipliers.
+    """
     count = _descents(whole, kept, model.freedoms) - (len(kept) - model.freedoms)
     for bent in whole.bent:
         count = count + np.sum(_negative(indefinite(bent.tangent)) - 6, axis=0)
@@ -30,9 +33,11 @@ def count_descents(model: Nonlinear, whole: System, kept: list[int]) -> Array:
 
 
 def lowest_stiffness(model: Nonlinear, whole: System, kept: list[int], scale: Array) -> tuple[float, Array]:
-    """Compute the lowest eigenvalue of the stiffness over `scale` (n,) on both sides, among admissible motions, and its motion (n,).
+    """Compute the lowest eigenvalue of the scaled stiffness among admissible motions, and its motion (n,).
 
-    Without admissible motions: 1 and a zero motion.
+    The rows and columns of the stiffness are divided by `scale` (n,).
+
+    If there are no admissible motions, the result is 1 and a zero motion.
     """
     freedoms = model.freedoms
     if not isinstance(whole.matrix, np.ndarray):
@@ -48,7 +53,10 @@ def lowest_stiffness(model: Nonlinear, whole: System, kept: list[int], scale: Ar
 
 
 def weakest_flexure(model: Nonlinear, whole: System) -> tuple[float, str]:
-    """Compute the lowest eigenvalue of the flexures, row-scaled, beyond their six multipliers, and the flexure; 1 without flexures."""
+    """Compute the lowest eigenvalue of all flexures' scaled own systems, and the name of the flexure; 1 if there are no flexures.
+
+    The eigenvalues of the six multipliers of each flexure are excluded.
+    """
     weakest = [
         (float(least), name)
         for group, each in zip(model.flexures, whole.bent, strict=True)

@@ -1,4 +1,4 @@
-"""Load paths: equilibria over a drive from end to end, or by arc-length continuation past limit points (docs/nonlinear.md, 26 and 27)."""
+"""Load paths: equilibria at given values of a drive, or by arc-length continuation past limit points (docs/nonlinear.md, 26 and 27)."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ class Event:
 
 @dataclass(frozen=True, eq=False)
 class LoadPath:
-    """Load path, equilibria (k,) along `drive`: its `values` (k,) [m, rad, N, N m; or a factor on a load], and a `state` for each.
+    """Load path: k equilibria along `drive`, with its `values` (k,) [m, rad, N, N m, or a load factor] and a `state` for each.
 
-    `motions` (k,) is the number of unstable motions (0: stable; -1: no equilibrium) with a fixed drive coordinate. `locked` coordinates
-    stay fixed along the path.
+    `motions` (k,) is the number of unstable motions with a fixed drive coordinate (0: stable; -1: no equilibrium). `locked` coordinates are
+    fixed along the path.
 
-    `turns` (k - 1,) are the extreme loads between its points, NaN if the load is monotonic; `None` if values were given.
+    `turns` (k - 1,) are the extreme loads between adjacent points, NaN if the load is monotonic; `None` if the values were given.
     """
 
     drive: str
@@ -51,7 +51,7 @@ class LoadPath:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Limit points and bifurcations, in order; a bifurcation at the mean of its two adjacent values."""
+        """Limit points and bifurcations, in order. A bifurcation is listed at the mean of the two adjacent values."""
         return tuple(itertools.chain.from_iterable(map(self._between, range(len(self.values) - 1))))
 
     def _between(self, place: int) -> Iterator[Event]:
@@ -75,12 +75,14 @@ def load_path(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Compute the load path as `drive` takes `values` (k,): a fixed coordinate (`platform.y`), or an actuator's stroke, force or a wrench.
+    """Compute the load path for given `values` (k,) of a drive.
 
-    Coordinates in `hold` stay locked at their values. All values start from the nominal position; failed ones start again from the nearest
-    converged one.
+    The `drive` is a fixed coordinate (`platform.y`), an actuator's stroke or force, or a wrench component.
 
-    Stable states that do not continue the equilibrium along the drive are NaN, as in `equilibrium`. Raises `DesignError` for an unknown
+    Coordinates in `hold` are fixed at their values. Every value is solved from the nominal position; if this fails, from the nearest
+    converged value.
+
+    Stable states that are not on one continuous path along the drive are NaN, as in `equilibrium`. Raises `DesignError` for an unknown
     drive.
 
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -98,7 +100,7 @@ def load_path(
 
 
 def begin_along(unloaded: State, drive: str, loads: Mapping[str, float], hold: Mapping[str, float], weight: float) -> tuple[State, float]:
-    """Compute the equilibrium with the drive coordinate fixed, and the value of the drive."""
+    """Compute the equilibrium from which a path along a drive starts, with the drive coordinate fixed, and the drive's value there."""
     driven = drive in {channel.name for channel in unloaded.model.inputs}
     if not bool(unloaded.converged):
         return unloaded, 0.0
@@ -109,7 +111,10 @@ def begin_along(unloaded: State, drive: str, loads: Mapping[str, float], hold: M
 
 
 def continue_along(begin: State, states: State, away: Array) -> State:
-    """Compute states (k,) of a drive at distances `away` (k,) from its start; stable ones that do not continue one another are NaN."""
+    """Return states (k,) of a drive in which stable states that are not on one continuous path from `begin` are NaN.
+
+    `away` (k,) are the distances of the drive from its start.
+    """
     if not bool(begin.converged):
         return replace(states, status=np.where(states.converged, begin.status, states.status), reached=0.0 * states.reached)
     pose, status, reached = states.pose, np.array(states.status), np.array(states.reached)
@@ -140,7 +145,7 @@ def equilibria_along(
     weight: float = 1.0,
     options: SolverOptions = USUAL,
 ) -> State:
-    """Compute the states (k,) of a `load_path` without stability and events.
+    """Compute the states (k,) of a load path as `load_path` does, without the evaluation of stability and events.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -173,7 +178,9 @@ def equilibria_of_designs(
     hold: Sequence[Mapping[str, float]],
     weight: float = 1.0,
 ) -> list[State]:
-    """Compute the states of `equilibria_along` for several designs of one structure; values (k,) and locked coordinates of each.
+    """Compute the states of `equilibria_along` for several designs of one structure.
+
+    `values` has an array (k,) and `hold` a mapping for each design.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -214,10 +221,11 @@ def continuation(
 ) -> LoadPath:
     """Compute equilibria along the factor on `load` by arc-length continuation, past limit points.
 
-    `step` is the maximum step in body motion, over the flexure length and in radians; steps are shorter on a curved path. The path is
-    `points` times as long, and ends earlier without a further equilibrium. Coordinates in `hold` stay locked at their values.
+    `step` is the maximum step in body motion (translations over the flexure length, rotations in radians); steps are shorter on a curved
+    path. The path has the length `points` times `step`, and ends earlier if there is no further equilibrium. Coordinates in `hold` are
+    fixed at their values.
 
-    After E. Riks (Int. J. Solids Structures 15, 1979), with corrections normal to the first step.
+    The method is that of E. Riks (Int. J. Solids Structures 15, 1979), with corrections normal to the first step.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -250,11 +258,11 @@ def post_buckling_path(
 ) -> LoadPath:
     """Compute the post-buckling path: equilibria on the branch at the first bifurcation of `load`, along the factor on the load.
 
-    The first state is the last stable one before the bifurcation. The next is in the direction of the buckling mode or, with `side` -1,
-    opposite to it (the sign of `Critical.shape`). Steps and points are as in `continuation`.
+    The first state is the last stable state before the bifurcation. The second state is in the direction of the buckling mode
+    `Critical.shape`; with `side` -1, in the opposite direction. Steps and points are as in `continuation`.
 
-    Raises `DesignError` as `critical_load` does, at a limit point (which `continuation` passes), for a flexure that buckles between fixed
-    ends, and without an equilibrium on the branch.
+    Raises `DesignError` as `critical_load` does, and also for a limit point (use `continuation`), for a flexure that buckles between fixed
+    ends, and if there is no equilibrium on the branch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -279,12 +287,12 @@ def beyond(
     points: int = 60,
     options: SolverOptions = USUAL,
 ) -> LoadPath:
-    """Compute equilibria beyond a critical point, along the load factor: on the branch of a bifurcation, past a limit or bend.
+    """Compute equilibria beyond a critical point, along the load factor: on the branch of a bifurcation, or past a limit point or bend.
 
-    `given` is the result of `critical_load` for the load; steps, points and `side` are as in `post_buckling_path`. Past a limit point or a
-    bend only one side exists.
+    `critical` is the result of `critical_load` for the load. `side`, `step` and `points` are as in `post_buckling_path`. Past a limit point
+    or a bend, only one side exists.
 
-    Raises `DesignError` for the other side, for a flexure that buckles between fixed ends, and without an equilibrium.
+    Raises `DesignError` for a side that does not exist, for a flexure that buckles between fixed ends, and without an equilibrium.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
