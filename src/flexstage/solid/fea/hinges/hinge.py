@@ -45,8 +45,8 @@ _BLUNT = 5e-4
 """Relative change of the compliance at the hinge's end by blunted wedges of arcs at rigid faces: twice the largest observed."""
 _NECK = Fineness().neck
 """Elements within round necks are as in a stage."""
-_TELLING = 3
-"""Lowest order whose change from the previous one is a sufficient error estimate."""
+_TELLING = 4
+"""Lowest order whose change from the previous one is a sufficient error estimate: flat elements of order two lock."""
 _COARSER = 1.3
 """Factor on the element size if the usual elements are too many."""
 _ATTEMPTS = (

@@ -39,9 +39,13 @@ class HingeJob(StoredJob):
         """The lowest order with an error estimate."""
         return min(self.asked.orders[0] + 1, self.asked.orders[1])
 
-    def seconds(self, _counts: Counts | None = None) -> float:
-        """Usual duration for a hinge [s]: several solves, more for a higher final order."""
+    def seconds(self) -> float:
+        """Usual CPU time for a hinge [s]: several solves, more for a higher final order."""
         return _USUAL_SECONDS * max(1, self.asked.orders[1] - 2)
+
+    def summary(self, found: HingeSolid) -> str:
+        """The solved hinge in one line."""
+        return f"hinge {self.name}: error {100.0 * found.error:.2g} %, {found.freedoms:,} unknowns of order {found.order}"
 
     def needed(self, counts: Counts) -> float:
         """Memory of the first solves [bytes]; higher orders use the available memory."""

@@ -1,19 +1,34 @@
-"""Options of a solid model: fineness and order of the mesh, and number of modes in each component. Loads no solver."""
+"""Options of a solid model: fineness and order of the mesh, element sizes, and number of modes in each component. Loads no solver."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import Enum
 
+import numpy as np
+
 from flexstage.base.arguments import CheckedFields
+from flexstage.parts.body import Solid
+from flexstage.parts.section import Rectangle
+from flexstage.parts.shape import Shaped
+from flexstage.solid.fea.geometry.piece import Piece, span, thinnest
 
 ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
 """Variations of the mesh if the mesher fails: factors on all sizes, on the grading and on the segments per radius of curvature."""
 
 
-NOTCH_MIDDLE, NOTCH_REACH = 0.7, 1.6
-"""Element size in the middle plane of a notch over that on the faces of other hinges, and its extent on both sides, in geometric
-means of radius and thickness. The strain gradient is largest there."""
+_NOTCH = 5.0 / 3.0
+"""Size of elements in notches, of one order more, relative to those on the faces of other hinges."""
+_FLAT = 1.0 / 6.0
+"""Size of elements in wide leaves and notches, of one order more, over the smaller of width and length, if they are thinner: elements
+may be flat, as strains vary slowly along the faces."""
+_MIDDLE, _SMOOTH = 0.7, 0.25
+"""Size of elements in the middle plane of a notch, where the strain gradient is largest, over that on the faces of other hinges; its
+smallest share of the geometric mean of radius and thickness."""
+_BAR, _LONG, _BROAD = 2.0 / 3.0, 6.0, 5.0
+"""Share for bars of bodies, which bend: longer than this multiple of their thickness, and not broader than that one."""
+_STRUT = 0.4
+"""Share for straight necks: elements as wide as thick, at low cost."""
 WARPS = 12
 """Linear and quadratic motions of an interface face, without rigid ones."""
 
@@ -65,3 +80,62 @@ class Reduction(CheckedFields):
         more = content in self.raised
         modes, finer = 0 if more and self.static else self.modes, replace(self.fineness, order=self.fineness.order + more)
         return replace(self, fineness=finer, modes=modes, raised=frozenset(), static=False)
+
+
+def is_leaf(form: object) -> bool:
+    """Whether a form is a leaf: of rectangular section, thin along its whole length.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> is_leaf(Leaf("steel", 0.01, 1e-3, 5e-3))
+    True
+    """
+    return isinstance(form, Shaped) and form.slender and not form.bends_both_ways and isinstance(form.throat, Rectangle)
+
+
+def is_notch(form: object) -> bool:
+    """Whether a form is a hinge with arcs across a width: its strain varies smoothly across and along it.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> is_notch(Leaf("steel", 0.01, 1e-3, 5e-3))
+    False
+    """
+    return isinstance(form, Shaped) and form.has_arc and not (form.is_axisymmetric or form.slender)
+
+
+def is_strut(form: object) -> bool:
+    """Whether a form is a neck of one section, which ends on blocks wider than itself.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> is_strut(Leaf("steel", 0.01, 1e-3, 5e-3))
+    False
+    """
+    return isinstance(form, Shaped) and form.is_prismatic and not form.slender and form.bends_both_ways
+
+
+def element_size(piece: Piece, fineness: Fineness) -> float:
+    """Size of elements [m] on the faces of a piece.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> round(element_size(bar().pieces[0], Fineness(block=1.5)), 9)
+    0.01
+    """
+    form = piece.form
+    if isinstance(form, Solid):
+        short, middle, long = sorted(float(np.real(side)) for side in form.sides)
+        is_bar = long > _LONG * short and middle < _BROAD * short
+        return (fineness.neck if piece.body is None else fineness.block * (_BAR if is_bar else 1.0)) * thinnest(form)
+    if is_leaf(form) or is_notch(form):
+        flat = _FLAT * min(float(np.real(form.throat.width)), span(form))
+        return fineness.neck * max((_NOTCH if is_notch(form) else 1.0) * thinnest(form), flat)
+    return (_STRUT if is_strut(form) else 1.0) * fineness.neck * thinnest(form)
+
+
+def middle_size(form: Shaped, neck: float) -> float:
+    """Size of elements [m] around the thinnest line of a notch.
+
+    >>> from flexstage.parts.notch import Notch
+    >>> from flexstage.parts.profile import Circular
+    >>> middle_size(Notch("steel", 1e-3, 1e-2, Circular(1e-3)), 1.0)
+    0.0007
+    """
+    return neck * max(_MIDDLE * thinnest(form), _SMOOTH * float(np.sqrt(0.5 * span(form) * thinnest(form))))
