@@ -22,6 +22,7 @@ from flexstage.solid.fea.geometry.contour import contour_edges, segments
 from flexstage.solid.fea.geometry.mirror import Mirrors, cut_at_mirrors, is_symmetric
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, millimetres
 from flexstage.solid.fea.hinges.roots import rises
+from flexstage.solid.fea.meshing.fineness import THIN
 
 START, END = "start", "end"
 """Names of the specimen's two outer faces, towards -x and +x."""
@@ -36,7 +37,7 @@ _LONG = 1.5
 _FLAT, _FLAT_STRAIGHT = 1.0 / 12.0, 1.0 / 3.0
 """Smallest element over the smaller of width and length of a wide hinge: with arcs, and a leaf."""
 _SMOOTH = 0.5
-"""Largest element at the thinnest line of arcs, over the root of length times half the thickness: strains vary over this length."""
+"""Largest element of a thin hinge, over the root of length times half the thickness: strains vary over this length."""
 _SEAT = 5.0
 """Size of a block beyond a hinge that does not rise to it, sideways and in depth, over the hinge's `grain`."""
 _SEAT_SIZE = 2.0
@@ -251,7 +252,8 @@ def _ellipse(side: _Side, sign: float) -> _Curve:
 
 def _wide(side: _Side, width: float, size: float) -> Specimen:
     """Elements of a wide thin hinge may be flat: sufficient at high order, and cubes would be too many."""
-    flat = min(_FLAT * min(width, 2.0 * side.half), _SMOOTH * float(np.sqrt(2.0 * side.half * side.rise)))
+    short = min(width, 2.0 * side.half)
+    flat = _FLAT * short if short <= 2.0 * THIN * side.rise else min(_FLAT * short, _SMOOTH * float(np.sqrt(2.0 * side.half * side.rise)))
     return _name_faces(_extrude(side, width), side, max(2.0 * side.rise, flat), size)
 
 

@@ -8,7 +8,6 @@ from enum import Enum
 import numpy as np
 
 from flexstage.base.arguments import CheckedFields
-from flexstage.parts.body import Solid
 from flexstage.parts.section import Rectangle
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.piece import Piece, span, thinnest
@@ -19,16 +18,15 @@ ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), 
 
 _NOTCH = 5.0 / 3.0
 """Size of elements in notches, of one order more, relative to those on the faces of other hinges."""
-_FLAT = 1.0 / 6.0
-"""Size of elements in wide leaves and notches, of one order more, over the smaller of width and length, if they are thinner: elements
-may be flat, as strains vary slowly along the faces."""
-_MIDDLE, _SMOOTH = 0.7, 0.25
-"""Size of elements in the middle plane of a notch, where the strain gradient is largest, over that on the faces of other hinges; its
-smallest share of the geometric mean of radius and thickness."""
-_BAR, _LONG, _BROAD = 2.0 / 3.0, 6.0, 5.0
-"""Share for bars of bodies, which bend: longer than this multiple of their thickness, and not broader than that one."""
 _STRUT = 0.4
 """Share for straight necks: elements as wide as thick, at low cost."""
+THIN = 35.0
+"""A leaf or notch with width and length beyond this multiple of its thickness is thin: flat elements, of one order more."""
+_FLAT = 1.0 / 6.0
+"""Size of elements in thin parts over the smaller of width and length: strains vary slowly along the faces."""
+_MIDDLE, _SMOOTH = 0.7, 0.25
+"""Size of elements in the middle plane of a notch, where the strain gradient is largest, over that on the faces of other hinges; in thin
+notches over the geometric mean of radius and thickness."""
 WARPS = 12
 """Linear and quadratic motions of an interface face, without rigid ones."""
 
@@ -102,6 +100,21 @@ def is_notch(form: object) -> bool:
     return isinstance(form, Shaped) and form.has_arc and not (form.is_axisymmetric or form.slender)
 
 
+def is_thin(form: object) -> bool:
+    """Whether a form is a leaf or notch wider and longer than 35 times its thickness: only these have flat elements.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> [is_thin(Leaf("steel", 0.04, 1e-3, width)) for width in (0.03, 0.04)]
+    [False, True]
+    """
+    return (is_leaf(form) or is_notch(form)) and isinstance(form, Shaped) and _short(form) > THIN * thinnest(form)
+
+
+def _short(form: Shaped) -> float:
+    """The smaller of width and length [m]."""
+    return min(float(np.real(form.throat.width)), span(form))
+
+
 def is_strut(form: object) -> bool:
     """Whether a form is a neck of one section, which ends on blocks wider than itself.
 
@@ -117,17 +130,14 @@ def element_size(piece: Piece, fineness: Fineness) -> float:
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> round(element_size(bar().pieces[0], Fineness(block=1.5)), 9)
-    0.01
+    0.015
     """
     form = piece.form
-    if isinstance(form, Solid):
-        short, middle, long = sorted(float(np.real(side)) for side in form.sides)
-        is_bar = long > _LONG * short and middle < _BROAD * short
-        return (fineness.neck if piece.body is None else fineness.block * (_BAR if is_bar else 1.0)) * thinnest(form)
-    if is_leaf(form) or is_notch(form):
-        flat = _FLAT * min(float(np.real(form.throat.width)), span(form))
-        return fineness.neck * max((_NOTCH if is_notch(form) else 1.0) * thinnest(form), flat)
-    return (_STRUT if is_strut(form) else 1.0) * fineness.neck * thinnest(form)
+    if piece.body is not None:
+        return fineness.block * thinnest(form)
+    if isinstance(form, Shaped) and is_thin(form):
+        return fineness.neck * _FLAT * _short(form)
+    return (_STRUT if is_strut(form) else _NOTCH if is_notch(form) else 1.0) * fineness.neck * thinnest(form)
 
 
 def middle_size(form: Shaped, neck: float) -> float:
@@ -138,4 +148,4 @@ def middle_size(form: Shaped, neck: float) -> float:
     >>> middle_size(Notch("steel", 1e-3, 1e-2, Circular(1e-3)), 1.0)
     0.0007
     """
-    return neck * max(_MIDDLE * thinnest(form), _SMOOTH * float(np.sqrt(0.5 * span(form) * thinnest(form))))
+    return _SMOOTH * neck * float(np.sqrt(0.5 * span(form) * thinnest(form))) if is_thin(form) else _MIDDLE * neck * thinnest(form)

@@ -20,7 +20,7 @@ from flexstage.solid.fea.geometry.mirror import Mirrors
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, Medium, Piece, coordinates, span, thinnest
 from flexstage.solid.fea.jobs.content import content
 from flexstage.solid.fea.jobs.progress import Report, Stage, silent
-from flexstage.solid.fea.meshing.fineness import ATTEMPTS, Fineness, element_size, is_leaf, is_notch, is_strut, middle_size
+from flexstage.solid.fea.meshing.fineness import ATTEMPTS, Fineness, element_size, is_leaf, is_notch, is_strut, is_thin, middle_size
 from flexstage.solid.fea.meshing.straighten import straighten
 from flexstage.solid.fea.solver.component import Component
 
@@ -34,7 +34,7 @@ and its growth with the distance. From the surface alone the mesher would make f
 _ROUND = 0.85
 """Size of elements within round necks relative to those of the isolated neck, as its faces are coarser."""
 _BENEATH = ((0.0, 1.5), (1.5, 1.5), (4.0, 3.0))
-"""Elements at the root of a leaf: depth in the block over the thickness of the leaf, and size over the usual size for it."""
+"""Elements at the root of a thin leaf: depth in the block over the thickness of the leaf, and size over the usual size for it."""
 _FINE = 1.0 / 45.0
 """Smallest such thickness over the width of the leaf: the thinner a leaf, the less its root matters."""
 _ROOT = 2.0 / 15.0
@@ -180,7 +180,7 @@ def _finish(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Piec
         if piece.body is None:
             within = np.abs((places - piece.frame.position) @ piece.frame.rotation[:, 0]) < _NECK * half_extents(piece)[0]
             necks |= within & (owner == number)
-    finer = np.isin(owner, [number for number, piece in enumerate(pieces) if is_notch(piece.form) or is_leaf(piece.form)])
+    finer = np.isin(owner, [number for number, piece in enumerate(pieces) if is_notch(piece.form) or is_thin(piece.form)])
     images = tuple(owners(pieces, places * signs) for signs in drawing.mirrors.images)
     return straighten(mesh, necks) or PieceMesh(mesh, drawing.media, drawing.faces, owner, finer, drawing.mirrors, images)
 
@@ -213,7 +213,7 @@ def _fine_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
     if is_strut(form):
         size = _ROOT * neck * thinnest(form)
         yield _root_points(form, size), size
-    if is_leaf(form):
+    if is_leaf(form) and is_thin(form):
         grain = max(thinnest(form), _FINE * float(np.real(form.throat.width)))
         for depth, growth in _BENEATH:
             yield _root_points(form, growth * neck * grain, depth * grain), growth * neck * grain
@@ -269,7 +269,7 @@ def _root_points(form: Shaped, size: float, depth: float = 0.0) -> Array:
 
 def _set_sizes(component: Component, drawing: Cad, fineness: Fineness, shrink: float) -> float:
     """Set the faces' mesh sizes; return the largest size anywhere [mm]."""
-    sizes = [shrink * MILLIMETRES * element_size(piece, fineness) for piece in component.pieces]
+    sizes = [shrink * (element_size(piece, fineness) * MILLIMETRES) for piece in component.pieces]
     scale = _PRINT * fineness.neck * shrink * MILLIMETRES
     prints = {item.joint.name: scale * item.joint.area**0.5 for item in component.interfaces if item.footprint}
     for face in drawing.shape.faces:
