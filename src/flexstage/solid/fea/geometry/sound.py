@@ -14,6 +14,7 @@ from flexstage.solid.fea.jobs.apart import contacts_apart
 from flexstage.solid.fea.jobs.cache import SOUND, Cache, holds, keep
 from flexstage.solid.fea.jobs.install import require_installed
 from flexstage.solid.fea.jobs.remote import Pool
+from flexstage.solid.fea.meshing.fineness import Fineness, thin_findings
 from flexstage.solid.fea.solver.component import Component, Cut, components
 
 
@@ -52,7 +53,9 @@ def solid_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     shape = with_drawn_parts(mechanism)
     try:
         require_installed()
-        return stage_findings(shape, Cache()) if components(shape) else ()
+        parts = components(shape)
+        thin = tuple(each for part in parts for each in thin_findings(part.pieces, Fineness()))
+        return thin or (stage_findings(shape, Cache()) if parts else ())
     except DesignError:  # without solver, or not a solid by choice
         return ()
 

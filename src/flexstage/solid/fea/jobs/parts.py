@@ -7,11 +7,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import chain
 from types import MappingProxyType
 from typing import Any, TypeAlias, TypeVar
 
-from flexstage.base.finding import Finding, require
+from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
+from flexstage.base.processes.memory import available
 from flexstage.base.processes.progress import Progress, Step, duration
 from flexstage.base.session import SESSION
 from flexstage.solid.fea.jobs.cache import Cache, Notice, find, folder_of, keep, key_of, warn
@@ -20,7 +22,7 @@ from flexstage.solid.fea.jobs.install import require_installed
 from flexstage.solid.fea.jobs.memory import Work
 from flexstage.solid.fea.jobs.reducing import Measure, Reduce, StoredJob
 from flexstage.solid.fea.jobs.remote import Limits, Pool, work_all, workers
-from flexstage.solid.fea.meshing.fineness import Fineness, Hold, Reduction
+from flexstage.solid.fea.meshing.fineness import Fineness, Hold, Reduction, thin_findings
 from flexstage.solid.fea.solver.component import Component, with_yielding_ends
 from flexstage.solid.fea.solver.superelement import Superelement, hold_faces
 
@@ -133,24 +135,31 @@ def obtain(jobs: Sequence[StoredJob], ways: Ways) -> dict[str, Any]:
 
 
 def _compute(missing: Sequence[StoredJob], results: dict[str, Any], ways: Ways, cached: int) -> None:
-    """Compute missing results, the longest first, for an even load of the cores."""
-    measured = sorted(_measure(missing, ways), key=lambda job: -job.seconds())
+    """Compute missing results, the longest first, for an even load of the cores; those of components without a mesh fail last."""
+    measured, failures = _measure(missing, ways)
     ways.note(announce(measured, workers(ways.limits), cached))
     try:
         work_all(measured, partial(_take, results, ways), ways.limits, ways.progress, ways.pool)
+    except DesignError as error:
+        failures += error.findings
     except (KeyboardInterrupt, SystemExit):
         kept = sum(job.key in results for job in measured)
         where = "" if ways.cache is None else f" in {folder_of(ways.cache)}; the same command continues with the others"
         ways.note(f"Interrupted: {kept} of {len(measured)} results are kept{where}.")
         raise
+    require(failures)
 
 
-def _measure(jobs: Sequence[StoredJob], ways: Ways) -> list[StoredJob]:
-    """The jobs, with the measured work of reductions: each component is meshed once. Raises `DesignError` beyond memory or time."""
+def _measure(jobs: Sequence[StoredJob], ways: Ways) -> tuple[list[StoredJob], tuple[Finding, ...]]:
+    """The jobs, with the measured work of reductions, the longest first, and failures: each component is meshed once.
+
+    Those without a mesh are left out. Raises `DesignError` beyond memory or time, or if a part is too thin.
+    """
     alike: dict[tuple[str, Fineness], list[Reduce]] = {}
     for job in jobs:
         if isinstance(job, Reduce):
             alike.setdefault((job.kin, replace(job.reduction.fineness, order=1)), []).append(job)
+    require(chain.from_iterable(thin_findings(same[0].component.pieces, same[0].reduction.fineness) for same in alike.values()))
     known: dict[str, Work] = {}
 
     def take(job: Measure, found: tuple[Work, ...]) -> None:
@@ -160,18 +169,16 @@ def _measure(jobs: Sequence[StoredJob], ways: Ways) -> list[StoredJob]:
         if ways.progress is not None:
             ways.progress(Step(step.text, 0.0, None))
 
-    work_all([Measure(tuple(each)) for each in alike.values()], take, ways.limits, show, ways.pool)
-    measured = [replace(job, measured=known[job.key]) if isinstance(job, Reduce) else job for job in jobs]
-    require(
-        Finding(
-            job.name,
-            f"its reduction {job.phase} takes about {duration(job.seconds())}, {duration(ways.limits.seconds)} are allowed",
-            "Use a lower order (--order 2)",
-        )
-        for job in measured
-        if job.seconds() > ways.limits.seconds
-    )
-    return measured
+    failures: tuple[Finding, ...] = ()
+    try:
+        work_all([Measure(tuple(each)) for each in alike.values()], take, ways.limits, show, ways.pool)
+    except DesignError as error:
+        failures = error.findings
+    able = [job for job in jobs if job.key in known or not isinstance(job, Reduce)]
+    measured = [replace(job, measured=known[job.key]) if isinstance(job, Reduce) else job for job in able]
+    memory = available() if ways.limits.memory is None else ways.limits.memory
+    require(each for job in measured if isinstance(job, Reduce) for each in job.excess(memory, ways.limits.seconds))
+    return sorted(measured, key=lambda job: -job.seconds()), failures
 
 
 def announce(jobs: Sequence[StoredJob], lanes: int, cached: int) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from flexstage.base.finding import Finding
 from flexstage.base.number import Array
+from flexstage.base.processes.progress import duration
 from flexstage.parts.piezo import Piezo
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.piece import Piece, span, thinnest
@@ -148,23 +150,41 @@ class Reduce(ComponentJob):
         more = "or make that part thicker or narrower, or use theory: flexstage analyse"
         return Finding(found.where, f"{found.what}: {ratio}", f"{found.advice}, {more}")
 
-    def mesh(self, call: Call) -> PieceMesh:
-        """Request the memory of the surface, draw, mesh, and request the memory of the mesh."""
+    def excess(self, memory: float, seconds: float) -> Iterator[Finding]:
+        """Reasons why its measured work exceeds a memory [bytes] or a time."""
+        found = self.measured and self.refusal(self.measured.counts, memory)
+        if found:
+            yield found
+        elif self.seconds() > seconds:
+            what = f"its reduction {self.phase} takes about {duration(self.seconds())}, {duration(seconds)} are allowed"
+            yield Finding(self.name, what, "Use a lower order (--order 2)")
+
+    @property
+    def sides(self) -> int:
+        """Mirror images of the meshed side."""
         from flexstage.solid.fea.geometry.cad import mirrors_of
+
+        return mirrors_of(self.component).copies if self._is_plain else 1
+
+    def mesh(self, call: Call) -> tuple[PieceMesh, Counts]:
+        """Draw and mesh; also returns the counts of the mesh."""
         from flexstage.solid.fea.meshing.mesh import mesh_component
 
-        fineness, sides = self.reduction.fineness, mirrors_of(self.component).copies if self._is_plain else 1
-        call.ask(Counts.of(fewest_elements(self.component, fineness) / sides, sides))
+        fineness = self.reduction.fineness
         found = mesh_component(self.component, fineness, call.report, call.attempt, by_symmetry=self._is_plain)
         size = found.mesh
-        call.ask(Counts(size.nv, size.nedge, size.nface, size.ne, sides).enriched(float(np.mean(found.finer)), fineness.order))
-        return found
+        return found, Counts(size.nv, size.nedge, size.nface, size.ne, found.mirrors.copies).enriched(
+            float(np.mean(found.finer)), fineness.order
+        )
 
     def work(self, call: Call) -> Superelement:
-        """Mesh and reduce; returns the stored superelement."""
+        """Request the memory of the surface, mesh, request the memory of the mesh, and reduce; returns the stored superelement."""
         from flexstage.solid.fea.solver.reduce import reduce_mesh
 
-        return reduce_mesh(self.component, self.mesh(call), self.reduction, self.springs, call.report)
+        call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness) / self.sides, self.sides))
+        mesh, counts = self.mesh(call)
+        call.ask(counts)
+        return reduce_mesh(self.component, mesh, self.reduction, self.springs, call.report)
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,14 +205,14 @@ class Measure(Job):
         """That of its reductions."""
         return self.reductions[0].kin
 
-    def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Reason why the first reduction does not fit."""
-        return self.reductions[0].refusal(counts, limit)
-
     def work(self, call: Call) -> tuple[Work, ...]:
         """The work of each reduction, by the elimination order of its unknowns."""
-        from flexstage.solid.fea.solver.field import field
+        return tuple(_measure(each, call) for each in self.reductions)
 
-        mesh, pace = self.reductions[0].mesh(call), measure_pace()
-        spaces = [field(mesh, (), each.reduction.fineness.order) for each in self.reductions]
-        return tuple(Work(space.size, mesh.mirrors.copies * space.fronts.operations, pace) for space in spaces)
+
+def _measure(job: Reduce, call: Call) -> Work:
+    from flexstage.solid.fea.solver.field import field
+
+    mesh, counts = job.mesh(call)
+    space = field(mesh, (), job.reduction.fineness.order)
+    return Work(counts, space.size, counts.sides * space.fronts.operations, measure_pace())

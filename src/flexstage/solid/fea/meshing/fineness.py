@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
 
 from flexstage.base.arguments import CheckedFields
+from flexstage.base.finding import Finding
 from flexstage.parts.section import Rectangle
 from flexstage.parts.shape import Shaped
-from flexstage.solid.fea.geometry.piece import Piece, span, thinnest
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Piece, span, thinnest
 
 ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
 """Variations of the mesh if the mesher fails: factors on all sizes, on the grading and on the segments per radius of curvature."""
@@ -27,6 +29,8 @@ _FLAT = 1.0 / 6.0
 _MIDDLE, _SMOOTH = 0.7, 0.25
 """Size of elements in the middle plane of a notch, where the strain gradient is largest, over that on the faces of other hinges; in thin
 notches over the geometric mean of radius and thickness."""
+_MOST = 3e5
+"""Largest number of elements in one link."""
 WARPS = 12
 """Linear and quadratic motions of an interface face, without rigid ones."""
 
@@ -149,3 +153,24 @@ def middle_size(form: Shaped, neck: float) -> float:
     0.0007
     """
     return _SMOOTH * neck * float(np.sqrt(0.5 * span(form) * thinnest(form))) if is_thin(form) else _MIDDLE * neck * thinnest(form)
+
+
+def thin_findings(pieces: Iterable[Piece], fineness: Fineness) -> Iterator[Finding]:
+    """Links too thin to be meshed over their length and width.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> list(thin_findings(bar().pieces, Fineness()))
+    []
+    """
+    for piece in pieces:
+        form = piece.form
+        if piece.body is not None or not isinstance(form, Shaped):
+            continue
+        size = middle_size(form, fineness.neck) if is_notch(form) and is_thin(form) else element_size(piece, fineness)
+        sides = sorted((span(form), *(float(np.real(side)) for side in (form.end.height, form.end.width))))
+        count = sides[1] * sides[2] / size**2
+        if count > _MOST:
+            over = " x ".join(f"{side * MILLIMETRES:.4g}" for side in (sides[2], sides[1]))
+            what = f"its {thinnest(form) * MILLIMETRES:.3g} mm are too thin to mesh over {over} mm"
+            more = f"that takes some {count:.1g} elements of {size * MILLIMETRES:.3g} mm, {_MOST:.1g} are allowed"
+            yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or use larger elements (Fineness.neck)")

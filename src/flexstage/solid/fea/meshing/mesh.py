@@ -11,7 +11,7 @@ import numpy as np
 from netgen import occ
 from netgen.meshing import MeshingParameters
 
-from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.finding import refuse, require
 from flexstage.base.number import Array
 from flexstage.base.session import SESSION
 from flexstage.parts.shape import Shaped
@@ -20,7 +20,17 @@ from flexstage.solid.fea.geometry.mirror import Mirrors
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, Medium, Piece, coordinates, span, thinnest
 from flexstage.solid.fea.jobs.content import content
 from flexstage.solid.fea.jobs.progress import Report, Stage, silent
-from flexstage.solid.fea.meshing.fineness import ATTEMPTS, Fineness, element_size, is_leaf, is_notch, is_strut, is_thin, middle_size
+from flexstage.solid.fea.meshing.fineness import (
+    ATTEMPTS,
+    Fineness,
+    element_size,
+    is_leaf,
+    is_notch,
+    is_strut,
+    is_thin,
+    middle_size,
+    thin_findings,
+)
 from flexstage.solid.fea.meshing.straighten import straighten
 from flexstage.solid.fea.solver.component import Component
 
@@ -33,7 +43,7 @@ _CORE, _AWAY = 1.0 / 6.0, 0.1
 and its growth with the distance. From the surface alone the mesher would make flat elements, twice as wide."""
 _ROUND = 0.85
 """Size of elements within round necks relative to those of the isolated neck, as its faces are coarser."""
-_BENEATH = ((0.0, 1.5), (1.5, 1.5), (4.0, 3.0))
+_BENEATH = ((0.0, 2.0), (3.0, 4.0))
 """Elements at the root of a thin leaf: depth in the block over the thickness of the leaf, and size over the usual size for it."""
 _FINE = 1.0 / 45.0
 """Smallest such thickness over the width of the leaf: the thinner a leaf, the less its root matters."""
@@ -45,8 +55,6 @@ _HELD = 0.9
 """Share of its length within which a round neck's inside is graded."""
 _PRINT = 1.0 / 3.0
 """Elements under another component's end face over the root of its area, for a neck of one. A small face needs a fine root."""
-_MOST = 3e5
-"""Largest number of elements in one link."""
 _WITHIN = 1e-6
 """Largest distance between a face's centre and the bounding box of its piece [m]."""
 _AT_HAND = 8
@@ -85,7 +93,7 @@ def mesh_component(
     >>> round(ngsolve.Integrate(1, whole.mesh), 6), whole.faces  # mm^3
     (10000.0, ('end', 'foot'))
     """
-    require(_thin_findings(component, fineness))
+    require(thin_findings(component.pieces, fineness))
     report(Stage.DRAWING, 0.0)
     subject = _Subject.of(component, by_symmetry=by_symmetry)
     drawing = _drawing(subject)
@@ -98,19 +106,6 @@ def mesh_component(
             return result
         failure = result
     raise _refuse_mesh(component, failure)
-
-
-def _thin_findings(component: Component, fineness: Fineness) -> Iterator[Finding]:
-    """Links too thin for their length and width to be meshed with elements of their thickness."""
-    for piece in component.pieces:
-        size = element_size(piece, fineness)
-        sides = sorted(2.0 * half_extents(piece))
-        count = sides[1] * sides[2] / size**2
-        if piece.body is None and count > _MOST:
-            over = " x ".join(f"{side * MILLIMETRES:.4g}" for side in (sides[2], sides[1]))
-            what = f"its {thinnest(piece.form) * MILLIMETRES:.3g} mm are too thin to mesh over {over} mm"
-            more = f"that takes some {count:.1g} elements of {size * MILLIMETRES:.3g} mm, {_MOST:.1g} are allowed"
-            yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or use larger elements (Fineness.neck)")
 
 
 @dataclass(frozen=True)
