@@ -230,7 +230,7 @@ def test_a_verification_is_worked_in_one_queue(tmp_path: Path, monkeypatch: pyte
 
     monkeypatch.setattr("flexstage.solid.fea.geometry.sound.contacts_apart", sound)
     monkeypatch.setattr("flexstage.solid.fea.jobs.parts.work_all", work_all)
-    monkeypatch.setattr("flexstage.solid.fea.jobs.parts._measure", lambda jobs, _ways: list(jobs))
+    monkeypatch.setattr("flexstage.solid.fea.jobs.parts._measure", lambda jobs, _ways: (list(jobs), ()))
     ways = Ways(Cache(tmp_path))
     plan = verification_plan(small(), Resolution(), ways)
     with pytest.raises(DesignError, match="was not worked"):
@@ -281,7 +281,7 @@ def test_what_only_a_unit_alone_lacks_is_told_when_its_turn_comes(tmp_path: Path
         raise DesignError((Finding("one", "failed", "Mend it"),))
 
     monkeypatch.setattr("flexstage.solid.fea.jobs.parts.work_all", work_all)
-    monkeypatch.setattr("flexstage.solid.fea.jobs.parts._measure", lambda jobs, _ways: list(jobs))
+    monkeypatch.setattr("flexstage.solid.fea.jobs.parts._measure", lambda jobs, _ways: (list(jobs), ()))
     able = {"unit"}
     with pytest.raises(DesignError, match="failed"), Pool() as pool:
         work_ahead(plan, Ways(Cache(tmp_path), pool=pool))
