@@ -6,6 +6,8 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from flexstage.base.finding import DesignError, Finding
 from flexstage.solid.fea.geometry.piece import form_digest, medium
 from flexstage.solid.fea.hinges.hinge_form import HingeForm, HingeSolid
@@ -16,7 +18,8 @@ from flexstage.solid.fea.jobs.reducing import StoredJob
 from flexstage.solid.fea.jobs.worker import Call
 from flexstage.solid.fea.meshing.estimate import Accuracy
 
-_USUAL_SECONDS = 1.0
+_SECONDS, _PER_WIDTH = 0.3, 0.04
+"""CPU time [s] of a hinge, and for its width over its thickness."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +43,9 @@ class HingeJob(StoredJob):
         return min(self.asked.orders[0] + 1, self.asked.orders[1])
 
     def seconds(self) -> float:
-        """Usual CPU time for a hinge [s]: several solves, more for a higher final order."""
-        return _USUAL_SECONDS * max(1, self.asked.orders[1] - 2)
+        """Usual CPU time for a hinge [s]: several solves, more elements in a wide one."""
+        throat = self.form.part.throat
+        return _SECONDS + _PER_WIDTH * float(np.real(throat.area / throat.thinnest**2))
 
     def summary(self, found: HingeSolid) -> str:
         """The solved hinge in one line."""
