@@ -68,8 +68,8 @@ def announced(lines: list[str]) -> float:
     return sum(float(number) * {"s": 1.0, "minutes": 60.0, "hours": 3600.0}[unit] for number, unit in found)
 
 
-def measure(name: str, order: int) -> bool:
-    """Print the times and ratios of a stage; whether one is beyond the factor."""
+def measure(name: str, order: int) -> int:
+    """Print the times of a stage and their ratios; how many are beyond the factor."""
     lines, begun = list[str](), list[float]()
 
     def note(line: str) -> None:
@@ -80,23 +80,19 @@ def measure(name: str, order: int) -> bool:
     stage = load(Path(name)) if name.endswith(".toml") else case(name)
     with tempfile.TemporaryDirectory() as folder:
         taken, said = told(stage, Resolution(0.01, order or None), Path(folder), note)
-    said_cpu, actual = announced(lines), used() - begun[0]
-    ratio = said_cpu / actual
-    print(
-        f"{name}, order {order or 'by error'}: CPU time {said_cpu:.0f} s announced, {actual:.0f} s used: {ratio:.2f}; {taken:.0f} s in all"
-    )
-    ratios = {}
-    for instant in INSTANTS:
-        at, left = min(said, key=lambda each: abs(each[0] - instant * taken))
-        ratios[instant] = left / (taken - at)
-    print("  time left, told over actual: " + ", ".join(f"{instant:.0%} {each:.2f}" for instant, each in ratios.items()), flush=True)
-    return not all(1.0 / FACTOR <= each <= FACTOR for each in (ratio, *(each for at, each in ratios.items() if at >= FROM)))
+    planned, actual = announced(lines), used() - begun[0]
+    print(f"{name}: CPU time {planned:.0f} s announced, {actual:.0f} s used: {planned / actual:.2f}; {taken:.0f} s in all")
+    near = [min(said, key=lambda each: abs(each[0] - instant * taken)) for instant in INSTANTS]
+    ratios = [left / (taken - at) for at, left in near]
+    print("  time left, told over actual:", *(f"{each:.2f}" for each in ratios), flush=True)
+    late = [ratio for instant, ratio in zip(INSTANTS, ratios, strict=True) if instant >= FROM]
+    return sum(not 1.0 / FACTOR <= ratio <= FACTOR for ratio in (planned / actual, *late))
 
 
 def main(order: str = "2", *names: str) -> int:
     """Print the ratios of stages; how many are beyond the factor."""
-    missed = sum([measure(name, int(order)) for name in names or ("parallelogram",)])
-    print(f"{missed} of {len(names) or 1} beyond a factor of {FACTOR:g}")
+    missed = sum(measure(name, int(order)) for name in names or ("parallelogram",))
+    print(f"{missed} ratios beyond a factor of {FACTOR:g}")
     return missed
 
 
