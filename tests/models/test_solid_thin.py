@@ -22,9 +22,9 @@ from flexstage.parts.notch import Notch
 from flexstage.parts.profile import Circular
 from flexstage.solid.fea.geometry.cad import mirrors_of
 from flexstage.solid.fea.jobs.cache import Cache
-from flexstage.solid.fea.jobs.memory import Counts, Work
+from flexstage.solid.fea.jobs.memory import Counts, ReductionWork
 from flexstage.solid.fea.jobs.parts import Ways, obtain, reduce_jobs
-from flexstage.solid.fea.jobs.reducing import Measure, Reduce, fewest_elements
+from flexstage.solid.fea.jobs.reducing import MeasureWork, Reduce, fewest_elements
 from flexstage.solid.fea.jobs.remote import Limits, workers
 from flexstage.solid.fea.jobs.worker import Call
 from flexstage.solid.fea.meshing.fineness import Fineness, Reduction, element_size, is_thin
@@ -134,7 +134,7 @@ def test_the_work_is_counted_from_the_mesh() -> None:
     """Unknowns and factor operations are those of the reduction; a dense front of n unknowns takes n^3 / 3."""
     (component,) = components(arm(leaf(20.0, 0.5, 10.0)))
     jobs = [Reduce(f"{order}", component, Reduction(Fineness(order=order), modes=0)) for order in (2, 3)]
-    second, third = Measure(tuple(jobs)).work(Call())
+    second, third = MeasureWork(tuple(jobs)).work(Call())
     assert third.freedoms == jobs[1].work(Call()).freedoms
     assert second.freedoms < third.freedoms < 4.0 * second.freedoms
     assert replace(jobs[1], measured=third).seconds() == third.seconds(jobs[1].columns) > second.seconds(jobs[0].columns)
@@ -165,7 +165,7 @@ def test_a_thin_leaf_is_cut_across_its_width_only() -> None:
 
 def test_thin_and_thick_parts_take_similar_work() -> None:
     thick, thin = (
-        Measure((Reduce("", components(arm(part))[0], Reduction()),)).work(Call())[0] for part in (leaf(20, 1, 10), leaf(20, 0.1, 10))
+        MeasureWork((Reduce("", components(arm(part))[0], Reduction()),)).work(Call())[0] for part in (leaf(20, 1, 10), leaf(20, 0.1, 10))
     )
     assert thin.freedoms < 4.0 * thick.freedoms
 
@@ -183,7 +183,7 @@ def test_work_beyond_memory_or_time_is_refused_before_it_begins(monkeypatch: pyt
         obtain(jobs, Ways(None, limits=Limits(memory=0.8e9)))
     assert "0.1 mm thick and 10 mm wide, 1 to 100" in str(beyond_memory.value)
     assert "Use order 2" in str(beyond_memory.value)
-    long = Work(Counts.of(1.0), 1e8, 1e14)
+    long = ReductionWork(Counts.of(1.0), 1e8, 1e14)
     monkeypatch.setattr("flexstage.solid.fea.jobs.parts.work_all", lambda todo, done, *_: done(todo[0], (long,)))
     with pytest.raises(DesignError, match=r"takes about .* hours, 60 minutes are allowed\. Use a lower order"):
         obtain(jobs, Ways(None))
@@ -194,7 +194,7 @@ def test_an_interrupted_run_reports_what_it_keeps(tmp_path: Path, monkeypatch: p
     jobs, lines, asked = reduce_jobs(components(propped(6e-3, 7e-3)), COARSE), [], []
 
     def work_all(todo: list[Reduce], done: Callable[[Reduce, Superelement], None], *_: object) -> None:
-        if isinstance(todo[0], Measure):
+        if isinstance(todo[0], MeasureWork):
             return
         asked.append(len(todo))
         done(todo[0], EMPTY)

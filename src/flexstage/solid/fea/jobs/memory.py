@@ -112,7 +112,7 @@ def needed(counts: Counts, order: int, columns: int) -> float:
 
 
 @dataclass(frozen=True)
-class Work:
+class ReductionWork:
     """Work of a reduction, counted from its mesh: counts, unknowns, operations of its factors, and the pace of the machine.
 
     `pace` is the time of a small factorisation over its usual time.
@@ -126,7 +126,7 @@ class Work:
     def seconds(self, columns: int) -> float:
         """Usual CPU time [s] to factorise, solve and project for a number of coordinates.
 
-        >>> round(Work(Counts.of(5000.0), 126_711, 3.1e10).seconds(90))
+        >>> round(ReductionWork(Counts.of(5000.0), 126_711, 3.1e10).seconds(90))
         11
         """
         assembled = _PER_ASSEMBLED * self.counts.elements * self.counts.sides + _PER_JOB

@@ -19,8 +19,8 @@ from flexstage.base.session import SESSION
 from flexstage.solid.fea.jobs.cache import Cache, Notice, find, folder_of, keep, key_of, warn
 from flexstage.solid.fea.jobs.content import KEPT, content
 from flexstage.solid.fea.jobs.install import require_installed
-from flexstage.solid.fea.jobs.memory import Work
-from flexstage.solid.fea.jobs.reducing import Measure, Reduce, StoredJob
+from flexstage.solid.fea.jobs.memory import ReductionWork
+from flexstage.solid.fea.jobs.reducing import MeasureWork, Reduce, StoredJob
 from flexstage.solid.fea.jobs.remote import Limits, Pool, work_all, workers
 from flexstage.solid.fea.meshing.fineness import Fineness, Hold, Reduction, thin_findings
 from flexstage.solid.fea.solver.component import Component, with_yielding_ends
@@ -160,9 +160,9 @@ def _measure(jobs: Sequence[StoredJob], ways: Ways) -> tuple[list[StoredJob], tu
         if isinstance(job, Reduce):
             alike.setdefault((job.kin, replace(job.reduction.fineness, order=1)), []).append(job)
     require(chain.from_iterable(thin_findings(same[0].component.pieces, same[0].reduction.fineness) for same in alike.values()))
-    known: dict[str, Work] = {}
+    known: dict[str, ReductionWork] = {}
 
-    def take(job: Measure, found: tuple[Work, ...]) -> None:
+    def take(job: MeasureWork, found: tuple[ReductionWork, ...]) -> None:
         known.update({each.key: work for each, work in zip(job.reductions, found, strict=True)})
 
     def show(step: Step) -> None:
@@ -171,7 +171,7 @@ def _measure(jobs: Sequence[StoredJob], ways: Ways) -> tuple[list[StoredJob], tu
 
     failures: tuple[Finding, ...] = ()
     try:
-        work_all([Measure(tuple(each)) for each in alike.values()], take, ways.limits, show, ways.pool)
+        work_all([MeasureWork(tuple(each)) for each in alike.values()], take, ways.limits, show, ways.pool)
     except DesignError as error:
         failures = error.findings
     able = [job for job in jobs if job.key in known or not isinstance(job, Reduce)]

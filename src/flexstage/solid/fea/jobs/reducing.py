@@ -16,7 +16,7 @@ from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.piece import Piece, span, thinnest
 from flexstage.solid.fea.jobs.cache import SUPERELEMENTS, Kind
 from flexstage.solid.fea.jobs.content import content
-from flexstage.solid.fea.jobs.memory import Counts, Work, measure_pace, needed, refusal
+from flexstage.solid.fea.jobs.memory import Counts, ReductionWork, measure_pace, needed, refusal
 from flexstage.solid.fea.jobs.worker import Call, Job
 from flexstage.solid.fea.meshing.fineness import ATTEMPTS, WARPS, Fineness, Hold, Reduction, element_size, is_leaf, is_notch
 from flexstage.solid.fea.solver.component import Component
@@ -101,7 +101,7 @@ class Reduce(ComponentJob):
 
     reduction: Reduction
     springs: Array | None = None
-    measured: Work | None = None
+    measured: ReductionWork | None = None
 
     @property
     def phase(self) -> str:
@@ -188,7 +188,7 @@ class Reduce(ComponentJob):
 
 
 @dataclass(frozen=True, eq=False)
-class Measure(Job):
+class MeasureWork(Job):
     """Reductions of one component to mesh, so that their work is known before it begins; the process keeps the mesh for them."""
 
     reductions: tuple[Reduce, ...]
@@ -205,14 +205,14 @@ class Measure(Job):
         """That of its reductions."""
         return self.reductions[0].kin
 
-    def work(self, call: Call) -> tuple[Work, ...]:
+    def work(self, call: Call) -> tuple[ReductionWork, ...]:
         """The work of each reduction, by the elimination order of its unknowns."""
         return tuple(_measure(each, call) for each in self.reductions)
 
 
-def _measure(job: Reduce, call: Call) -> Work:
+def _measure(job: Reduce, call: Call) -> ReductionWork:
     from flexstage.solid.fea.solver.field import field
 
     mesh, counts = job.mesh(call)
     space = field(mesh, (), job.reduction.fineness.order)
-    return Work(counts, space.size, counts.sides * space.fronts.operations, measure_pace())
+    return ReductionWork(counts, space.size, counts.sides * space.fronts.operations, measure_pace())
