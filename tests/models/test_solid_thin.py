@@ -106,11 +106,11 @@ def test_a_thin_wide_leaf_is_a_plate(thickness: float) -> None:
 
 
 def test_flat_elements_agree_with_small_ones() -> None:
-    """Within 0.4 %, with a fifth of the elements."""
+    """Within 0.5 %, with a fifth of the elements."""
     component = alone(leaf(8.0, 0.2, 8.0))
-    flat, small = (mesh_component(component, Fineness(neck=neck, order=3)) for neck in (1.5, 0.4))
+    flat, small = (mesh_component(component, Fineness(neck=neck, order=3)) for neck in (1.5, 0.3))
     assert 5 * flat.mesh.ne < small.mesh.ne
-    np.testing.assert_allclose(np.diag(compliance(component, flat, 3)), np.diag(compliance(component, small, 2)), rtol=4e-3)
+    np.testing.assert_allclose(np.diag(compliance(component, flat, 3)), np.diag(compliance(component, small, 2)), rtol=5e-3)
 
 
 @pytest.mark.parametrize(
@@ -148,7 +148,7 @@ def test_only_thin_wide_flexures_have_flat_elements() -> None:
         (component,) = components(arm(part))
         assert is_thin(part) == thin
         sizes = [element_size(piece, Fineness()) / MM for piece in component.pieces if piece.body is None]
-        assert sizes == pytest.approx([4.5 if thin else 0.75])
+        assert sizes == pytest.approx([6.0 if thin else 0.75])
         assert mesh_component(component, Fineness(order=2)).finer.any() == thin
 
 

@@ -24,7 +24,7 @@ _STRUT = 0.4
 """Share for straight necks: elements as wide as thick, at low cost."""
 THIN = 35.0
 """A leaf or notch with width and length beyond this multiple of its thickness is thin: flat elements, of one order more."""
-_FLAT = 1.0 / 6.0
+_FLAT = 2.0 / 9.0
 """Size of elements in thin parts over the smaller of width and length: strains vary slowly along the faces."""
 _MIDDLE, _SMOOTH = 0.7, 0.25
 """Size of elements in the middle plane of a notch, where the strain gradient is largest, over that on the faces of other hinges; in thin

@@ -43,7 +43,7 @@ _CORE, _AWAY = 1.0 / 6.0, 0.1
 and its growth with the distance. From the surface alone the mesher would make flat elements, twice as wide."""
 _ROUND = 0.85
 """Size of elements within round necks relative to those of the isolated neck, as its faces are coarser."""
-_BENEATH = ((0.0, 2.0), (3.0, 4.0))
+_BENEATH = ((0.0, 2.5), (3.0, 4.0))
 """Elements at the root of a thin leaf: depth in the block over the thickness of the leaf, and size over the usual size for it."""
 _FINE = 1.0 / 45.0
 """Smallest such thickness over the width of the leaf: the thinner a leaf, the less its root matters."""
