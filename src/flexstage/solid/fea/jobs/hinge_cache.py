@@ -18,8 +18,8 @@ from flexstage.solid.fea.jobs.reducing import StoredJob
 from flexstage.solid.fea.jobs.worker import Call
 from flexstage.solid.fea.meshing.estimate import Accuracy
 
-_SECONDS, _PER_WIDTH = 0.3, 0.04
-"""CPU time [s] of a hinge, and for its width over its thickness."""
+_SECONDS, _PER_WIDTH, _WIDEST = 0.3, 0.04, 50.0
+"""CPU time [s] of a hinge, and for its width over its thickness up to this one: elements of wider ones are flat."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +45,7 @@ class HingeJob(StoredJob):
     def seconds(self) -> float:
         """Usual CPU time for a hinge [s]: several solves, more elements in a wide one."""
         throat = self.form.part.throat
-        return _SECONDS + _PER_WIDTH * float(np.real(throat.area / throat.thinnest**2))
+        return _SECONDS + _PER_WIDTH * min(float(np.real(throat.area / throat.thinnest**2)), _WIDEST)
 
     def summary(self, found: HingeSolid) -> str:
         """The solved hinge in one line."""
