@@ -268,3 +268,23 @@ def test_the_bar_is_silent_without_a_terminal(capfd: Any) -> None:
     with progress_bar() as shown:
         shown.step(Step("lever: meshing", 0.5, 70.0))
     assert capfd.readouterr() == ("", "")
+
+
+def test_a_step_that_finite_elements_refuse_is_named_by_check(command: Command, tmp_path: Path) -> None:
+    """A step of 32 um: the finding of `verify`, as a warning of `check`."""
+    notch = fs.Notch("al", 1e-3, 10e-3, fs.Circular(3e-3))
+    solids = {
+        "arm": fs.Block("al", (0.04, 0.01, 0.01), (0.023, 0.0, 0.0)),
+        "step": fs.Block("al", (0.02, 0.010064, 0.01), (0.03, 0.0, 0.0)),
+    }
+    link = fs.Link(("ground", "platform"), "hinge", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    material = fs.Material(young=71.7e9, poisson=0.33, density=2810.0)
+    fs.dump(
+        fs.Mechanism("rim", {"al": material}, {"hinge": notch}, {"platform": fs.Body(solids=solids)}, {"hinge": link}),
+        tmp_path / "rim.toml",
+    )
+    (finding,) = [line.removeprefix("error: ") for line in command("verify", "rim.toml").err.splitlines() if line.startswith("error: ")]
+    ended = command("check", "rim.toml")
+    assert ended.code == 0
+    assert "an edge 32 um long is left" in finding
+    assert f"warning: finite elements: {finding}" in ended.err

@@ -17,13 +17,13 @@ CEILINGS = {
     "models": 97_900,
     "analysis": 70_800,
     "show": 63_700,
-    "solid": 75_700,
+    "solid": 76_600,
     "experiment": 98_800,
     "control": 154_000,
     "studies": 68_400,
     "apps": 39_300,
     ".": 400,
-    "all": 821_200,
+    "all": 822_200,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

@@ -169,7 +169,7 @@ def stiffness_with(parts: dict[str, float], way: Reduction) -> float:
     [({"lever": 0.3, "foot": 1.6, "plate": 0.1}, {"foot"}), ({"lever": 0.3, "foot": 0.8, "plate": 0.9}, {"foot", "plate"})],
 )
 def test_the_order_rises_where_the_error_is(errors: dict[str, float], raised: set[str]) -> None:
-    """Order four for the component that takes most for its unknowns; the error told is the change from an order less in every one."""
+    """Order four for the component that takes most for its unknowns; the error is the change from an order less in every one."""
     asked: list[Reduction] = []
 
     def work(way: Reduction) -> float:
@@ -230,6 +230,7 @@ def test_a_verification_is_worked_in_one_queue(tmp_path: Path, monkeypatch: pyte
 
     monkeypatch.setattr("flexstage.solid.fea.geometry.sound.contacts_apart", sound)
     monkeypatch.setattr("flexstage.solid.fea.jobs.parts.work_all", work_all)
+    monkeypatch.setattr("flexstage.solid.fea.jobs.parts._measure", lambda jobs, _ways: (list(jobs), ()))
     ways = Ways(Cache(tmp_path))
     plan = verification_plan(small(), Resolution(), ways)
     with pytest.raises(DesignError, match="was not worked"):
@@ -246,7 +247,7 @@ def test_a_solid_is_worked_in_one_queue_too(tmp_path: Path) -> None:
     """Both orders of every component; `bare` ones are others, without modes, but give the same figures at rest."""
     stage, ways = propped(6e-3, 7e-3), Ways(Cache(tmp_path))
     whole, bare = (reduction_plan([stage], Resolution(order=2), ways, bare=bare) for bare in (False, True))
-    assert list(whole.phases) == list(bare.phases) == ["order 1", "order 2"]
+    assert {job.phase for job in whole.jobs} == {job.phase for job in bare.jobs} == {"at order 1", "at order 2"}
     assert {job.reduction.modes for job in bare.jobs if isinstance(job, Reduce)} == {0}
     assert whole.needed == {job.key for job in whole.jobs}
     assert not whole.needed & bare.needed
@@ -259,7 +260,7 @@ def test_in_python_too_unless_it_is_told_how(monkeypatch: pytest.MonkeyPatch) ->
         pools.append(ways.pool)
         raise DesignError((Finding("left", "was not worked", "Work it"),))
 
-    monkeypatch.setattr("flexstage.solid.results.verification.verification_plan", lambda *_: Plan({}, lanes=1))
+    monkeypatch.setattr("flexstage.solid.results.verification.verification_plan", lambda *_: Plan(()))
     monkeypatch.setattr("flexstage.solid.results.verification.work_ahead", work_ahead)
     with pytest.raises(DesignError, match="was not worked"):
         fs.solid.verify(small())
@@ -271,7 +272,7 @@ def test_in_python_too_unless_it_is_told_how(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_what_only_a_unit_alone_lacks_is_told_when_its_turn_comes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first, second = (replace(job, key=key) for key, job in zip(("stage", "unit"), reduce_jobs(components(small()), OF_SMALL), strict=False))
-    plan = Plan({"order 3": (first, second)}, lanes=1, needed=frozenset({"stage"}))
+    plan = Plan((first, second), needed=frozenset({"stage"}))
 
     def work_all(jobs: list[Reduce], done: Callable[[Reduce, Superelement], None], *_: object) -> None:
         for job in jobs:
@@ -280,6 +281,7 @@ def test_what_only_a_unit_alone_lacks_is_told_when_its_turn_comes(tmp_path: Path
         raise DesignError((Finding("one", "failed", "Mend it"),))
 
     monkeypatch.setattr("flexstage.solid.fea.jobs.parts.work_all", work_all)
+    monkeypatch.setattr("flexstage.solid.fea.jobs.parts._measure", lambda jobs, _ways: (list(jobs), ()))
     able = {"unit"}
     with pytest.raises(DesignError, match="failed"), Pool() as pool:
         work_ahead(plan, Ways(Cache(tmp_path), pool=pool))

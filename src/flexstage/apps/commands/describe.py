@@ -19,6 +19,7 @@ from flexstage.base.version import __version__
 from flexstage.cases.registry import shipped_case
 from flexstage.control.hysteresis.stack import hysteresis_schema
 from flexstage.control.study.file import setup_schema
+from flexstage.mechanism.geometry.contact import contact_findings
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads, shipped_catalogue
 from flexstage.mechanism.store import schema as design_schema
@@ -28,7 +29,7 @@ from flexstage.show.command.answer import list_caveats, show
 from flexstage.show.command.design import change, open_design
 from flexstage.show.command.options import Changes, Design, Json, output_option, text_option
 from flexstage.show.command.output import STDOUT, announce, require_writable, write
-from flexstage.show.command.terminal import print_result
+from flexstage.show.command.terminal import print_result, print_warning
 from flexstage.show.document import FORMAT, check_document
 from flexstage.show.figures.drawing import drawing, format_of
 from flexstage.show.listing import case_table, catalogue_body, catalogue_tables, find_section, parameter_table
@@ -36,6 +37,7 @@ from flexstage.show.plan import plan_figure
 from flexstage.show.tables.description import composition_table
 from flexstage.show.tables.overview import count_text, floating_line
 from flexstage.show.viewer.data import still_data
+from flexstage.solid.fea.geometry.sound import solid_findings
 from flexstage.studies.form import study_schema
 from flexstage.studies.synthesis.specification import specification_schema
 
@@ -97,7 +99,7 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
     Prints every error with key, value and hint. Exit code 2 if there is an error.
 
-    Also lists warnings and default values. Neither changes the exit code.
+    Also lists warnings, those of finite elements included, and default values. Neither changes the exit code.
     """
     require_writable([("--json", json)], [design])
     try:
@@ -116,7 +118,10 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
 def _tell_sound(design: Path, mechanism: Mechanism) -> None:
     show((composition_table(mechanism), floating_line(drawn(mechanism)), *list_caveats("check", mechanism)))
-    count = len(combine_warnings(caveats(mechanism).warnings))
+    solid = () if contact_findings(mechanism) else solid_findings(mechanism)
+    for finding in solid:
+        print_warning(f"finite elements: {finding}")
+    count = len(combine_warnings(caveats(mechanism).warnings)) + len(solid)
     counted = f", {count_text(count, 'warning')}" if count else ""
     print_result(f"{design}: no errors{counted}.")
 

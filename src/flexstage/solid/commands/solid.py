@@ -36,7 +36,7 @@ from flexstage.show.table import Table
 from flexstage.show.tables.modes import mode_table
 from flexstage.show.tables.statics import direction_table, principal_table, stiffness_table
 from flexstage.solid.fea.jobs.cache import Cache
-from flexstage.solid.fea.jobs.parts import Ways
+from flexstage.solid.fea.jobs.parts import Ways, announce
 from flexstage.solid.fea.jobs.remote import Limits, Pool
 from flexstage.solid.results import calibration, verification
 from flexstage.solid.results.hinges import SolidHinge, hinges, solid_hinges
@@ -107,7 +107,7 @@ class SolidOptions:
 
     def ways(self, shown: ProgressBar, pool: Pool | None = None) -> Ways:
         """Options of the jobs: the cache of the user, with progress. Raises `DesignError` for an invalid size of memory."""
-        return Ways(Cache(), shown.step, Limits(memory=_size(self.memory)), pool, print_warning)
+        return Ways(Cache(), shown.step, Limits(memory=_size(self.memory)), pool, print_warning, print_note)
 
 
 @dataclass(frozen=True)
@@ -190,10 +190,12 @@ def verify(
 def _verify(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> verification.Verification:
     """The verification; prints its cost before the computation, and each verdict after it."""
     todo = verification_plan(mechanism, resolution, ways)
-    print_note(str(todo))
+    missing = todo.missing(ways.cache)
+    if not missing:
+        print_note(announce((), 1, len(todo.jobs)))
     work_ahead(todo, ways)
     return verification.verify(
-        mechanism, resolution, solids(ways), hinges(resolution.accuracy, resolution.order, ways), _print_verdicts if todo.jobs else None
+        mechanism, resolution, solids(ways), hinges(resolution.accuracy, resolution.order, ways), _print_verdicts if missing else None
     )
 
 
@@ -248,7 +250,7 @@ def _hinge_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> _R
 def _unit_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> _Result:
     alone = units_alone(mechanism)
     todo = reduction_plan(alone, resolution, ways)
-    bare = bool(todo.jobs)
+    bare = bool(todo.missing(ways.cache))
     work_ahead(reduction_plan(alone, resolution, ways, bare=True) if bare else todo, ways)
     found = verification.units_solid(mechanism, resolution, solids(ways), bare=bare)
 

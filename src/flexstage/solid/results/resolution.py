@@ -42,8 +42,8 @@ DEFAULT = Resolution()
 class Converged(Generic[_Result]):
     """A result with the estimated relative error of each of its figures. An estimate, no bound; absent figures are unknown.
 
-    It is the change from the previous order, at order two a quarter of it, and unknown for the `unestimated` figures, which changed by more
-    than half. `stopped` states why the order was not raised further without the required accuracy; `raised` is the number of
+    It is the change from the previous order, at order two a quarter of it, and unknown for the `unestimated` figures, which changed
+    by more than half. `stopped` states why the order was not raised further without the required accuracy; `raised` is the number of
     components with elements of one order more.
     """
 

@@ -17,6 +17,7 @@ from flexstage.solid.fea.geometry.draw import draw_form, move_solid
 from flexstage.solid.fea.geometry.mirror import MIRRORS, Mirrors, cut_at_mirrors, is_symmetric
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Medium, Piece, coordinates, is_mirrored
 from flexstage.solid.fea.jobs.content import KEPT
+from flexstage.solid.fea.meshing.fineness import is_thin
 from flexstage.solid.fea.solver.component import Component, Interface, Joint, groups
 
 _TOLERANCE = 1e-3
@@ -81,9 +82,10 @@ def cut_component(component: Component, drawing: Cad) -> Cad:
 def mirrors_of(component: Component) -> Mirrors:
     """The planes across y and z about which a component of one medium is symmetric and can be cut.
 
-    Every joint, link and body must be its own mirror image. Leaves are not cut: their flat elements would become flatter, or fewer across
-    the leaf, with larger error estimates. Stacks, rods, cylinders, spheres and round holes are not cut either, except plates. Their
-    curvature sets the size of elements, and the mesher divides arcs less finely than circles, which would reduce their mass.
+    Every joint, link and body must be its own mirror image. Leaves are not cut, except thin ones across their width: their flat elements
+    would become flatter, or fewer across the leaf, with larger error estimates. Stacks, rods, cylinders, spheres and round holes are
+    not cut either, except plates. Their curvature sets the size of elements, and the mesher divides arcs less finely than circles,
+    which would reduce their mass.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> mirrors_of(bar())
@@ -98,7 +100,7 @@ def _is_mirrored(component: Component, axis: int) -> bool:
     joints = [*(item.joint for item in component.interfaces), *component.fixed]
     links = [piece for piece in component.pieces if piece.body is None]
     frames = [*(joint.frame for joint in joints), *(piece.frame for piece in links)]
-    slender = any(isinstance(piece.form, Shaped) and piece.form.slender for piece in links)
+    slender = any(isinstance(piece.form, Shaped) and piece.form.slender and not _is_cut_across_width(piece, axis) for piece in links)
     return (
         not (slender or any(_is_round(piece.form) for piece in component.pieces))
         and is_mirrored(component.pieces[0].medium, axis)
@@ -106,6 +108,11 @@ def _is_mirrored(component: Component, axis: int) -> bool:
         and all(np.max(np.abs(frame.rotation[axis, 1:])) > _ALONG for frame in frames)
         and all(is_symmetric(solids, axis) for solids in _solids(component))
     )
+
+
+def _is_cut_across_width(piece: Piece, axis: int) -> bool:
+    """Whether it is a thin leaf with its width along an axis of the component."""
+    return is_thin(piece.form) and abs(float(piece.frame.rotation[axis, 2])) > _ALONG
 
 
 def _is_round(form: Form) -> bool:

@@ -7,11 +7,14 @@ from collections.abc import Sequence
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.storage.digest import digest
+from flexstage.mechanism.drawn import with_drawn_parts
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.parts.body import Imported
 from flexstage.solid.fea.jobs.apart import contacts_apart
 from flexstage.solid.fea.jobs.cache import SOUND, Cache, holds, keep
+from flexstage.solid.fea.jobs.install import require_installed
 from flexstage.solid.fea.jobs.remote import Pool
+from flexstage.solid.fea.meshing.fineness import Fineness, thin_findings
 from flexstage.solid.fea.solver.component import Component, Cut, components
 
 
@@ -39,6 +42,22 @@ def stage_findings(mechanism: Mechanism, cache: Cache | None, pool: Pool | None 
     if cache is not None and not known:
         _remember(mechanism, cache, found)
     return found
+
+
+def solid_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
+    """Errors that prevent finite elements of a stage with outlines; none without the solver, or without a solid.
+
+    >>> solid_findings(Mechanism("nothing"))
+    ()
+    """
+    shape = with_drawn_parts(mechanism)
+    try:
+        require_installed()
+        parts = components(shape)
+        thin = tuple(each for part in parts for each in thin_findings(part.pieces, Fineness()))
+        return thin or (stage_findings(shape, Cache()) if parts else ())
+    except DesignError:  # without solver, or not a solid by choice
+        return ()
 
 
 def check_together(mechanisms: Sequence[Mechanism], cache: Cache | None, pool: Pool | None = None) -> None:

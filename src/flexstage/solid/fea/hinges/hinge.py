@@ -33,7 +33,7 @@ from flexstage.solid.fea.jobs.memory import Counts
 from flexstage.solid.fea.jobs.progress import Stage
 from flexstage.solid.fea.jobs.worker import Call
 from flexstage.solid.fea.meshing.estimate import Accuracy, change, remaining
-from flexstage.solid.fea.meshing.fineness import Fineness
+from flexstage.solid.fea.meshing.fineness import Fineness, is_thin
 from flexstage.solid.fea.meshing.mesh import PieceMesh, core_points, generate_mesh, restrict_sizes
 from flexstage.solid.fea.solver.field import Field, apply_form, factorise, field, rigid, stiffness, times
 from flexstage.spatial.frame import identity, transport
@@ -45,8 +45,8 @@ _BLUNT = 5e-4
 """Relative change of the compliance at the hinge's end by blunted wedges of arcs at rigid faces: twice the largest observed."""
 _NECK = Fineness().neck
 """Elements within round necks are as in a stage."""
-_TELLING = 3
-"""Lowest order whose change from the previous one is a sufficient error estimate."""
+_TELLING, _TELLING_THIN = 3, 4
+"""Lowest order whose change from the previous one is a sufficient error estimate; flat elements of order two lock."""
 _COARSER = 1.3
 """Factor on the element size if the usual elements are too many."""
 _ATTEMPTS = (
@@ -216,7 +216,8 @@ def _solves(subject: _Subject, accuracy: Accuracy, call: Call) -> Iterator[_Solv
         call.report(Stage.MESHING, 0.0)
         cut = _mesh(subject, accuracy.shrink**refinement, highest)
         if refinement == 0:
-            if cut.mirrors.copies * _space(subject, cut, min(max(lowest, _TELLING), highest)).size > accuracy.freedoms:
+            telling = max(lowest, _TELLING_THIN if is_thin(subject.part) else _TELLING)
+            if cut.mirrors.copies * _space(subject, cut, min(telling, highest)).size > accuracy.freedoms:
                 lowest, cut = 2, _mesh(subject, _COARSER, highest)
             mesh = cut.mesh
             call.ask(Counts(mesh.nv, mesh.nedge, mesh.nface, mesh.ne))

@@ -22,6 +22,7 @@ from flexstage.solid.fea.geometry.contour import contour_edges, segments
 from flexstage.solid.fea.geometry.mirror import Mirrors, cut_at_mirrors, is_symmetric
 from flexstage.solid.fea.geometry.piece import MILLIMETRES, millimetres
 from flexstage.solid.fea.hinges.roots import rises
+from flexstage.solid.fea.meshing.fineness import THIN
 
 START, END = "start", "end"
 """Names of the specimen's two outer faces, towards -x and +x."""
@@ -35,6 +36,8 @@ _LONG = 1.5
 """Elements of a rod over its diameter."""
 _FLAT, _FLAT_STRAIGHT = 1.0 / 12.0, 1.0 / 3.0
 """Smallest element over the smaller of width and length of a wide hinge: with arcs, and a leaf."""
+_SMOOTH = 0.5
+"""Largest element of a thin hinge, over the root of length times half the thickness: strains vary over this length."""
 _SEAT = 5.0
 """Size of a block beyond a hinge that does not rise to it, sideways and in depth, over the hinge's `grain`."""
 _SEAT_SIZE = 2.0
@@ -249,7 +252,9 @@ def _ellipse(side: _Side, sign: float) -> _Curve:
 
 def _wide(side: _Side, width: float, size: float) -> Specimen:
     """Elements of a wide thin hinge may be flat: sufficient at high order, and cubes would be too many."""
-    return _name_faces(_extrude(side, width), side, max(2.0 * side.rise, _FLAT * min(width, 2.0 * side.half)), size)
+    short = min(width, 2.0 * side.half)
+    flat = _FLAT * short if short <= 2.0 * THIN * side.rise else min(_FLAT * short, _SMOOTH * float(np.sqrt(2.0 * side.half * side.rise)))
+    return _name_faces(_extrude(side, width), side, max(2.0 * side.rise, flat), size)
 
 
 def _name_faces(solid: occ.TopoDS_Shape, side: _Side, thin: float, size: float) -> Specimen:

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import chain
 from types import MappingProxyType
 from typing import Any, TypeAlias, TypeVar
 
+from flexstage.base.finding import DesignError, Finding, require
 from flexstage.base.number import Array
-from flexstage.base.processes.progress import Progress
+from flexstage.base.processes.memory import available
+from flexstage.base.processes.progress import Progress, Step, duration
 from flexstage.base.session import SESSION
-from flexstage.solid.fea.jobs.cache import Cache, Notice, find, keep, key_of, warn
+from flexstage.solid.fea.jobs.cache import Cache, Notice, find, folder_of, keep, key_of, warn
 from flexstage.solid.fea.jobs.content import KEPT, content
 from flexstage.solid.fea.jobs.install import require_installed
-from flexstage.solid.fea.jobs.reducing import Reduce, StoredJob
-from flexstage.solid.fea.jobs.remote import Limits, Pool, work_all
-from flexstage.solid.fea.meshing.fineness import Hold, Reduction
+from flexstage.solid.fea.jobs.memory import ReductionWork
+from flexstage.solid.fea.jobs.reducing import MeasureWork, Reduce, StoredJob
+from flexstage.solid.fea.jobs.remote import Limits, Pool, work_all, workers
+from flexstage.solid.fea.meshing.fineness import Fineness, Hold, Reduction, thin_findings
 from flexstage.solid.fea.solver.component import Component, with_yielding_ends
 from flexstage.solid.fea.solver.superelement import Superelement, hold_faces
 
@@ -32,7 +38,8 @@ _NO_SPRINGS: Mapping[str, Array] = MappingProxyType({})
 class Ways:
     """Options of the jobs: the `cache` (`None`: none), the receiver of `progress` and of notices, and the `limits`.
 
-    With a `pool`, processes and results remain for later calls.
+    With a `pool`, processes and results remain for later calls. `note` receives lines of text: the work and its CPU time before it begins,
+    every result, and after an interruption the kept results.
     """
 
     cache: Cache | None = Cache()
@@ -40,6 +47,7 @@ class Ways:
     limits: Limits = Limits()
     pool: Pool | None = field(default=None, compare=False)
     notice: Notice = field(default=warn, compare=False)
+    note: Callable[[str], None] = field(default=lambda _line: None, compare=False)
 
 
 def reduce_parts(
@@ -107,6 +115,8 @@ def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Sup
 def obtain(jobs: Sequence[StoredJob], ways: Ways) -> dict[str, Any]:
     """Results of jobs by key, from the cache, else computed, each once and stored immediately.
 
+    The work of the missing ones is measured on their meshes and reported first. Raises `DesignError` if one exceeds memory or time.
+
     >>> obtain((), Ways())
     {}
     """
@@ -119,9 +129,71 @@ def obtain(jobs: Sequence[StoredJob], ways: Ways) -> dict[str, Any]:
     missing = [job for job in todo if job.key not in results]
     if missing:
         require_installed()  # the processes load it
-        missing.sort(key=lambda job: -job.seconds())  # the longest first, for an even load of the cores
-        work_all(missing, partial(_take, results, ways), ways.limits, ways.progress, ways.pool)
+        with nullcontext(ways.pool) if ways.pool is not None else Pool() as pool:
+            _compute(missing, results, replace(ways, pool=pool), len(todo) - len(missing))
     return {job.key: results[job.key] for job in jobs}
+
+
+def _compute(missing: Sequence[StoredJob], results: dict[str, Any], ways: Ways, cached: int) -> None:
+    """Compute missing results, the longest first, for an even load of the cores; those of components without a mesh fail last."""
+    measured, failures = _measure(missing, ways)
+    ways.note(announce(measured, workers(ways.limits), cached))
+    try:
+        work_all(measured, partial(_take, results, ways), ways.limits, ways.progress, ways.pool)
+    except DesignError as error:
+        failures += error.findings
+    except (KeyboardInterrupt, SystemExit):
+        kept = sum(job.key in results for job in measured)
+        where = "" if ways.cache is None else f" in {folder_of(ways.cache)}; the same command continues with the others"
+        ways.note(f"Interrupted: {kept} of {len(measured)} results are kept{where}.")
+        raise
+    require(failures)
+
+
+def _measure(jobs: Sequence[StoredJob], ways: Ways) -> tuple[list[StoredJob], tuple[Finding, ...]]:
+    """The jobs, with the measured work of reductions, the longest first, and failures: each component is meshed once.
+
+    Those without a mesh are left out. Raises `DesignError` beyond memory or time, or if a part is too thin.
+    """
+    alike: dict[tuple[str, Fineness], list[Reduce]] = {}
+    for job in jobs:
+        if isinstance(job, Reduce):
+            alike.setdefault((job.kin, replace(job.reduction.fineness, order=1)), []).append(job)
+    require(chain.from_iterable(thin_findings(same[0].component.pieces, same[0].reduction.fineness) for same in alike.values()))
+    known: dict[str, ReductionWork] = {}
+
+    def take(job: MeasureWork, found: tuple[ReductionWork, ...]) -> None:
+        known.update({each.key: work for each, work in zip(job.reductions, found, strict=True)})
+
+    def show(step: Step) -> None:
+        if ways.progress is not None:
+            ways.progress(Step(step.text, 0.0, None))
+
+    failures: tuple[Finding, ...] = ()
+    try:
+        work_all([MeasureWork(tuple(each)) for each in alike.values()], take, ways.limits, show, ways.pool)
+    except DesignError as error:
+        failures = error.findings
+    able = [job for job in jobs if job.key in known or not isinstance(job, Reduce)]
+    measured = [replace(job, measured=known[job.key]) if isinstance(job, Reduce) else job for job in able]
+    memory = available() if ways.limits.memory is None else ways.limits.memory
+    require(each for job in measured if isinstance(job, Reduce) for each in job.excess(memory, ways.limits.seconds))
+    return sorted(measured, key=lambda job: -job.seconds()), failures
+
+
+def announce(jobs: Sequence[StoredJob], lanes: int, cached: int) -> str:
+    """The work of jobs in a line: their number, the unknowns of the largest, and the CPU time in all.
+
+    >>> announce((), lanes=2, cached=3)
+    'to do: nothing, all 3 parts are in the cache.'
+    """
+    if not jobs:
+        return f"to do: nothing, all {cached} parts are in the cache."
+    work = ", ".join(f"{number} {phase}" for phase, number in Counter(job.phase for job in sorted(jobs, key=lambda job: job.phase)).items())
+    unknowns = max((job.measured.freedoms for job in jobs if isinstance(job, Reduce) and job.measured is not None), default=0)
+    sizes = f"up to {unknowns:,} unknowns, " if unknowns else ""
+    known = f" {cached} are in the cache." if cached else ""
+    return f"to do: {work} ({sizes}{lanes} at once), about {duration(sum(job.seconds() for job in jobs))} of CPU time.{known}"
 
 
 def distinct(jobs: Iterable[AnyStored]) -> tuple[AnyStored, ...]:
@@ -133,7 +205,8 @@ def distinct(jobs: Iterable[AnyStored]) -> tuple[AnyStored, ...]:
 
 
 def _take(results: dict[str, Any], ways: Ways, job: StoredJob, found: Any) -> None:
-    """Take a result of a worker, and store it."""
+    """Take a result of a worker, store it, and report it."""
     results[job.key] = found
     if ways.cache is not None:
         keep(ways.cache, job.key, job.name, found, job.stored, notice=ways.notice)
+    ways.note(job.summary(found))

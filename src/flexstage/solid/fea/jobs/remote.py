@@ -26,7 +26,6 @@ from flexstage.solid.fea.jobs.worker import Job, work
 _MOST_WORKERS = 2
 _PAUSE = 0.02
 _TELL_EVERY = 0.5
-_MESHED = frozenset(Stage) - {Stage.STARTING, Stage.DRAWING, Stage.MESHING}
 
 
 @dataclass(frozen=True)
@@ -278,8 +277,7 @@ class _Run(Generic[AnyJob]):
             self.progress(Step(text, self.fraction, seconds_left(self.fraction, now - self.begun)))
 
     def _fraction_done(self) -> float:
-        """Completed fraction of the time of all jobs, by their usual durations; updated for those with a mesh."""
-        self.planned |= {child.job.mark: child.job.seconds(child.counts) for child in self.children if child.stage in _MESHED}
+        """Completed fraction of the time of all jobs, by their usual durations."""
         done = sum(self.planned[mark] for mark in self.finished)
         done += sum(self.planned[child.job.mark] * fraction_done(child.stage, child.fraction) for child in self.children)
         return done / sum(self.planned.values())

@@ -55,8 +55,8 @@ class Job(ABC):
         """Property shared with jobs that a process does faster after a similar one; empty if irrelevant."""
         return ""
 
-    def seconds(self, _counts: Counts | None = None) -> float:
-        """Usual duration on one core [s], before or after meshing."""
+    def seconds(self) -> float:
+        """Usual CPU time [s]."""
         return USUAL_SECONDS
 
     @abstractmethod

@@ -1,19 +1,36 @@
-"""Options of a solid model: fineness and order of the mesh, and number of modes in each component. Loads no solver."""
+"""Options of a solid model: fineness and order of the mesh, element sizes, and number of modes in each component. Loads no solver."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 
+import numpy as np
+
 from flexstage.base.arguments import CheckedFields
+from flexstage.base.finding import Finding
+from flexstage.parts.section import Rectangle
+from flexstage.parts.shape import Shaped
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Piece, span, thinnest
 
 ATTEMPTS = ((1.0, 1.0, 1.0), (1.0, 0.7, 1.0), (0.8, 1.0, 1.0), (1.0, 1.0, 1.4), (0.85, 0.6, 1.0), (0.7, 0.7, 1.4), (0.5, 0.8, 1.0))
 """Variations of the mesh if the mesher fails: factors on all sizes, on the grading and on the segments per radius of curvature."""
 
 
-NOTCH_MIDDLE, NOTCH_REACH = 0.7, 1.6
-"""Element size in the middle plane of a notch over that on the faces of other hinges, and its extent on both sides, in geometric
-means of radius and thickness. The strain gradient is largest there."""
+_NOTCH = 5.0 / 3.0
+"""Size of elements in notches, of one order more, relative to those on the faces of other hinges."""
+_STRUT = 0.4
+"""Share for straight necks: elements as wide as thick, at low cost."""
+THIN = 35.0
+"""A leaf or notch with width and length beyond this multiple of its thickness is thin: flat elements, of one order more."""
+_FLAT = 2.0 / 9.0
+"""Size of elements in thin parts over the smaller of width and length: strains vary slowly along the faces."""
+_MIDDLE, _SMOOTH = 0.7, 0.25
+"""Size of elements in the middle plane of a notch, where the strain gradient is largest, over that on the faces of other hinges; in thin
+notches over the geometric mean of radius and thickness."""
+_MOST = 3e5
+"""Largest number of elements in one link."""
 WARPS = 12
 """Linear and quadratic motions of an interface face, without rigid ones."""
 
@@ -65,3 +82,95 @@ class Reduction(CheckedFields):
         more = content in self.raised
         modes, finer = 0 if more and self.static else self.modes, replace(self.fineness, order=self.fineness.order + more)
         return replace(self, fineness=finer, modes=modes, raised=frozenset(), static=False)
+
+
+def is_leaf(form: object) -> bool:
+    """Whether a form is a leaf: of rectangular section, thin along its whole length.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> is_leaf(Leaf("steel", 0.01, 1e-3, 5e-3))
+    True
+    """
+    return isinstance(form, Shaped) and form.slender and not form.bends_both_ways and isinstance(form.throat, Rectangle)
+
+
+def is_notch(form: object) -> bool:
+    """Whether a form is a hinge with arcs across a width: its strain varies smoothly across and along it.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> is_notch(Leaf("steel", 0.01, 1e-3, 5e-3))
+    False
+    """
+    return isinstance(form, Shaped) and form.has_arc and not (form.is_axisymmetric or form.slender)
+
+
+def is_thin(form: object) -> bool:
+    """Whether a form is a leaf or notch wider and longer than 35 times its thickness: only these have flat elements.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> [is_thin(Leaf("steel", 0.04, 1e-3, width)) for width in (0.03, 0.04)]
+    [False, True]
+    """
+    return (is_leaf(form) or is_notch(form)) and isinstance(form, Shaped) and _short(form) > THIN * thinnest(form)
+
+
+def _short(form: Shaped) -> float:
+    """The smaller of width and length [m]."""
+    return min(float(np.real(form.throat.width)), span(form))
+
+
+def is_strut(form: object) -> bool:
+    """Whether a form is a neck of one section, which ends on blocks wider than itself.
+
+    >>> from flexstage.parts.leaf import Leaf
+    >>> is_strut(Leaf("steel", 0.01, 1e-3, 5e-3))
+    False
+    """
+    return isinstance(form, Shaped) and form.is_prismatic and not form.slender and form.bends_both_ways
+
+
+def element_size(piece: Piece, fineness: Fineness) -> float:
+    """Size of elements [m] on the faces of a piece.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> round(element_size(bar().pieces[0], Fineness(block=1.5)), 9)
+    0.015
+    """
+    form = piece.form
+    if piece.body is not None:
+        return fineness.block * thinnest(form)
+    if isinstance(form, Shaped) and is_thin(form):
+        return fineness.neck * _FLAT * _short(form)
+    return (_STRUT if is_strut(form) else _NOTCH if is_notch(form) else 1.0) * fineness.neck * thinnest(form)
+
+
+def middle_size(form: Shaped, neck: float) -> float:
+    """Size of elements [m] around the thinnest line of a notch.
+
+    >>> from flexstage.parts.notch import Notch
+    >>> from flexstage.parts.profile import Circular
+    >>> middle_size(Notch("steel", 1e-3, 1e-2, Circular(1e-3)), 1.0)
+    0.0007
+    """
+    return _SMOOTH * neck * float(np.sqrt(0.5 * span(form) * thinnest(form))) if is_thin(form) else _MIDDLE * neck * thinnest(form)
+
+
+def thin_findings(pieces: Iterable[Piece], fineness: Fineness) -> Iterator[Finding]:
+    """Links too thin to be meshed over their length and width.
+
+    >>> from flexstage.solid.fea.meshing.bar import bar
+    >>> list(thin_findings(bar().pieces, Fineness()))
+    []
+    """
+    for piece in pieces:
+        form = piece.form
+        if piece.body is not None or not isinstance(form, Shaped):
+            continue
+        size = middle_size(form, fineness.neck) if is_notch(form) and is_thin(form) else element_size(piece, fineness)
+        sides = sorted((span(form), *(float(np.real(side)) for side in (form.end.height, form.end.width))))
+        count = sides[1] * sides[2] / size**2
+        if count > _MOST:
+            over = " x ".join(f"{side * MILLIMETRES:.4g}" for side in (sides[2], sides[1]))
+            what = f"its {thinnest(form) * MILLIMETRES:.3g} mm are too thin to mesh over {over} mm"
+            more = f"that takes some {count:.1g} elements of {size * MILLIMETRES:.3g} mm, {_MOST:.1g} are allowed"
+            yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or use larger elements (Fineness.neck)")

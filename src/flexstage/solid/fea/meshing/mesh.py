@@ -11,16 +11,26 @@ import numpy as np
 from netgen import occ
 from netgen.meshing import MeshingParameters
 
-from flexstage.base.finding import Finding, refuse, require
+from flexstage.base.finding import refuse, require
 from flexstage.base.number import Array
 from flexstage.base.session import SESSION
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.geometry.cad import Cad, cad, cut_component, half_extents, region
 from flexstage.solid.fea.geometry.mirror import Mirrors
-from flexstage.solid.fea.geometry.piece import MILLIMETRES, Form, Medium, Piece, coordinates, span, thinnest
+from flexstage.solid.fea.geometry.piece import MILLIMETRES, Medium, Piece, coordinates, span, thinnest
 from flexstage.solid.fea.jobs.content import content
 from flexstage.solid.fea.jobs.progress import Report, Stage, silent
-from flexstage.solid.fea.meshing.fineness import ATTEMPTS, NOTCH_MIDDLE, NOTCH_REACH, Fineness
+from flexstage.solid.fea.meshing.fineness import (
+    ATTEMPTS,
+    Fineness,
+    element_size,
+    is_leaf,
+    is_notch,
+    is_strut,
+    is_thin,
+    middle_size,
+    thin_findings,
+)
 from flexstage.solid.fea.meshing.straighten import straighten
 from flexstage.solid.fea.solver.component import Component
 
@@ -33,18 +43,18 @@ _CORE, _AWAY = 1.0 / 6.0, 0.1
 and its growth with the distance. From the surface alone the mesher would make flat elements, twice as wide."""
 _ROUND = 0.85
 """Size of elements within round necks relative to those of the isolated neck, as its faces are coarser."""
-_NOTCH = 5.0 / 3.0
-"""Size of elements in notches, of one order more, relative to those on the faces of other hinges."""
-_SLENDER = 0.4
-"""Share for straight necks: elements as wide as thick, at low cost."""
+_BENEATH = ((0.0, 2.5), (3.0, 4.0))
+"""Elements at the root of a thin leaf: depth in the block over the thickness of the leaf, and size over the usual size for it."""
+_FINE = 1.0 / 45.0
+"""Smallest such thickness over the width of the leaf: the thinner a leaf, the less its root matters."""
 _ROOT = 2.0 / 15.0
 """Size of elements around the ends of straight necks relative to the usual: the block deforms most at the edge there."""
+_REACH = 1.6
+"""Extent of the fine middle plane of a notch on both sides, in geometric means of radius and thickness."""
 _HELD = 0.9
 """Share of its length within which a round neck's inside is graded."""
 _PRINT = 1.0 / 3.0
 """Elements under another component's end face over the root of its area, for a neck of one. A small face needs a fine root."""
-_MOST = 3e5
-"""Largest number of elements in one link."""
 _WITHIN = 1e-6
 """Largest distance between a face's centre and the bounding box of its piece [m]."""
 _AT_HAND = 8
@@ -83,7 +93,7 @@ def mesh_component(
     >>> round(ngsolve.Integrate(1, whole.mesh), 6), whole.faces  # mm^3
     (10000.0, ('end', 'foot'))
     """
-    require(_thin_findings(component, fineness))
+    require(thin_findings(component.pieces, fineness))
     report(Stage.DRAWING, 0.0)
     subject = _Subject.of(component, by_symmetry=by_symmetry)
     drawing = _drawing(subject)
@@ -96,19 +106,6 @@ def mesh_component(
             return result
         failure = result
     raise _refuse_mesh(component, failure)
-
-
-def _thin_findings(component: Component, fineness: Fineness) -> Iterator[Finding]:
-    """Links too thin for their length and width to be meshed with elements of their thickness."""
-    for piece in component.pieces:
-        size = _size(piece, fineness) / MILLIMETRES
-        sides = sorted(2.0 * half_extents(piece))
-        count = sides[1] * sides[2] / size**2
-        if piece.body is None and count > _MOST:
-            over = " x ".join(f"{side * MILLIMETRES:.4g}" for side in (sides[2], sides[1]))
-            what = f"its {thinnest(piece.form) * MILLIMETRES:.3g} mm are too thin to mesh over {over} mm"
-            more = f"that takes some {count:.1g} elements of {size * MILLIMETRES:.3g} mm, {_MOST:.1g} are allowed"
-            yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or use larger elements (Fineness.neck)")
 
 
 @dataclass(frozen=True)
@@ -178,14 +175,9 @@ def _finish(pieces: tuple[Piece, ...], drawing: Cad, mesh: ngsolve.Mesh) -> Piec
         if piece.body is None:
             within = np.abs((places - piece.frame.position) @ piece.frame.rotation[:, 0]) < _NECK * half_extents(piece)[0]
             necks |= within & (owner == number)
-    finer = np.isin(owner, [number for number, piece in enumerate(pieces) if _is_notch(piece.form)])
+    finer = np.isin(owner, [number for number, piece in enumerate(pieces) if is_notch(piece.form) or is_thin(piece.form)])
     images = tuple(owners(pieces, places * signs) for signs in drawing.mirrors.images)
     return straighten(mesh, necks) or PieceMesh(mesh, drawing.media, drawing.faces, owner, finer, drawing.mirrors, images)
-
-
-def _is_notch(form: Form) -> bool:
-    """Whether it is a hinge with arcs across a width: its strain varies smoothly across and along it."""
-    return isinstance(form, Shaped) and form.has_arc and not (form.is_axisymmetric or form.slender)
 
 
 def _refine_necks(pieces: tuple[Piece, ...], neck: float, mirrors: Mirrors) -> MeshingParameters:
@@ -213,11 +205,15 @@ def restrict_sizes(places: Iterable[tuple[Array, float]]) -> MeshingParameters:
 
 def _fine_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
     """Points (n, 3) of a hinge, in its frame, and the size of elements there [m]."""
-    if _is_strut(form):
+    if is_strut(form):
         size = _ROOT * neck * thinnest(form)
         yield _root_points(form, size), size
-    if _is_notch(form):
-        size = NOTCH_MIDDLE * neck * thinnest(form)
+    if is_leaf(form) and is_thin(form):
+        grain = max(thinnest(form), _FINE * float(np.real(form.throat.width)))
+        for depth, growth in _BENEATH:
+            yield _root_points(form, growth * neck * grain, depth * grain), growth * neck * grain
+    if is_notch(form):
+        size = middle_size(form, neck)
         yield _middle_points(form, size), size
     yield from core_points(form, _ROUND * neck)
 
@@ -225,7 +221,7 @@ def _fine_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
 def _middle_points(form: Shaped, size: float) -> Array:
     """Points (n, 3) in the middle plane of a notch around its thinnest line, in its frame [m]."""
     thickness, width = (float(np.real(value)) for value in (form.throat.height, form.throat.width))
-    reach = NOTCH_REACH * np.sqrt(0.5 * span(form) * thickness)
+    reach = _REACH * np.sqrt(0.5 * span(form) * thickness)
     along, across = (np.linspace(-half, half, 1 + int(np.ceil(2.0 * half / size))) for half in (reach, 0.5 * width))
     return np.array([(x, 0.0, z) for x in along for z in across])
 
@@ -254,21 +250,21 @@ def core_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
         place += 0.5 * own
 
 
-def _root_points(form: Shaped, size: float) -> Array:
-    """Points (n, 3) along the edges of both end faces of a hinge, in its frame [m]."""
+def _root_points(form: Shaped, size: float, depth: float = 0.0) -> Array:
+    """Points (n, 3) along the edges of both end faces of a hinge, or at a depth behind them, in its frame [m]."""
     half, high, wide = (0.5 * float(np.real(value)) for value in (form.span, form.end.height, form.end.width))
     along = np.linspace(-1.0, 1.0, 1 + int(np.ceil(2.0 * max(high, wide) / size)))
     one = np.ones_like(along)
     edges = [(along, one), (along, -one), (one, along), (-one, along)]
     if form.is_axisymmetric:
         edges = [(np.cos(np.pi * along), np.sin(np.pi * along))]
-    across = np.hstack(edges)
-    return np.vstack([np.stack([np.full_like(across[0], end), high * across[0], wide * across[1]], axis=1) for end in (-half, half)])
+    across, ends = np.hstack(edges), (-half - depth, half + depth)
+    return np.vstack([np.stack([np.full_like(across[0], end), high * across[0], wide * across[1]], axis=1) for end in ends])
 
 
 def _set_sizes(component: Component, drawing: Cad, fineness: Fineness, shrink: float) -> float:
     """Set the faces' mesh sizes; return the largest size anywhere [mm]."""
-    sizes = [shrink * _size(piece, fineness) for piece in component.pieces]
+    sizes = [shrink * (element_size(piece, fineness) * MILLIMETRES) for piece in component.pieces]
     scale = _PRINT * fineness.neck * shrink * MILLIMETRES
     prints = {item.joint.name: scale * item.joint.area**0.5 for item in component.interfaces if item.footprint}
     for face in drawing.shape.faces:
@@ -298,19 +294,6 @@ def _thicker(piece: Piece, centre: Array) -> float:
     stations, sections = zip(*piece.form.silhouette, strict=True)
     place = float(((centre - piece.frame.position) @ piece.frame.rotation)[0, 0])
     return float(np.interp(place, stations, [section.thinnest for section in sections])) / thinnest(piece.form)
-
-
-def _size(piece: Piece, fineness: Fineness) -> float:
-    if piece.body is not None:
-        return fineness.block * thinnest(piece.form) * MILLIMETRES
-    slender = isinstance(piece.form, Shaped) and _is_strut(piece.form)
-    factor = _SLENDER if slender else _NOTCH if _is_notch(piece.form) else 1.0
-    return factor * fineness.neck * thinnest(piece.form) * MILLIMETRES
-
-
-def _is_strut(form: Shaped) -> bool:
-    """Whether it is a neck of one section, which ends on blocks wider than itself."""
-    return form.is_prismatic and not form.slender and form.bends_both_ways
 
 
 def _refuse_mesh(component: Component, reason: str) -> Exception:
