@@ -59,6 +59,8 @@ tolerance = { copies = 64, requirements = false }
 scatter.wire = { address = "leaf.thickness", normal = "4 um" }
 optimise = { maximise = "f", starts = 1 }
 """
+PAIRS = ".pairs"
+"""Folder of the results that `design` keeps to resume."""
 SPECIFICATION = """format = "flexstage specification 1"
 name = "focus"
 motion.x = "20 um"
@@ -101,7 +103,11 @@ SCENES = (
     ),
     Scene("loop compare", "loop stage.toml --floor VC-D --compare --report l.html --json l.json", "l.html l.json"),
     Scene("loop example", "loop stage.toml --example l.toml", "l.toml"),
-    Scene("design", "design spec.toml -o . --report g.html --json g.json", f"{FOUND}.toml {FOUND}.study.toml g.html g.json"),
+    Scene(
+        "design",
+        "design spec.toml --architecture guide -o . --report g.html --json g.json",
+        f"{FOUND}.toml {FOUND}.study.toml {FOUND}.tolerance.toml g.html g.json",
+    ),
     Scene("sweep", "sweep study.toml -o s.h5 --workers 2 --report s.html", "s.h5 s.html", "--resume", fresh=True),
     Scene("optimise", "optimise study.toml -o o.toml --json o.json", "o.toml o.json"),
     Scene("front", "optimise front.toml --report o.html --json o.json", "o.html o.json"),
@@ -168,7 +174,7 @@ def prepared(folder: Path, scenes: Sequence[Scene]) -> dict[str, dict[str, bytes
         ended(folder, scene.words)
         made[scene.name] = {each: (folder / each).read_bytes() for each in scene.targets.split()}
         for each in set(folder.iterdir()) - read:
-            each.unlink()
+            shutil.rmtree(each) if each.is_dir() else each.unlink()
     return made
 
 
@@ -234,7 +240,7 @@ def kill(scene: Scene, workshop: Path, made: dict[str, bytes], chance: random.Ra
     code = os.waitstatus_to_exitcode(os.waitpid(begun(folder, words, mark, cache), 0)[1])
     wrong += [f"the next run ends with {code}"] if code else []
     wrong += [f"{name} is not there after the next run" for name in made if not _sound(folder / name, None, made[name], there=True)]
-    wrong += [f"{each.name} is left" for each in folder.iterdir() if each.name not in inputs and each.name not in made]
+    wrong += [f"{each.name} is left" for each in folder.iterdir() if each.name not in {*inputs, *made, PAIRS}]
     wrong += [f"{each.relative_to(workshop)} is left" for each in (workshop / ("cold" if scene.cold else "cache")).rglob("*.part")]
     left_over = (each for each in (folder / "temporary").iterdir() if each.is_dir() or each.read_bytes() not in {b"", PROBE})
     return wrong + [f"temporary/{each.name} is left" for each in left_over], killed

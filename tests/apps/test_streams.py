@@ -145,7 +145,7 @@ def test_signals_end_a_command_with_all_it_started(tmp_path: Path, number: signa
         assert process.poll() is None
         time.sleep(0.1)  # to look at all processes takes time itself
     process.send_signal(number)
-    _, told = process.communicate(timeout=60)
+    _, told = process.communicate(timeout=600)
     assert process.returncode == 128 + number, told
     assert "Ended by a signal" in told
     assert psutil.wait_procs(children, timeout=10)[1] == []

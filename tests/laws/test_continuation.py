@@ -131,7 +131,7 @@ def test_the_critical_load_is_the_first_event_of_small_steps_whatever_the_size_o
 
 @pytest.mark.parametrize("seed", [3, *(pytest.param(each, marks=pytest.mark.full) for each in (2, *range(6, 40)))])
 def test_units_change_no_critical_load(seed: int):
-    """Lengths by 1.6, the modulus by 0.37: loads by 0.37 * 1.6^2."""
+    """Lengths by 1.6, the modulus by 0.37: loads by 0.37 * 1.6^2, within the 1e-6 of an event's place; NaN in both or none."""
     drawn = random_legs(seed)
     length, stiff = 1.6, 0.37
     part = drawn.parts["leg"]
@@ -141,7 +141,7 @@ def test_units_change_no_critical_load(seed: int):
     steel = replace(STEEL, young=stiff * 200e9)
     scaled = replace(drawn, materials={"steel": steel}, parts={"leg": replace(part, **sizes)}, links=links)
     one, other = (factors(nonlinear(each), np.array([1.0]))[0] for each in (drawn, scaled))
-    assert other == pytest.approx(stiff * length**2 * one, rel=1e-7)
+    assert other == pytest.approx(stiff * length**2 * one, rel=1e-6, nan_ok=True)
 
 
 def halved(drawn: Mechanism) -> Mechanism:

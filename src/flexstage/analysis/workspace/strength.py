@@ -214,7 +214,7 @@ def _rows(links: list[PlacedLink], wrenches: Array, points: Array) -> list[_Row]
         first = links[members[0]]
         own = np.moveaxis(wrenches[..., members, :], -2, 0)
         peaks = _stress(_real(first.part), first, np.real(own))[1]
-        where = np.argmax(peaks, axis=1)[:, None]
+        where = index_of_largest(np.moveaxis(peaks, 1, -1))[:, None]
         worst = np.take_along_axis(np.broadcast_to(own, (*peaks.shape, 6)), where[..., None], axis=1)
         nominal, peak = _stress(first.part, first, worst)  # complex-step derivatives are needed only at the worst corner
         for place, index in enumerate(members):

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from flexstage.base.finding import refuse
 from flexstage.base.number import Array
 from flexstage.beams.mass import law_and_mass
-from flexstage.mechanism.addresses.address import get, set_value
+from flexstage.mechanism.addresses.address import get, quantity_of, set_value
 from flexstage.mechanism.addresses.locate import Place, locate
 from flexstage.mechanism.addresses.path import MATRICES, replace_member
 from flexstage.mechanism.assembly.expand import expand, lay_out
@@ -52,11 +54,20 @@ def family(mechanism: Mechanism, addresses: tuple[str, ...]) -> Family:
     >>> family(double_triangle(), ("parts.neck.thickness",)).nominal.round(6).tolist()
     [0.00154]
     """
-    nominal = np.array([get(mechanism, address) for address in addresses])
+    nominal = np.array([_number(mechanism, address) for address in addresses])
     plain = replace(mechanism, requirements={})
     for address, value in zip(addresses, nominal, strict=True):
         plain = set_value(plain, address, float(value))
     return _family(plain, addresses, nominal)
+
+
+def _number(mechanism: Mechanism, address: str) -> Any:
+    """The number at an address; refuses vectors, and what is not a number."""
+    quantity_of(mechanism, address)
+    value = get(mechanism, address)
+    if np.ndim(value):
+        raise refuse(address, "it has several components", "Use the address of one of them")
+    return value
 
 
 def drawn_family(draw: Draw, names: tuple[str, ...], nominal: Array) -> Family:

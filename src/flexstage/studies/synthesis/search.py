@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Annotated
 
 from flexstage.analysis.assessment.judge import required_values
@@ -14,6 +12,7 @@ from flexstage.analysis.assessment.requirements import Sense, requirement, requi
 from flexstage.analysis.caveats import check
 from flexstage.base.finding import DesignError, refuse
 from flexstage.base.record import INNER, Heading
+from flexstage.base.storage.store import temporary_folder
 from flexstage.base.units.quantity import FREQUENCY, RATIO
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.mechanism.store import loads
@@ -200,9 +199,9 @@ def _estimated(answer: Answer, spec: Specification, pair: CandidatePair, verify:
 
 def manufacturing_yield(answer: Answer) -> float | None:
     """Return the yield of an answer, from its tolerance study."""
-    with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / DESIGN).write_text(answer.design, encoding="utf-8")
-        found = tolerance(loads_tolerance(answer.scatter, folder=Path(folder)), how=Run(workers=1))
+    with temporary_folder() as folder:
+        (folder / DESIGN).write_text(answer.design, encoding="utf-8")
+        found = tolerance(loads_tolerance(answer.scatter, folder=folder), how=Run(workers=1))
     together = found.summary.together
     return None if together is None else together.share
 
@@ -257,10 +256,10 @@ def front(
 
 
 def _study(spec: Specification, pair: CandidatePair, goals: Sequence[tuple[str, str]], replaced: Mapping[str, str | None]) -> Study:
-    with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / DESIGN).write_text(draw(pair.architecture, spec, pair.actuator, replaced), encoding="utf-8")
+    with temporary_folder() as folder:
+        (folder / DESIGN).write_text(draw(pair.architecture, spec, pair.actuator, replaced), encoding="utf-8")
         text = study_text(pair.architecture, spec, pair.actuator, goals)
-        return loads_study(text, where=f"{folder}/study.toml", folder=Path(folder))
+        return loads_study(text, where=f"{folder}/study.toml", folder=folder)
 
 
 def _failed(spec: Specification, pair: CandidatePair, found: Optimum, corrected: Mapping[str, str]) -> FailedPair:
