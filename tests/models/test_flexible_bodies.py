@@ -250,7 +250,7 @@ def random_outline(seed: int) -> Mechanism:
 
 
 SLENDER = pytest.param(
-    20, marks=[pytest.mark.full, pytest.mark.xfail(reason="a bar of 6 mm by 119 mm: 35 % about z, not 63 %", strict=True)]
+    20, marks=[pytest.mark.full, pytest.mark.xfail(reason="a slender bar: 35 % about z, not 63 %", strict=True)]
 )
 
 
