@@ -249,9 +249,7 @@ def random_outline(seed: int) -> Mechanism:
     )
 
 
-SLENDER = pytest.param(
-    20, marks=[pytest.mark.full, pytest.mark.xfail(reason="a slender bar: 35 % about z, not 63 %", strict=True)]
-)
+SLENDER = pytest.param(20, marks=[pytest.mark.full, pytest.mark.xfail(reason="a slender bar: 35 % about z, not 63 %", strict=True)])
 
 
 @pytest.mark.parametrize("seed", [0, *(SLENDER if each == 20 else pytest.param(each, marks=pytest.mark.full) for each in range(1, 50))])
