@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,8 @@ from flexstage.spatial.frame import COMPONENTS
 SIGNIFICANT = 0.05
 """Relative change of a stiffness or frequency above which the assumption of rigid bodies is doubtful."""
 _FREQUENCIES = 6
+_EQUAL = 1e-6
+"""Relative difference of equal effects."""
 
 
 @dataclass(frozen=True)
@@ -59,8 +61,15 @@ def body_effects(mechanism: Mechanism, model: LinearModel, kinematics: Kinematic
         for group in groups
     }
     return tuple(
-        BodyEffect(name, value, flexible[name], min(alone, key=lambda body, name=name: alone[body][name])) for name, value in rigid.items()
+        BodyEffect(name, value, flexible[name], _softest({body: each[name] for body, each in alone.items()}, value))
+        for name, value in rigid.items()
     )
+
+
+def _softest(values: Mapping[str, float], rigid: float) -> str:
+    """Bodies whose flexibility alone gives the least value; several where symmetry makes their effects equal."""
+    least = min(values.values())
+    return ", ".join(body for body, value in values.items() if value - least <= _EQUAL * (rigid - least))
 
 
 def _quantities(model: LinearModel, kinematics: Kinematics | None) -> dict[str, float]:
@@ -81,7 +90,7 @@ def body_findings(effects: Sequence[BodyEffect]) -> Iterator[Finding]:
 
     It names the two quantities that change most.
     """
-    large = sorted((each for each in effects if abs(each.change) > SIGNIFICANT), key=lambda each: -abs(each.change))
+    large = sorted((each for each in effects if abs(each.change) > SIGNIFICANT), key=lambda each: -round(abs(each.change), 6))
     for body in dict.fromkeys(each.body for each in large):
         worst = [each for each in large if each.body == body][:2]
         values = " and ".join(f"{each.quantity} by {100.0 * each.change:.0f} %" for each in worst)
