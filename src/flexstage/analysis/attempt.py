@@ -1,4 +1,4 @@
-"""Collection of results, some of which may fail with an error."""
+"""Collection of results; single ones may fail with an error."""
 
 from __future__ import annotations
 

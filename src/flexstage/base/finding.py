@@ -60,7 +60,7 @@ class DesignError(ValueError):
 
 
 class LowerBoundError(DesignError):
-    """Error for a quantity of which only a lower `bound` is known."""
+    """Error for a quantity with a known lower `bound` only."""
 
     def __init__(self, findings: Iterable[Finding], bound: float) -> None:
         super().__init__(findings)

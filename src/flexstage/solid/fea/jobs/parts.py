@@ -137,6 +137,7 @@ def obtain(jobs: Sequence[StoredJob], ways: Ways) -> dict[str, Any]:
 def _compute(missing: Sequence[StoredJob], results: dict[str, Any], ways: Ways, cached: int) -> None:
     """Compute missing results, the longest first, for an even load of the cores; those of components without a mesh fail last."""
     measured, failures = _measure(missing, ways)
+    measured.sort(key=lambda job: -job.seconds())
     ways.note(announce(measured, workers(ways.limits), cached))
     try:
         work_all(measured, partial(_take, results, ways), ways.limits, ways.progress, ways.pool)
@@ -151,7 +152,7 @@ def _compute(missing: Sequence[StoredJob], results: dict[str, Any], ways: Ways, 
 
 
 def _measure(jobs: Sequence[StoredJob], ways: Ways) -> tuple[list[StoredJob], tuple[Finding, ...]]:
-    """The jobs, with the measured work of reductions, the longest first, and failures: each component is meshed once.
+    """The jobs, with the measured work of reductions, and failures: each component is meshed once.
 
     Those without a mesh are left out. Raises `DesignError` beyond memory or time, or if a part is too thin.
     """
@@ -178,7 +179,7 @@ def _measure(jobs: Sequence[StoredJob], ways: Ways) -> tuple[list[StoredJob], tu
     measured = [replace(job, measured=known[job.key]) if isinstance(job, Reduce) else job for job in able]
     memory = available() if ways.limits.memory is None else ways.limits.memory
     require(each for job in measured if isinstance(job, Reduce) for each in job.excess(memory, ways.limits.seconds))
-    return sorted(measured, key=lambda job: -job.seconds()), failures
+    return measured, failures
 
 
 def announce(jobs: Sequence[StoredJob], lanes: int, cached: int) -> str:
