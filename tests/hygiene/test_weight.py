@@ -15,7 +15,7 @@ CEILINGS = {
     "mechanism": 56_100,
     "cases": 1_200,
     "models": 97_900,
-    "analysis": 70_800,
+    "analysis": 70_900,
     "show": 63_700,
     "solid": 76_600,
     "experiment": 98_800,
@@ -23,7 +23,7 @@ CEILINGS = {
     "studies": 68_400,
     "apps": 39_300,
     ".": 400,
-    "all": 822_200,
+    "all": 822_300,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

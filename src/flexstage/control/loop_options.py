@@ -68,7 +68,7 @@ class LoopOptions:
         Axes | None,
         word_option("--coordinates", Axes, "Coordinates of the single loops. Default: platform.", show_default=False),
     ] = None
-    bandwidth: Annotated[str | None, text_option("--bandwidth", "VALUE", "Bandwidth to tune to. Default: maximum at the margin.")] = None
+    bandwidth: Annotated[str | None, text_option("--bandwidth", "VALUE", "Bandwidth of plain tuning. Default: optimised.")] = None
     tune_for: Annotated[
         TuningObjective | None,
         word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: balance.", show_default=False),

@@ -37,10 +37,16 @@ else:
 
 RECORD = text_option("--record", "RECORD", "Record or frequency responses of a test. Repeatable.")
 Inputs: TypeAlias = Annotated[
-    list[str] | None, text_option("--inputs", "NAMES", 'Input channels, e.g. "u*" or B1,B2. Default: by role, else by name. Repeatable.')
+    list[str] | None,
+    text_option(
+        "--inputs", "NAMES", 'Input channels, e.g. "u*" or B1,B2. Default: by the role in the file, else by the channel name. Repeatable.'
+    ),
 ]
 Outputs: TypeAlias = Annotated[
-    list[str] | None, text_option("--outputs", "NAMES", 'Output channels, e.g. "S?". Default: by role, else by name. Repeatable.')
+    list[str] | None,
+    text_option(
+        "--outputs", "NAMES", 'Output channels, e.g. "S?". Default: by the role in the file, else by the channel name. Repeatable.'
+    ),
 ]
 Channels: TypeAlias = Annotated[
     list[str] | None, text_option("--channels", "NAMES", 'Channels to use, e.g. "S*". Default: all. Repeatable.')
@@ -119,7 +125,7 @@ class RecordTexts:
     def require_unsaid(self) -> None:
         """Raise `DesignError` for every record option in use, for a command without a record."""
         said = ("array" if name == "arrays" else name.replace("_", "-") for name, value in vars(self).items() if value)
-        require(Finding(f"--{name}", "needs a record, and there is none", "Name them by --record, or leave it out") for name in said)
+        require(Finding(f"--{name}", "needs a record, and there is none", "Add --record RECORD, or omit this option") for name in said)
 
     def search(self) -> Search:
         """Convert to search parameters of the identification."""

@@ -87,7 +87,7 @@ def stiffness(
     *,
     model: ElasticModelName = Model.LUMPED,
     point: Point = PLATFORM,
-    load_point: Annotated[str, text_option("--load-point", "POINT", "Point of the load. Default: the point of --point.")] = "",
+    load_point: Annotated[str, text_option("--load-point", "POINT", "Point of the unit load. Default: the point of --point.")] = "",
     place: OperatingPointOptions,
 ) -> CommandResult:
     """Compute compliance and stiffness of the platform.

@@ -58,7 +58,12 @@ def stroke(
         str, text_option("--drive", "NAME", "Driven coordinate, stroke (B1) or force. Default: the first required stroke, or platform.x.")
     ] = "",
     start: Annotated[str, text_option("--from", "VALUE", "First value of the drive. Default: at rest.")] = "",
-    end: Annotated[str, text_option("--to", "VALUE", 'Last value of the drive, e.g. "5 mm". Default: its stroke, 0.1 mm or 1 mrad.')] = "",
+    end: Annotated[
+        str,
+        text_option(
+            "--to", "VALUE", 'Last value of the drive, e.g. "5 mm". Default: the required stroke, that of a stack, 0.1 mm or 1 mrad.'
+        ),
+    ] = "",
     steps: Annotated[int | None, STEPS] = None,
     load: Load = None,
 ) -> CommandResult:

@@ -58,7 +58,10 @@ def _property(option: Any, names: str, meaning: str) -> dict[str, Any]:
 
 
 def specify(number: int, text: str, file: str, values: str) -> Specified:
-    """A specification's text in the folder of `file`, an example without one, with other `values` (TOML) if any; its values and errors."""
+    """Read the text of a specification and return it with its values and errors.
+
+    An empty text is the example. `values` (TOML) replace values in it; `file` is its place.
+    """
     from flexstage.base.finding import DesignError
     from flexstage.mechanism.store.decode import dotted
     from flexstage.mechanism.store.file import parse_toml

@@ -114,7 +114,9 @@ def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 
     low, high = span
     if not (0.0 < low < high < np.inf and per_decade >= 1):
         raise refuse(
-            "creep", f"no span (got {low:g} s to {high:g} s, {per_decade} terms per decade)", "Use 0 < low < high, and one term or more"
+            "creep",
+            f"invalid span or number of terms (got {low:g} s to {high:g} s, {per_decade} terms per decade)",
+            "Use 0 < low < high, and one term or more",
         )
     decades = np.log10(high / low)
     spread = np.logspace(np.log10(low) - 0.5, np.log10(high) + 0.5, 1 + int(np.ceil(per_decade * (decades + 1.0))))

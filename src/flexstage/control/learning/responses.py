@@ -21,8 +21,8 @@ _TAPER = 0.75
 def readings(plant: Plant, control: System, frequencies: Array, offset: float = 0.0) -> Array:
     """Compute responses (f, k, k) from reference to measured pose, with all modes higher by a relative `offset`.
 
-    y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r of the sampled plant P and the controller's K from error, pose and reference. A shift of
-    modes scales time, lags and delays included.
+    y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r of the sampled plant P and the controller's K from error, pose and reference. The
+    modes are raised by scaling time: lags become shorter too. Hold and delay of a sampled plant are unchanged.
     """
     P = pose_plant(plant, offset).sweep(frequencies)
     back, forward = np.split(pose_controller(control, plant.coordinates).sweep(frequencies), 2, axis=2)

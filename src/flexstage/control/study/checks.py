@@ -163,9 +163,9 @@ def _loops(found: ControllerSetup) -> Iterator[Finding]:
     names = [name for each in found.loops for name in each.axes]
     for name in dict.fromkeys(names):
         if names.count(name) > 1:
-            yield Finding("controller.loops", f"{name} stands {names.count(name)} times", "State the numbers of a loop once")
+            yield Finding("controller.loops", f"{name} occurs {names.count(name)} times", "Name each axis in one entry only")
     if not all(each.axes for each in found.loops):
-        yield Finding("controller.loops", "the axes of the numbers are missing", 'Use e.g. axes = ["x", "y"]')
+        yield Finding("controller.loops", "an entry has no axes", 'Use e.g. axes = ["x", "y"]')
     if found.loops and not found.stated and found.law in (ControllerKind.PI, ControllerKind.PID):
         yield Finding("controller.loops", "loops are stated without gains", "Add proportional or integral, or leave loops out")
     if found.prefilter is not None and not found.stated:
@@ -190,4 +190,4 @@ def _compensation(setup: LoopSetup) -> Iterator[Finding]:
         yield Finding("compensate", "hysteresis is to be compensated, and the stacks have none", "Add [hysteresis] with a file or a width")
     for each in dict.fromkeys(setup.compensate):
         if setup.compensate.count(each) > 1:
-            yield Finding("compensate", f"{each.value} stands {setup.compensate.count(each)} times", "Write it once")
+            yield Finding("compensate", f"{each.value} occurs {setup.compensate.count(each)} times", "Write it once")

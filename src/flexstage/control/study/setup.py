@@ -120,7 +120,7 @@ class Floor(CheckedFields):
 
 @dataclass(frozen=True)
 class NotchSetup(CheckedFields):
-    """Notch filter: `frequency`, `deep` (gain at the notch), and width (`damping` of its poles)."""
+    """Notch filter: `frequency`, `depth` (gain at that frequency), and `damping` of its poles, which sets the width."""
 
     frequency: Annotated[float, FREQUENCY, POSITIVE]
     depth: Annotated[float, RATIO, NOT_NEGATIVE] | None = None

@@ -35,7 +35,7 @@ Records: TypeAlias = Annotated[
 def identify(
     records: Records,
     *,
-    stage: Annotated[Path | None, text_option("--stage", "STAGE.TOML", "Design file of the stage, for shapes.")] = None,
+    stage: Annotated[Path | None, text_option("--stage", "STAGE.TOML", "Design file of the stage, for mode shapes.")] = None,
     texts: RecordTexts,
     excitation: Moved = None,
 ) -> CommandResult:

@@ -41,7 +41,7 @@ def update(  # noqa: PLR0913 (its options)
         text_option(
             "--prior",
             "[ADDRESS=]SHARE",
-            'Prior relative standard deviation, e.g. "5 %" or "neck.thickness=2 %". Default: 10 %, assumed.',
+            'Prior relative standard deviation, e.g. "5 %" or "neck.thickness=2 %". Default: 10 %.',
         ),
     ] = None,
     model_error: Annotated[

@@ -114,7 +114,7 @@ def _thrust_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterato
     requested = (*setup.drive.amounts, *([setup.input_quantity] if setup.input_quantity else []))
     for quantity in dict.fromkeys(requested):
         if np.isnan(driven.factor(quantity)):
-            yield Finding(name, f"its input is a {own}, not a {quantity.value}", f'Use that, for example --drive-rms "{example}"')
+            yield Finding(name, f"its input is a {own}, not a {quantity.value}", f'Use {own}, for example --drive-rms "{example}"')
     if not setup.drive.amounts and np.isnan(driven.full):
         yield Finding(name, "it states no limit, and the default drive is 1 % of it", f'Use for example --drive-rms "{example}"')
     if setup.amplifier.resistance is not None:

@@ -551,7 +551,7 @@ def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
     compounds = {name for name, part in mechanism.parts.items() if isinstance(inner(part), Compound)}
     for name in sorted(compounds):
         if isinstance(mechanism.parts[name], Restricted):
-            yield Finding(f"parts.{name}", "it restricts a compound part", advice)
+            yield Finding(f"parts.{name}", "a compound part cannot be restricted", "Draw its members as separate links, and restrict those")
     for where, link in every_link(mechanism):
         if link.free is not None and link.part in compounds:
             yield Finding(f"{where}.free", f"part {link.part} is a compound; its members have degrees of freedom", advice)

@@ -614,7 +614,7 @@ class TextsNode(Node):
         """Return a tuple of the texts."""
         texts = [raw] if isinstance(raw, str) else raw
         if not isinstance(texts, list) or not texts:
-            return reader.refuse(where, f"must be a text (got {kind(raw)}), or several", "Put it in quotes, several in brackets")
+            return reader.refuse(where, f"must be one or several texts (got {kind(raw)})", "Put it in quotes, several in brackets")
         return every([reader.read(TextNode(), text, where) for text in texts])
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:

@@ -36,7 +36,9 @@ class Motions:
 
 
 def centre_lines(state: State) -> dict[str, Line]:
-    """Compute the centre lines of all flexures by name, at the points of their rule and at both ends, with one axis of cases.
+    """Compute the centre lines of all flexures by name, at their integration points and at both ends.
+
+    The first axis is the axis of cases, of length 1 for a single state.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium

@@ -1,4 +1,7 @@
-"""Journal of unsaved edits: a file in the cache for each design and process, always complete, kept after its process."""
+"""Journal of unsaved edits: one file in the cache for each design and process.
+
+It is written as a whole before an edit is acknowledged, and remains if the process ends without saving.
+"""
 
 from __future__ import annotations
 

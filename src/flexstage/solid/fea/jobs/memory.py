@@ -135,7 +135,7 @@ class ReductionWork:
 
 
 def measure_pace() -> float:
-    """CPU time of a small dense factorisation on this machine, the shortest of several, over the usual one.
+    """Measure the pace of this machine: CPU time of a small dense factorisation (the shortest of several), relative to its usual time.
 
     >>> measure_pace() > 0.0
     True

@@ -206,7 +206,7 @@ class MeasureWork(Job):
         return self.reductions[0].kin
 
     def work(self, call: Call) -> tuple[ReductionWork, ...]:
-        """The work of each reduction, by the elimination order of its unknowns."""
+        """Computing effort of each reduction, from its mesh and the elimination order of its unknowns."""
         return tuple(_measure(each, call) for each in self.reductions)
 
 
