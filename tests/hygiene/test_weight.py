@@ -17,7 +17,7 @@ CEILINGS = {
     "models": 97_900,
     "analysis": 70_900,
     "show": 63_700,
-    "solid": 76_600,
+    "solid": 76_700,
     "experiment": 98_800,
     "control": 154_000,
     "studies": 68_400,

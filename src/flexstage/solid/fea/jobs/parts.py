@@ -23,6 +23,7 @@ from flexstage.solid.fea.jobs.memory import ReductionWork
 from flexstage.solid.fea.jobs.reducing import MeasureWork, Reduce, StoredJob
 from flexstage.solid.fea.jobs.remote import Limits, Pool, work_all, workers
 from flexstage.solid.fea.meshing.fineness import Fineness, Hold, Reduction, thin_findings
+from flexstage.solid.fea.solver.casing import is_encased
 from flexstage.solid.fea.solver.component import Component, with_yielding_ends
 from flexstage.solid.fea.solver.superelement import Superelement, hold_faces
 
@@ -72,6 +73,8 @@ def reduce_parts(
 def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mapping[str, Array] = _NO_SPRINGS) -> list[Reduce]:
     """A job for each component: the ends of its links deform, so that a unit has one job isolated and in its stage.
 
+    An encased stack has no modes between its end faces: there the ceramic would bend without its casing, which joins these faces only.
+
     >>> reduce_jobs((), Reduction())
     []
     """
@@ -80,6 +83,7 @@ def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mappi
     jobs: list[Reduce] = []
     for part, whole in zip(parts, wholes, strict=True):
         own, joined = reduction.of(content(whole)), springs.get(part.name)
+        own = replace(own, modes=0) if all(is_encased(piece.form) for piece in whole.pieces) else own
         jobs.append(Reduce(key_of(whole, own, joined), whole, own, joined))
     return jobs
 

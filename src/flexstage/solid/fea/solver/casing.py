@@ -13,6 +13,15 @@ from flexstage.solid.fea.solver.component import Component
 from flexstage.spatial.frame import twist_transform
 
 
+def is_encased(form: object) -> bool:
+    """Return whether a form is a stack with the bending rigidity of a casing.
+
+    >>> is_encased(Piezo(stroke=1e-4, stiffness=17e6, length=0.162, diameter=0.01))
+    False
+    """
+    return isinstance(form, Piezo) and form.bending_rigidity is not None
+
+
 def casing(link: PlacedLink) -> Array | None:
     """Stiffness (6, 6) of a stack's casing about its centre, in its frame: 12 B/L^3 across, B/L in bending, B/((1 + nu) L) in torsion.
 
