@@ -104,7 +104,9 @@ def test_the_verdict_of_an_analysis_warns_of_ends_that_bear_too_little() -> None
     assert found.ends is not None
     assert found.ends.demand == 3.0
     assert found.ends.least is not None
-    assert f"warning: {found.ends.least.place}: it bears" in closing_text(found, whole=True)
+    said = found.ends.warnings[0]
+    assert said.where == found.ends.least.place
+    assert f"warning: {said.where}: {said.what}" in closing_text(found, whole=True)
 
 
 def test_what_hangs_bears_any_weight() -> None:

@@ -273,7 +273,7 @@ def test_intervals_of_a_linear_mode_hold_the_truth() -> None:
 def test_intervals_hold_where_the_model_does_not(kind: Callable[[int], Made], least: float) -> None:
     """They are wider than by what the fit leaves alone, which asks for less than `least` and holds too rarely."""
     seen = held(kind, range(40 if FULL else 3))
-    assert np.nanmean(seen.inside) > (0.75 if FULL else 0.6)
+    assert np.nanmean(seen.inside) >= (0.75 if FULL else 0.6)
     assert seen.missed <= (2 if FULL else 0)
     assert np.max(seen.widening) > least
 

@@ -125,7 +125,7 @@ class CaseFactors(Result):
         short = [case for case in self.cases if case.factor < bound]
         if short:
             least = min(short, key=lambda case: case.factor)
-            requested = f"(expected {self.demand:g} or more)" if self.demand > 1.0 else ""
+            requested = f" (expected {self.demand:g} or more)" if self.demand > 1.0 else ""
             others = f"; {len(short) - 1} more of {len(self.cases)} load cases have a factor below {bound:g}" if short[1:] else ""
             what = f"critical load factor of {least.load} {least.factor:.4g}{requested}: {buckling_clause(least.buckling_mode)}{others}"
             yield Finding(least.place, what, "Reduce stroke or load, or stiffen the parts that carry the load")
