@@ -1,4 +1,4 @@
-"""The CPU time that `verify` announces, and the time left that it tells, over the actual ones, from an empty cache.
+"""The CPU time that `verify` announces, and the time left that it shows, over the actual ones, from an empty cache.
 
 Stages are shipped cases or files, at an order, or at 1 % if that is 0. Targets: the announced CPU time within a factor of two, and the time
 left at nine instants of the whole within the same from the first quarter on.
@@ -36,8 +36,8 @@ FACTOR, FROM = 2.0, 0.25
 INSTANTS = tuple(number / 10.0 for number in range(1, 10))
 
 
-def told(stage: Mechanism, asked: Resolution, folder: Path, note: Callable[[str], None]) -> tuple[float, list[tuple[float, float]]]:
-    """Seconds taken, and the time left as it was told, by the seconds since the start."""
+def measured(stage: Mechanism, asked: Resolution, folder: Path, note: Callable[[str], None]) -> tuple[float, list[tuple[float, float]]]:
+    """Seconds taken, and the estimated time left by the seconds since the start."""
     shown, said = ProgressBar(None), list[tuple[float, float]]()
 
     def step(step: Step) -> None:
@@ -79,12 +79,12 @@ def measure(name: str, order: int) -> int:
 
     stage = load(Path(name)) if name.endswith(".toml") else case(name)
     with tempfile.TemporaryDirectory() as folder:
-        taken, said = told(stage, Resolution(0.01, order or None), Path(folder), note)
+        taken, said = measured(stage, Resolution(0.01, order or None), Path(folder), note)
     planned, actual = announced(lines), used() - begun[0]
     print(f"{name}: CPU time {planned:.0f} s announced, {actual:.0f} s used: {planned / actual:.2f}; {taken:.0f} s in all")
     near = [min(said, key=lambda each: abs(each[0] - instant * taken)) for instant in INSTANTS]
     ratios = [left / (taken - at) for at, left in near]
-    print("  time left, told over actual:", *(f"{each:.2f}" for each in ratios), flush=True)
+    print("  time left, estimated over actual:", *(f"{each:.2f}" for each in ratios), flush=True)
     late = [ratio for instant, ratio in zip(INSTANTS, ratios, strict=True) if instant >= FROM]
     return sum(not 1.0 / FACTOR <= ratio <= FACTOR for ratio in (planned / actual, *late))
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -208,13 +207,11 @@ class StageResults:
     @cached_property
     def stress_at_strokes(self) -> HingeStress:
         """Stress of hinges over the box of required strokes, from zero voltage."""
-        box = {name: value for name, value in self.box().items() if value > 0.0}
+        box = self._driven_box()
         start = np.zeros(len(self.limits.actuators)) if self.limits.zero is None else -self.limits.zero
         mapping = self.per_motion
         known = dict(zip(self.limits.actuators, np.moveaxis(start, -1, 0), strict=True))
         start = stack([known.get(name, 0.0) for name in mapping.rows])
-        for name in box.keys() - set(mapping.columns):
-            raise refuse(f"stroke.{name}", "no actuator moves the platform along it", f"Require strokes along {', '.join(mapping.columns)}")
         half = stack(list(box.values()))
         limits, command = StrokeLimits(tuple(box), -half, half), Command(mapping, start)
         return hinge_stress(self.mechanism, self.model, limits, command=command, condition="of the required strokes")
@@ -225,11 +222,18 @@ class StageResults:
         return self.force_workspace(PLATFORM).per_motion if self.forced else self.lost.correction
 
     def corners(self) -> tuple[tuple[str, ...], Array]:
-        """Axes and corners (c, k) of the box of required strokes that actuators reach; of more than three axes, the end of each."""
-        box = {axis: value for axis, value in self.box().items() if axis in self.per_motion.columns}
-        each = np.eye(len(box))
-        together = np.array(list(product((-1.0, 1.0), repeat=len(box)))) if len(box) <= _TOGETHER else np.concatenate([each, -each])
-        return tuple(box), together * np.array(list(box.values()))
+        """Axes and corners (c, k) of the box of required strokes; of more than three axes, the end of each."""
+        box = self._driven_box()
+        half = np.array(list(box.values()))
+        alone = np.concatenate([np.diag(half), -np.diag(half)])
+        return tuple(box), StrokeLimits(tuple(box), -half, half).corners if len(box) <= _TOGETHER else alone
+
+    def _driven_box(self) -> dict[str, float]:
+        """Box of the required strokes; refuses those that no actuator drives."""
+        box, driven = {name: value for name, value in self.box().items() if value > 0.0}, self.per_motion.columns
+        for name in box.keys() - set(driven):
+            raise refuse(f"stroke.{name}", "no actuator moves the platform along it", f"Require strokes along {', '.join(driven)}")
+        return box
 
     @cached_property
     def _loaded(self) -> StrokeLimits:

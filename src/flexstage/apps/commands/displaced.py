@@ -61,7 +61,7 @@ def stroke(
     end: Annotated[
         str,
         text_option(
-            "--to", "VALUE", 'Last value of the drive, e.g. "5 mm". Default: the required stroke, that of a stack, 0.1 mm or 1 mrad.'
+            "--to", "VALUE", 'Last value of the drive, e.g. "5 mm". Default: the required stroke, the stroke of a stack, 0.1 mm or 1 mrad.'
         ),
     ] = "",
     steps: Annotated[int | None, STEPS] = None,
