@@ -320,3 +320,9 @@ def test_expansion_is_the_same_for_all() -> None:
     names = ("parts.neck.thickness", "B2/front.thickness")
     assert plan(double_triangle(), names).family.topology.parts == 7
     assert len(expand(double_triangle()).links) == 27
+
+
+@pytest.mark.parametrize(("address", "words"), [("B", "not a number"), ("links.left.at", "several components"), ("nowhere", "nowhere")])
+def test_what_is_no_number_is_refused(address: str, words: str) -> None:
+    with pytest.raises(DesignError, match=words):
+        plan(fs.case("parallelogram"), (address,))

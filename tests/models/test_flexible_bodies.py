@@ -215,6 +215,11 @@ def test_a_warning_names_the_body_that_bends(stiffer: float, warned: bool) -> No
     assert told == (["platform"] if warned else [])
 
 
+def test_a_warning_names_all_bodies_of_equal_effect() -> None:
+    """The bridge is its own mirror image: rounding does not choose between left and right."""
+    assert "left, right" in [each.where for each in caveats(case("bridge")).warnings if "its flexibility changes" in each.what]
+
+
 LOSSES = {
     "parallelogram": (0.0994, 0.1415, 0.1805, 0.0572),
     "leaf-guide": (0.100, 0.183, 0.138, 0.043),
