@@ -16,9 +16,8 @@ Levels may be omitted if the result is unique: `horizontal/front.radius` for `ho
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -77,17 +76,26 @@ def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
     >>> get(set_value(stage, "wire.length", 0.04), "wire.length")
     0.04
     """
-    place = locate(mechanism, address)
-    changed, lost = mechanism, [place.address]
-    for path in with_mirror(place.path):
-        written = replace(place, path=path)
-        try:
-            changed = _without_formulas(_write(changed, written, freeze(value)), written.address)
-        except DesignError as error:
-            raise DesignError(replace(finding, where=address) for finding in error.findings) from None
-    if place.number:
-        moved = dependents(changed, place.number)
-        changed = reduce(_work_out, moved, changed)
+    return set_values(mechanism, [(address, value)])
+
+
+def set_values(mechanism: Mechanism, values: Iterable[tuple[str, Any]]) -> Mechanism:
+    """Return the mechanism with new values at several addresses, written in their order; formulas are recomputed once (see `set_value`)."""
+    changed, lost, numbers = mechanism, list[str](), list[str]()
+    for address, value in values:
+        place = locate(changed, address)
+        lost.append(place.address)
+        for path in with_mirror(place.path):
+            written = replace(place, path=path)
+            try:
+                changed = _without_formulas(_write(changed, written, freeze(value)), written.address)
+            except DesignError as error:
+                raise DesignError(replace(finding, where=address) for finding in error.findings) from None
+        if place.number:
+            numbers.append(place.number)
+    if numbers:
+        moved = dependents(changed, *numbers)
+        changed = _recompute(changed, moved)
         lost += moved
     tags = {key: tag for key, tag in mechanism.tags.items() if canonical(mechanism, key) not in lost}
     return changed if len(tags) == len(mechanism.tags) else replace(changed, tags=Table(tags))
@@ -152,10 +160,16 @@ def _without_formulas(mechanism: Mechanism, address: str) -> Mechanism:
     return mechanism if len(kept) == len(mechanism.formulas) else replace(mechanism, formulas=Table(kept))
 
 
-def _work_out(mechanism: Mechanism, address: str) -> Mechanism:
-    """The mechanism with the value of the formula at an address."""
-    value = formula_value(mechanism.formulas[address], quantity_of(mechanism, address), scope_of(mechanism), address)
-    return _write(mechanism, locate(mechanism, address), value)
+def _recompute(mechanism: Mechanism, addresses: Iterable[str]) -> Mechanism:
+    """The mechanism with the values of formulas, in order of dependence."""
+    scope = scope_of(mechanism)
+    for address in addresses:
+        place = locate(mechanism, address)
+        value = formula_value(mechanism.formulas[address], quantity_at(place, address), scope, address)
+        mechanism = _write(mechanism, place, value)
+        if place.number:
+            scope[place.number] = amount_of(mechanism.numbers[place.number])
+    return mechanism
 
 
 def assign(mechanism: Mechanism, assignment: str) -> Mechanism:

@@ -194,21 +194,21 @@ def _scope(table: Mapping[str, Any], result: Mapping[str, NamedNumber]) -> Scope
     return {name: amount_of(result[name]) if name in result else None for name in table}
 
 
-def dependents(mechanism: Mechanism, name: str) -> tuple[str, ...]:
-    """Return the addresses of all values that depend on a named number, in order of dependence.
+def dependents(mechanism: Mechanism, *names: str) -> tuple[str, ...]:
+    """Return the addresses of all values that depend on any of these named numbers, in order of dependence.
 
     >>> formulas = {"numbers.half": "arm/2", "parts.leaf.length": "half", "parts.leaf.width": "1 mm * 2"}
     >>> dependents(Mechanism("", formulas=formulas), "arm")
     ('numbers.half', 'parts.leaf.length')
     """
     known = {address: parse_expression(text).names for address, text in mechanism.formulas.items()}
-    moved = {name}
+    moved = set(names)
     ordered: list[str] = []
     for number in TopologicalSorter(_references(known)).static_order():
         if known.get(PREFIX + number, frozenset()) & moved:
             moved.add(number)
             ordered.append(PREFIX + number)
-    return (*ordered, *(address for address, names in known.items() if names & moved and not address.startswith(PREFIX)))
+    return (*ordered, *(address for address, used in known.items() if used & moved and not address.startswith(PREFIX)))
 
 
 def depth(mechanism: Mechanism, name: str) -> int:

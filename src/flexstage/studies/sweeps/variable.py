@@ -15,7 +15,7 @@ from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.units.quantity import Quantity
 from flexstage.base.units.unit import show
 from flexstage.cases.registry import Variant
-from flexstage.mechanism.addresses.address import get, set_value
+from flexstage.mechanism.addresses.address import get, set_values
 from flexstage.mechanism.addresses.locate import canonical
 from flexstage.mechanism.grammar.grammar import node_of
 from flexstage.mechanism.mechanism import Mechanism
@@ -120,12 +120,12 @@ def apply_columns(mechanism: Mechanism, variables: tuple[Variable, ...], columns
     0.0015
     """
     moves = [(address, *move) for move in zip(variables, columns, strict=True) for address in move[0].addresses]
-    start = result = _draw(mechanism, [move for move in moves if move[1].variant is not None])
+    start = _draw(mechanism, [move for move in moves if move[1].variant is not None])
     written = [move for move in moves if move[1].variant is None]
-    for address, variable, value in sorted(written, key=lambda move: override_level(mechanism, move[0])):
-        required = get(start, address) * value if variable.relative else value
-        result = set_value(result, address, required)
-    return result
+    written.sort(key=lambda move: override_level(mechanism, move[0]))
+    return set_values(
+        start, [(address, get(start, address) * value if variable.relative else value) for address, variable, value in written]
+    )
 
 
 def _draw(mechanism: Mechanism, moves: list[tuple[str, Variable, Number]]) -> Mechanism:
