@@ -27,7 +27,7 @@ from flexstage.base.number import Number, Table, freeze
 from flexstage.base.units.expression import parse_expression
 from flexstage.base.units.quantity import Quantity
 from flexstage.mechanism.addresses.locate import Place, canonical, link_path, locate
-from flexstage.mechanism.addresses.path import follow, replace_member, with_mirror
+from flexstage.mechanism.addresses.path import follow, replace_member, replace_members, with_mirror
 from flexstage.mechanism.assembly.expand import apply_overrides
 from flexstage.mechanism.assembly.misalignment import misalignment_of
 from flexstage.mechanism.grammar.formulas import NUMBERS, amount_of, dependents, formula_value, is_formula, scope_of, shown_unit
@@ -162,14 +162,17 @@ def _without_formulas(mechanism: Mechanism, address: str) -> Mechanism:
 
 def _recompute(mechanism: Mechanism, addresses: Iterable[str]) -> Mechanism:
     """The mechanism with the values of formulas, in order of dependence."""
-    scope = scope_of(mechanism)
+    scope, changes = scope_of(mechanism), list[tuple[tuple[str, ...], Any]]()
     for address in addresses:
         place = locate(mechanism, address)
         value = formula_value(mechanism.formulas[address], quantity_at(place, address), scope, address)
-        mechanism = _write(mechanism, place, value)
         if place.number:
-            scope[place.number] = amount_of(mechanism.numbers[place.number])
-    return mechanism
+            scope[place.number] = amount_of(replace(mechanism.numbers[place.number], value=value))
+        if place.owners:
+            mechanism = _write(mechanism, place, value)
+        else:
+            changes.append((place.path, value))
+    return replace_members(mechanism, changes) if changes else mechanism  # type: ignore[no-any-return]
 
 
 def assign(mechanism: Mechanism, assignment: str) -> Mechanism:

@@ -122,12 +122,24 @@ def replace_member(value: Any, path: tuple[str, ...], new: Any) -> Any:
     >>> replace_member((1.0, 2.0, 3.0), ("y",), 5.0)
     (1.0, 5.0, 3.0)
     """
-    if not path:
-        return new
-    inner = replace_member(member(value, path[0]), path[1:], new)
+    return replace_members(value, [(path, new)])
+
+
+def replace_members(value: Any, changes: Iterable[tuple[tuple[str, ...], Any]]) -> Any:
+    """Return a copy of the value with new members at several full paths, none inside another.
+
+    >>> replace_members((1.0, 2.0, 3.0), [(("y",), 5.0), (("z",), 6.0)])
+    (1.0, 5.0, 6.0)
+    """
+    within: dict[str, list[tuple[tuple[str, ...], Any]]] = {}
+    for path, new in changes:
+        if not path:
+            return new
+        within.setdefault(path[0], []).append((path[1:], new))
+    inner = {name: replace_members(member(value, name), own) for name, own in within.items()}
     if isinstance(value, Mapping):
-        return Table({**value, path[0]: inner})
+        return Table({**value, **inner})
     if isinstance(value, tuple):
-        index = _index(path[0])
-        return (*value[:index], inner, *value[index + 1 :])
-    return replace(value, **{path[0]: inner})
+        placed = {_index(name): each for name, each in inner.items()}
+        return tuple(placed.get(index, each) for index, each in enumerate(value))
+    return replace(value, **inner)
