@@ -365,7 +365,6 @@ BAD = {
     'x = "50 um", y = "50 um"': ("", "no displacement is required"),
     'x = "50 um"': ('x = "-50 um"', "motion.x"),
     'x = "50 um", ': ('x = "200 mm", ', "the displacement exceeds the box"),
-    'y = "50 um"': ('z = "1 mm"', "no pure force that does no work on these motions constrains ry. Combine guides in series, e.g. x on z."),
     '"30 g"': ('"30 mm"', "must be a mass"),
     '"5 mm"]': ('"50 mm"]', "the payload is wider than the box along z"),
     "at least 500 Hz": ("at least 500 mm", "must be a frequency"),

@@ -82,17 +82,16 @@ def has_parallel_guide(twists: Array) -> bool:
     return pure_force_span(others).shape == others.shape
 
 
-def serial_guides(motions: frozenset[str]) -> tuple[frozenset[str], ...]:
-    """Return the fewest parallel guides that have the motions in series, the one with most motions first.
+def serial_guides(motions: frozenset[str]) -> list[tuple[frozenset[str], ...]]:
+    """Return all ways to obtain the motions with the fewest parallel guides in series, those with most motions in the first guide first.
 
-    >>> [sorted(each) for each in serial_guides(frozenset({"x", "y", "z", "rz"}))]
-    [['rz', 'x', 'y'], ['z']]
+    >>> [[sorted(each) for each in way] for way in serial_guides(frozenset({"x", "y", "z", "rz"}))]
+    [[['rz', 'x', 'y'], ['z']], [['z'], ['rz', 'x', 'y']]]
     """
     if has_parallel_guide(twists_of(motions)):
-        return (motions,)
+        return [(motions,)]
     axes = sorted(motions, key=COMPONENTS.index)
     firsts = (frozenset(each) for count in range(len(axes) - 1, 0, -1) for each in combinations(axes, count))
-    return min(
-        ((first, *serial_guides(motions - first)) for first in firsts if has_parallel_guide(twists_of(first))),
-        key=len,
-    )
+    ways = [(first, *rest) for first in firsts if has_parallel_guide(twists_of(first)) for rest in serial_guides(motions - first)]
+    fewest = min(map(len, ways))
+    return [way for way in ways if len(way) == fewest]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -21,7 +23,7 @@ from flexstage.studies.synthesis.architecture import (
     scope,
     variables,
 )
-from flexstage.studies.synthesis.constraint_space import has_parallel_guide, pure_force_span, reciprocal_space, serial_guides, twists_of
+from flexstage.studies.synthesis.constraint_space import pure_force_span, reciprocal_space, serial_guides, twists_of
 from flexstage.studies.synthesis.ground_structure import (
     MIRRORS,
     QUARTER_TURN,
@@ -33,7 +35,7 @@ from flexstage.studies.synthesis.ground_structure import (
     places,
     with_actuators,
 )
-from flexstage.studies.synthesis.specification import Specification
+from flexstage.studies.synthesis.specification import MotionTable, Specification
 
 SYNTHESISED: Mapping[str, str] = {"synthesised-stacks": "piezo", "synthesised-coils": "voice_coil"}
 """Names of synthesised architectures, and the kinds of their actuators."""
@@ -58,21 +60,28 @@ _RANGES: Mapping[str, tuple[str, str, str]] = {
 }
 _STACK_NUMBERS = {
     "neck_radius": "2.2*neck",
+    "strut": "10 mm + 4*neck_radius + stack_length",
     "end": "neck + 2*neck_radius",
     "foot": "(stack_diameter + end + sqrt((stack_diameter - end)*(stack_diameter - end)))/2 + 1 mm",
     "cell": "(foot + seat + sqrt((foot - seat)*(foot - seat)))/2",
 }
-_BLOCK_NUMBERS = {
+_GRID_NUMBERS = {
     "pitch_x": "cell + gap_x",
     "pitch_y": "cell + gap_y",
     "reach_x": "2*pitch_x + cell + 2 mm",
     "reach_y": "2*pitch_y + cell + 2 mm",
+}
+_BLOCK_NUMBERS = {
     "half_x": "(payload_length + reach_x + sqrt((payload_length - reach_x)*(payload_length - reach_x)))/4",
     "half_y": "(payload_width + reach_y + sqrt((payload_width - reach_y)*(payload_width - reach_y)))/4",
 }
+_OWN = r"\b(skin|length_[xyz]|leaf_thickness|wire|half_[xyz]|payload_length|payload_width|(?:leaf|wire)_(?:slenderness_)?[xyz])\b"
+"""Names of numbers and parts that each of several guides in series has."""
+_CLEARANCE = 2e-3
+"""Gap below a block on a tray, in addition to its displacement [m]."""
 _HEADER = """# {title}: a block on wires and leaves, found by a search on a ground structure.
 # Elements and actuators are in cells of a grid on its faces, with gaps between; leaves are as wide as their seat.
-format = "flexstage 1"
+{series}format = "flexstage 1"
 name = {name}
 damping = {{ law = "modal", ratio = 0.01 }}
 envelope = ["200 mm", "200 mm", "100 mm"]
@@ -105,11 +114,10 @@ along = "x"
 at = ["-2.5 mm - 2*neck_radius", "0 mm", "0 mm"]
 
 [units.strut.links]
-back = { joins = ["ground", "base"], part = "neck", at = ["-10 mm - 3*neck_radius - stack_length", "0 mm", "0 mm"], along = "x" }
 pzt = { joins = ["base", "tip"], part = "stack", at = ["-5 mm - 2*neck_radius - stack_length/2", "0 mm", "0 mm"], along = "x" }
-front = { joins = ["tip", "platform"], part = "neck", at = ["-neck_radius", "0 mm", "0 mm"], along = "x" }
-
-[placements]"""
+"""
+_STRUT_NECKS = """back = {{ joins = ["{base}", "base"], part = "neck", at = ["neck_radius - strut", "0 mm", "0 mm"], along = "x" }}
+front = {{ joins = ["tip", "{body}"], part = "neck", at = ["-neck_radius", "0 mm", "0 mm"], along = "x" }}"""
 _PAYLOAD = """
 [payloads.load]
 body = "platform"
@@ -148,8 +156,6 @@ def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list
     if unknown := [name for name in names if name not in known and name not in SYNTHESISED]:
         raise refuse("--architecture", f'unknown architecture "{unknown[0]}"', f"Use one of {', '.join((*known, *SYNTHESISED))}")
     served = [each for _, each in sorted(known.items()) if each.is_for(motions)]
-    if not served and not has_parallel_guide(twists_of(motions)):
-        raise refuse("motion", *_no_guide(motions))
     if not served and spec.box.opening is not None:
         raise refuse("box.opening", f"the guide for the motions {_listed(motions)} has no opening", "Leave it out")
     found = [each for each in served or synthesise(spec) if each.name in (names or (each.name,))]
@@ -160,15 +166,11 @@ def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list
     return found
 
 
-def _no_guide(motions: frozenset[str]) -> tuple[str, str]:
-    """The reason without a parallel guide, and guides in series."""
+def _reason(motions: frozenset[str]) -> str:
+    """Why no parallel guide has the motions."""
     span = pure_force_span(reciprocal_space(twists_of(motions)))
     free = (axis for axis, row in zip(COMPONENTS, span, strict=True) if axis not in motions and np.linalg.norm(row) < 0.5)
-    what = (
-        f"no architecture has exactly the motions {_listed(motions)}, and no parallel guide of wires and leaves has: "
-        f"no pure force that does no work on these motions constrains {' or '.join(free)}"
-    )
-    return what, f"Combine guides in series, e.g. {' on '.join(_listed(each) for each in serial_guides(motions))}"
+    return f"no pure force that does no work on the motions {_listed(motions)} constrains {' or '.join(free)}"
 
 
 def _listed(motions: frozenset[str]) -> str:
@@ -182,22 +184,89 @@ def synthesise(spec: Specification) -> list[Architecture]:
     return [each for each in found if each is not None]
 
 
+@dataclass(frozen=True)
+class Layer:
+    """One of the guides in series, with its actuators: number 1 carries the platform, each other one the tray of the guide above."""
+
+    number: int
+    guide: Guide
+    rows: Sequence[int]
+    last: bool
+
+    @property
+    def body(self) -> str:
+        """Name of the body that it guides."""
+        return "platform" if self.number == 1 else f"tray_{self.number}"
+
+    @property
+    def base(self) -> str:
+        """Name of the body that it is on."""
+        return "ground" if self.last else f"tray_{self.number + 1}"
+
+    @property
+    def strut(self) -> str:
+        """Name of the unit of its actuators."""
+        return "strut" if self.number == 1 else f"strut_{self.number}"
+
+    @property
+    def elements(self) -> list[tuple[str, str]]:
+        """Parts of its elements, each with the axis of their length."""
+        return sorted({(_part(each), "xyz"[each.place.face]) for each in self.guide.elements})
+
+    def named(self, text: str) -> str:
+        """A text with the names of its own numbers and parts."""
+        return text if self.number == 1 else re.sub(_OWN, rf"\1_{self.number}", text)
+
+    def point(self, place: Place, outside: str = "") -> str:
+        """The formulas of a point on a face of its block, or outside of it."""
+        texts = ["0 mm" if not each else f"{'-' if each < 0 else ''}pitch_{axis}" for each, axis in zip(place.grid, "xyz", strict=True)]
+        sign = "-" if place.side < 0 else ""
+        texts[place.face] = f"{sign}half_{'xyz'[place.face]}" + (f" {sign or '+'} {outside}" if outside else "")
+        if self.number > 1:
+            texts[2] = f"level_{self.number} {f'- {texts[2][1:]}' if texts[2][0] == '-' else f'+ {texts[2]}'}"
+        return json.dumps(texts)
+
+    def ends(self, *, stacks: bool) -> dict[Place, str]:
+        """Places of its elements and struts, with the distances of their ends from its block."""
+        ends = {each.place: f"length_{'xyz'[each.place.face]}" for each in self.guide.elements}
+        return ends | (dict.fromkeys(self.guide.actuators, "strut") if stacks else {})
+
+
 def _drawn(spec: Specification, name: str, kind: str, actuators: Sequence[CatalogueActuator]) -> Architecture | None:
     """The architecture with actuators of one kind, its places chosen for the shortest of them."""
     if not actuators:
         return None
     motions, first = frozenset(spec.displacements), min(actuators, key=_length)
-    blank = Architecture(name=name, kind=kind, slot=_SLOTS[kind], count=len(motions), serves=(motions,), set=_SET)
+    for guides in serial_guides(motions):
+        last = len(guides)
+        if any(axis in each and across not in motions for each in guides[1:] for axis, across in (("rx", "y"), ("ry", "x"))):
+            continue  # a tray is below the platform: it turns about another point
+        found = [(number, _guide(spec, first, each, tray=number < last)) for number, each in enumerate(guides, 1)]
+        layers = [Layer(number, *each, last=number == last) for number, each in found if each is not None]
+        if len(layers) == last:
+            own = last == len(motions) > 1
+            blank = Architecture(name=name, kind=kind, slot=_SLOTS[kind], count=len(motions), serves=(motions,), set=_SET)
+            return _architecture(replace(blank, own=own, direct=own and motions <= set("xyz")), layers, spec)
+    return None
+
+
+def _guide(
+    spec: Specification, actuator: CatalogueActuator, motions: frozenset[str], *, tray: bool
+) -> tuple[Guide, tuple[int, ...]] | None:
+    """The guide for some motions, with actuators, and its rows; on a `tray`, no actuator is in line with an element below or above."""
+    spec = replace(spec, motion=MotionTable(**{axis: value for axis, value in spec.displacements.items() if axis in motions}))
     for rows, room in (((0,), spec.box.size), ((-1, 0, 1), spec.box.size), ((-1, 0, 1), (np.inf,) * 3)):
-        block = nominal_block(spec, first, rows)
+        block = nominal_block(spec, actuator, rows)
         guide = find_guide(block, motions, symmetries(spec), rows)
         if guide is None or (guide.ratio < _STIFF and np.all(np.isfinite(room))):
             continue
-        strut = _length(first) + _STRUT_ENDS if kind == "piezo" else 0.0
-        fits = 2.0 * block.half + strut <= room
-        guide = with_actuators(guide, block, motions, [each for each in places(rows) if fits[each.face]])
+        strut = _length(actuator) + _STRUT_ENDS if actuator.kind == "piezo" else 0.0
+        fits, taken = 2.0 * block.half + strut <= room, {(each.place.face, *each.place.grid[:2]) for each in guide.elements if tray}
+        guide = with_actuators(
+            guide, block, motions, [each for each in places(rows) if fits[each.face] and (each.face, *each.grid[:2]) not in taken]
+        )
         if guide.conditioning > _CONDITIONED:
-            return _architecture(blank, guide, rows)
+            return guide, rows
     return None
 
 
@@ -211,7 +280,7 @@ def nominal_block(spec: Specification, actuator: CatalogueActuator, rows: Sequen
     known = scope(all_ranges, spec, actuator)
     known |= {"stack_length": known["length"], "stack_diameter": known["diameter"]}
     known |= {each.name: Amount(each.start, known["length"].dimension) for each in variables(all_ranges, known)}
-    for name, formula in {**_SET, **_formulas(actuator.kind, rows)}.items():
+    for name, formula in {**_SET, **_grid_numbers(actuator.kind, rows), **_block_numbers(rows)}.items():
         known[name] = evaluate(parse_expression(formula), known)
     value = {name: float(amount.value) for name, amount in known.items()}
     half, pitch, length = (np.array([value.get(f"{kind}_{axis}", 0.0) for axis in "xyz"]) for kind in ("half", "pitch", "length"))
@@ -219,70 +288,139 @@ def nominal_block(spec: Specification, actuator: CatalogueActuator, rows: Sequen
     return Block(half, pitch, length, value["leaf_thickness"], value["seat"], value["wire"], material)
 
 
-def _formulas(kind: str, rows: Sequence[int]) -> dict[str, str]:
-    """Numbers that follow from others. Cells of the grid hold any element or strut, with gaps between: nothing can clash."""
-    tall = {"pitch_z": "cell + gap_z", "half_z": "pitch_z + (cell + skin)/2"} if len(rows) > 1 else {"half_z": "(cell + skin)/2"}
-    return {**(_STACK_NUMBERS if kind == "piezo" else {"cell": "seat"}), **_BLOCK_NUMBERS, **tall}
+def _grid_numbers(kind: str, rows: Sequence[int]) -> dict[str, str]:
+    """Numbers of the grid. Its cells hold any element or strut, with gaps between: nothing can clash."""
+    tall = {"pitch_z": "cell + gap_z"} if len(rows) > 1 else {}
+    return {**(_STACK_NUMBERS if kind == "piezo" else {"cell": "seat"}), **_GRID_NUMBERS, **tall}
 
 
-def _architecture(blank: Architecture, guide: Guide, rows: Sequence[int]) -> Architecture:
+def _block_numbers(rows: Sequence[int]) -> dict[str, str]:
+    """Half sizes of a block."""
+    return {**_BLOCK_NUMBERS, "half_z": f"{'pitch_z + ' if len(rows) > 1 else ''}(cell + skin)/2"}
+
+
+def _architecture(blank: Architecture, layers: Sequence[Layer], spec: Specification) -> Architecture:
     """The architecture with the text of its design file, and ranges and limits of the numbers that it uses."""
-    parts = sorted({(_part(each), "xyz"[each.place.face]) for each in guide.elements})
-    used = {"seat", "skin", "gap_x", "gap_y", *(f"length_{axis}" for _, axis in parts)}
-    used |= {"leaf_thickness" if part == "leaf" else "wire" for part, _ in parts}
-    used |= ({"gap_z"} if len(rows) > 1 else set[str]()) | ({"neck"} if blank.kind == "piezo" else set[str]())
-    ranges = {name: each for name, each in _RANGES.items() if name in used}
-    slender = {f"{part}_slenderness_{axis}": f"length_{axis}/{_THIN[part]}" for part, axis in parts}
-    numbers = {**{name: "1 mm" if "thinnest" in _RANGES[name][0] else "10 mm" for name in ranges}, **dict.fromkeys(_SET, "30 mm")}
-    numbers |= {**_formulas(blank.kind, rows), **slender}
-    numbers |= {"stack_length": "36 mm", "stack_diameter": "6 mm"} if blank.kind == "piezo" else {}
-    numbers |= {"payload_mass": "0.1 kg", "payload_height": "5 mm"}
-    text = "\n".join(_lines(blank, guide, numbers, parts))
+    stacks, rows = blank.kind == "piezo", max((each.rows for each in layers), key=len)
+    used = ["seat", "gap_x", "gap_y", *(["gap_z"] if len(rows) > 1 else []), *(["neck"] if stacks else [])]
+    ranges, slender = {name: _RANGES[name] for name in used}, dict[str, str]()
+    numbers = {"stack_length": "36 mm", "stack_diameter": "6 mm"} if stacks else {}
+    numbers |= {"payload_mass": "0.1 kg", "payload_height": "5 mm", **dict.fromkeys(_SET, "30 mm")}
+    formulas = _grid_numbers(blank.kind, rows)
+    for layer in layers:
+        parts = layer.elements
+        names = {"skin", *(f"length_{axis}" for _, axis in parts), *(_THIN[part] for part, _ in parts)}
+        ranges |= {layer.named(name): each for name, each in _RANGES.items() if name in names}
+        above = layers[layer.number - 2] if layer.number > 1 else None
+        formulas |= {} if above is None else _tray_numbers(above, layer, spec, stacks=stacks)
+        formulas |= {layer.named(name): layer.named(text) for name, text in _block_numbers(layer.rows).items()}
+        own = {f"{part}_slenderness_{axis}": f"length_{axis}/{_THIN[part]}" for part, axis in parts}
+        slender |= {layer.named(name): layer.named(text) for name, text in own.items()}
+    start = {name: "1 mm" if "thinnest" in each[0] else "10 mm" for name, each in ranges.items()}
+    text = "\n".join(_lines(blank, layers, {**start, **numbers, **formulas, **slender}))
     return replace(blank, drawing=text, ranges=ranges, limits={f"numbers.{name}": "10" for name in slender})
 
 
-def _lines(blank: Architecture, guide: Guide, numbers: Mapping[str, str], parts: Sequence[tuple[str, str]]) -> Iterator[str]:
+def _largest(texts: Iterable[str], least: str) -> str:
+    """The formula of the largest of several lengths."""
+    first, *others = sorted(set(texts)) or [least]
+    for each in others:
+        first = f"({first} + {each} + sqrt(({first} - {each})*({first} - {each})))/2"
+    return first
+
+
+def _tray_numbers(above: Layer, layer: Layer, spec: Specification, *, stacks: bool) -> dict[str, str]:
+    """Size of a tray that carries the ends of the guide above; its plate is the block of its own guide, at `level`."""
+    ends, number = above.ends(stacks=stacks), above.number
+    far = {axis: [text for place, text in ends.items() if place.face == index] for index, axis in enumerate("xyz")}
+    travel = max((value for axis, value in spec.displacements.items() if axis in "xyz"), default=0.0)
+    under, start = f"drop_{number}", f"level_{number} - " if number > 1 else "-"
+    drop = _largest(far["z"], f"{1e3 * (_CLEARANCE + travel):.7g} mm") + (" + 1 mm" if len(set(far["z"])) > 1 else "")
+    size = {axis: f"2*half_{axis}" + (f" + 2*({_largest(far[axis], '')} + cell)" if far[axis] else "") for axis in "xy"}
+    return {
+        under: above.named(drop),
+        layer.named("payload_length"): above.named(size["x"]),
+        layer.named("payload_width"): above.named(size["y"]),
+        f"level_{layer.number}": f"{start}{above.named('half_z')} - {under} - {layer.named('half_z')}",
+    }
+
+
+def _posts(above: Layer, *, stacks: bool) -> Iterator[str]:
+    """Solids of a tray that carry the ends of the guide above, from its plate up to each end."""
+    ends, level = above.ends(stacks=stacks), f"level_{above.number} " if above.number > 1 else ""
+    under, several = f"drop_{above.number}", len({text for place, text in ends.items() if place.face == 2}) > 1
+    tops = dict[tuple[int, tuple[int, int], str], int]()
+    for place, text in ends.items():
+        key = (place.face, place.grid[:2], text)
+        tops[key] = max(place.grid[2], tops.get(key, -1))
+    for number, ((face, grid, text), row) in enumerate(sorted(tops.items()), 1):
+        if face == 2 and not several:
+            continue  # on the plate
+        middle = ["0 mm" if not each else f"{'-' if each < 0 else ''}pitch_{axis}" for each, axis in zip(grid, "xy", strict=True)]
+        height = f"{under} - {text}"
+        if face < 2:
+            sign = "-" if grid[face] < 0 else ""
+            middle[face] = f"{sign}half_{'xy'[face]} {sign or '+'} {text} {sign or '+'} cell/2"
+            height = f"half_z + {under} + cell/2" + {-1: " - pitch_z", 0: "", 1: " + pitch_z"}[row]
+        at = [*middle, f"{level}- half_z - {under} + ({height})/2"]
+        size = ["cell", "cell", height]
+        yield above.named(f'post_{number} = {{ shape = "block", material = "body", size = {json.dumps(size)}, at = {json.dumps(at)} }}')
+
+
+def _lines(blank: Architecture, layers: Sequence[Layer], numbers: Mapping[str, str]) -> Iterator[str]:
     """Lines of the design file."""
     stacks = blank.kind == "piezo"
-    yield _HEADER.format(title=blank.name, name=json.dumps(blank.name)) + ('steel = { like = "AISI 420 hardened" }\n' if stacks else "")
+    series = "" if layers[-1].number == 1 else f"# {len(layers)} guides in series: {_reason(blank.serves[0])}.\n"
+    steel = 'steel = { like = "AISI 420 hardened" }\n' if stacks else ""
+    yield _HEADER.format(title=blank.name, name=json.dumps(blank.name), series=series) + steel
     yield from ("[numbers]", *(f'{name} = "{text}"' for name, text in numbers.items()), "", "[parts]")
-    for part, axis in parts:
-        yield f'{part}_{axis} = {{ kind = "{_KINDS[part]}", material = "flexure", length = "length_{axis}", {_SECTIONS[part]} }}'
+    for layer in layers:
+        for part, axis in layer.elements:
+            text = f'{part}_{axis} = {{ kind = "{_KINDS[part]}", material = "flexure", length = "length_{axis}", {_SECTIONS[part]} }}'
+            yield layer.named(text)
     yield from (_STACK_PARTS if stacks else _COIL, _BODY)
+    for above, layer in pairwise(layers):
+        at, size = json.dumps(["0 mm", "0 mm", f"level_{layer.number}"]), layer.named('["2*half_x", "2*half_y", "2*half_z"]')
+        yield f'[bodies.{layer.body}.solids]\nplate = {{ shape = "block", material = "body", size = {size}, at = {at} }}'
+        yield from (*_posts(above, stacks=stacks), "")
     if stacks:
-        yield _STRUT
-        for number, place in enumerate(guide.actuators, 1):
-            pose = f'at = {_point(place)}, along = "{_inward(place)}", up = "{"xz"[place.face < 2]}"'
-            yield f'B{number} = {{ unit = "strut", pose = {{ {pose} }} }}'
+        yield from _struts(layers)
     yield "\n[links]"
-    for number, element in enumerate(guide.elements, 1):
-        part, axis = _part(element), "xyz"[element.place.face]
-        bends = "" if element.width < 0 else f', bends = "{"xyz"[element.width]}"'
-        yield _link(f"{part}_{number}", f"{part}_{axis}", element.place, f"length_{axis}/2", bends)
-    for number, place in enumerate(() if stacks else guide.actuators, 1):
-        yield _link(f"motor_{number}", blank.slot, place)
+    names = dict[str, int]()
+    for layer in layers:
+        joins = f'joins = ["{layer.base}", "{layer.body}"]'
+        for element in layer.guide.elements:
+            part, axis = _part(element), "xyz"[element.place.face]
+            bends = "" if element.width < 0 else f', bends = "{"xyz"[element.width]}"'
+            names[part] = names.get(part, 0) + 1
+            at = f'part = "{part}_{axis}", at = {layer.point(element.place, f"length_{axis}/2")}'
+            yield f'{part}_{names[part]} = {{ {joins}, {layer.named(at)}, along = "{_inward(element.place)}"{bends} }}'
+        for place in () if stacks else layer.guide.actuators:
+            names["motor"] = names.get("motor", 0) + 1
+            at = f'part = "{blank.slot}", at = {layer.named(layer.point(place))}'
+            yield f'motor_{names["motor"]} = {{ {joins}, {at}, along = "{_inward(place)}" }}'
     yield _PAYLOAD
+
+
+def _struts(layers: Sequence[Layer]) -> Iterator[str]:
+    """Units and placements of the stacks between necks."""
+    yield _STRUT + _STRUT_NECKS.format(base=layers[0].base, body=layers[0].body)
+    for layer in layers[1:]:
+        necks = _STRUT_NECKS.format(base=layer.base, body=layer.body)
+        yield f'\n[units.{layer.strut}]\nlike = "strut"\n\n[units.{layer.strut}.links]\n{necks}'
+    yield "\n[placements]"
+    placed = ((layer, place) for layer in layers for place in layer.guide.actuators)
+    for number, (layer, place) in enumerate(placed, 1):
+        pose = f'at = {layer.named(layer.point(place))}, along = "{_inward(place)}", up = "{"xz"[place.face < 2]}"'
+        yield f'B{number} = {{ unit = "{layer.strut}", pose = {{ {pose} }} }}'
 
 
 def _part(element: Element) -> str:
     return "wire" if element.width < 0 else "leaf"
 
 
-def _link(name: str, part: str, place: Place, outside: str = "", more: str = "") -> str:
-    at = _point(place, outside)
-    return f'{name} = {{ joins = ["ground", "platform"], part = "{part}", at = {at}, along = "{_inward(place)}"{more} }}'
-
-
 def _inward(place: Place) -> str:
     return f"{'-' if place.side > 0 else ''}{'xyz'[place.face]}"
-
-
-def _point(place: Place, outside: str = "") -> str:
-    """The formulas of a point on a face, or outside of it."""
-    texts = ["0 mm" if not each else f"{'-' if each < 0 else ''}pitch_{axis}" for each, axis in zip(place.grid, "xyz", strict=True)]
-    sign = "-" if place.side < 0 else ""
-    texts[place.face] = f"{sign}half_{'xyz'[place.face]}" + (f" {sign or '+'} {outside}" if outside else "")
-    return json.dumps(texts)
 
 
 def symmetries(spec: Specification) -> tuple[Array, ...]:
