@@ -28,8 +28,8 @@ class MapError(Result):
     """Error of the linear map: finite pose minus J a.
 
     `errors` (k, ..., 6) [m, rad] are for the `strokes` (k, ..., n) [m]. `worst` (..., 6) is the largest error by axis, at `worst_strokes`
-    (..., 6, n). If all errors are rounding, `worst` is 0 at the first strokes. `residual` (...) [m] is the largest residual of redundant
-    constraints.
+    (..., 6, n). If all errors are rounding errors, `worst` is 0 at the first strokes. `residual` (...) [m] is the largest residual of
+    redundant constraints.
     """
 
     TABLE: ClassVar[Layout] = Layout(
