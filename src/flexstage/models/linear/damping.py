@@ -24,8 +24,8 @@ def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
     if law is None:
         raise refuse(
             "damping",
-            "the design states no damping, which determines the response at a resonance",
-            'State it in the design, for example damping = { law = "modal", ratio = 0.01 }, or pass damping=ModalDamping(0.01)',
+            "the design specifies no damping, which determines the response at a resonance",
+            'Specify it in the design, e.g. damping = { law = "modal", ratio = 0.01 }, or pass damping=ModalDamping(0.01)',
         )
     return law
 

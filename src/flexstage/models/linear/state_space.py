@@ -121,7 +121,7 @@ def _note(model: LinearModel, damping: Damping, modes: int | None) -> str:
 
 
 def _law_note(damping: Damping, modes: int | None) -> str:
-    left = "freedoms without inertia" if modes is None else f"modes above the first {modes}"
+    left = "DOFs without inertia" if modes is None else f"modes above the first {modes}"
     if isinstance(damping, ModalDamping):
         return f"modal damping, exact; {left} as a static term"
     if isinstance(damping, RayleighDamping):
