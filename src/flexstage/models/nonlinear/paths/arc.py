@@ -91,8 +91,8 @@ class Point:
       slope up to this point.
     - `motions`: number of independent motions that decrease the potential.
     - `stiffness`: product of the lowest stiffness of the stage and the stiffness of the weakest flexure between fixed ends, relative to the
-      `reference`. Where the flexure's stiffness is zero, the stage's has a pole, but not the product. It is negative for unstable states,
-      and NaN without a reference.
+      `reference`. Where the flexure's stiffness is zero, the stage's stiffness has a pole, but the product has none. It is negative for
+      unstable states, and NaN without a reference.
     """
 
     found: EquilibriumSolution
