@@ -155,7 +155,7 @@ class StageResults:
 
     @cached_property
     def links(self) -> LinearModel:
-        """Linear model link by link, for lost motion and drift."""
+        """Linear model with separate link stiffnesses, for lost motion and drift."""
         return self.model
 
     @cached_property

@@ -238,7 +238,7 @@ def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
 
 
 def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
-    """Compute modes, listed up to the description's frequency limit.
+    """Compute the modes, and list those up to the description's frequency limit.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> platform_modes(double_triangle(), mapped(double_triangle())).limit

@@ -114,7 +114,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 
     - for a mechanism (K singular), naming the free bodies;
     - for a stroke that locked DOFs block;
-    - for a nominal position that negative stiffnesses make unstable. An unstable later design of a batch has NaN.
+    - for a nominal position that negative stiffnesses make unstable. A later design of a batch that is unstable is NaN.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lumped(double_triangle()).coordinates)

@@ -58,7 +58,7 @@ def budget(
     - linear map: finite minus linear kinematics at the corners;
     - gauge noise: `coverage` standard deviations;
     - quantisation: half a step of every gauge with the worst signs;
-    - stepping actuators: half a step of each in the same direction (standard deviation: step/sqrt(12)).
+    - stepping actuators: half a step of each with the worst signs (standard deviation: step/sqrt(12)).
 
     For a force-driven stage in open loop, the forces are u = (V^+ C)^+ xi with the static gain C of the elastic model. The parasitic motion
     C u - V xi replaces lost motion, crosstalk and linear map. `noise` has one-sided power spectral densities of actuator inputs (current,

@@ -1,4 +1,4 @@
-"""Error budget: every source of pose error for a command and temperature change, a row per axis."""
+"""Error budget: every source of pose error for a command and temperature change, with a row per axis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Evaluation of the requirements of a design file: only required values are computed."""
+"""Evaluation of the requirements of a design file; only values with a requirement are computed."""
 
 from __future__ import annotations
 

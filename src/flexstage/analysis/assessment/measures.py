@@ -125,7 +125,8 @@ class MeasureKind:
 class Measure:
     """Measure of a stage: its `key`, `kind`, `name` (an axis, actuator, gauge, path, number) and point.
 
-    `place` is the value of a path's drive; without it, the measure is the worst along the path. `path` is the path of a measure `over` it.
+    `place` is the value of a path's drive; without it, the measure is the worst along the path. `path` names the path of a measure `over` a
+    path.
     """
 
     key: str

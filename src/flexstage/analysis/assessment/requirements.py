@@ -47,7 +47,7 @@ class Sense(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Requirement(Measure):
-    """Requirement line: a measure, the sense of its limit [SI], and the text of the line."""
+    """Requirement line: a measure, its `limit` [SI] with a `sense`, and the `text` of the line."""
 
     text: str
     sense: Sense
@@ -64,7 +64,7 @@ class Verdict:
 
     @property
     def margin(self) -> Array:
-        """Relative margin (...) to the limit: 0.1 is 10 % reserve, negative fails; NaN without a value.
+        """Relative margin (...) to the limit (0.1: 10 % reserve); negative if the requirement is not met, NaN without a value.
 
         For a limit of zero, it is the absolute margin in SI.
         """

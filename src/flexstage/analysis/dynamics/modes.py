@@ -119,7 +119,7 @@ class Modes(Result):
         return len(self.names)
 
     def dominant_bodies(self, index: int) -> tuple[str, float]:
-        """Return the body or link with the largest kinetic-energy fraction in a mode (several if equal), and the fraction; first design."""
+        """Return the body or link (several if equal) with the largest kinetic-energy fraction in a mode, and the fraction; first design."""
         shares = first_design(self.energies, 2)[:, index]
         most = np.flatnonzero(shares >= np.max(shares) - _EQUAL)
         return _set([self.bodies[place] for place in most]), float(np.sum(shares[most]))
@@ -139,7 +139,7 @@ class Modes(Result):
 
     @property
     def highest(self) -> float:
-        """Highest platform frequency of the first design below the limit, or its first one [Hz]."""
+        """Highest platform frequency of the first design below the limit; without one below, its lowest [Hz]."""
         frequencies = first_design(self.platform_frequencies, 1)
         return float(max(frequencies[frequencies < self.limit], default=frequencies[0]))
 
@@ -159,11 +159,10 @@ class Modes(Result):
 def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
     """Compute the undamped natural modes of a model (Eq. 28 of Shin & Moon).
 
-    A platform mode is one at which the modes reach a tenth of the platform's static compliance in a further direction
-    (`models.batch.choice`). Modes closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that shapes align
-    with the platform's axes. Shapes without platform motion align with the coordinates that move most. Modes below `limit` [Hz] are listed.
-    Displacements are small. For a large stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes
-    are computed.
+    At a platform mode, the modes up to it reach a tenth of the platform's static compliance in a further direction (`models.batch.choice`).
+    Modes closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that shapes align with the platform's axes.
+    Shapes without platform motion align with the coordinates that move most. Modes below `limit` [Hz] are listed. Displacements are small.
+    For a large stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes are computed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

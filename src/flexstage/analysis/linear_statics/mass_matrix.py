@@ -26,12 +26,12 @@ _MASSLESS = "the body of this point has no specified mass"
 
 
 class MassMatrix(Result):
-    """Mass matrix at a point in the stage's axes: a twist rate v has the kinetic energy v^T M v / 2.
+    """Mass matrix at a point in the stage's axes: a velocity twist v has the kinetic energy v^T M v / 2.
 
     `rigid` (..., 6, 6) is for the isolated `body` of the point with its payloads. `reduced` (..., 6, 6) is for the whole stage: all other
     masses follow quasi-statically with strokes fixed (static condensation, Guyan, AIAA J. 3, 380, 1965). With the stiffness at the same
-    point, `reduced` gives natural frequencies that are never below those of the whole model. They are close to these if there are no local
-    modes nearby. `reasons` explain unknown masses.
+    point, `reduced` gives natural frequencies that are never below those of the whole model, and close to them if there are no local modes
+    nearby. `reasons` explain unknown masses.
     """
 
     point: str

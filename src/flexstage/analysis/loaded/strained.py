@@ -19,7 +19,7 @@ _STRAIN, _CURVING = 0.02, 40.0
 
 
 def strain_warnings(strained: Strains) -> Iterator[Finding]:
-    """Return warnings for flexures whose strain, stress or curvature exceeds the limits of the theory in any case.
+    """Return warnings for flexures whose strain, stress or curvature exceeds the limits of the theory in any load case.
 
     >>> none = np.zeros((1, 1))
     >>> [str(each.where) for each in strain_warnings(Strains(("leaf",), none + 0.03, none, none, np.array([np.nan])))]

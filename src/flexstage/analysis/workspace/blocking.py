@@ -42,8 +42,8 @@ class StackLine(Result):
 class PlatformLine(Result):
     """Force-displacement line of the platform along each coordinate, commanded by the ideal mapping, (..., f) each.
 
-    `travel` [m, rad] is without load (both ways), `stiffness` [N/m, N m/rad] for a load along this coordinate only. `blocking` [N, N m] is
-    the blocked force: the load that returns the platform to zero.
+    `travel` [m, rad] is without load (in both directions), `stiffness` [N/m, N m/rad] for a load along this coordinate only. `blocking` [N,
+    N m] is the blocked force: the load that returns the platform to zero.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -30,7 +30,7 @@ class GaugeRange(Result):
     `swing` is the largest reading and `limit` half the range, in `units` by gauge (m, rad). `radius` [m] is each gauge's distance from the
     platform's axis. `largest_here` [m] is the largest radius at the gauge's angle for which the reading is within the range,
     `largest_anywhere` [m] the largest such radius at any angle. An infinite radius means that the gauge is within its range everywhere. NaN
-    means that it is outside even on the axis, or not between platform and ground.
+    means that the gauge is outside even on the axis, or not between platform and ground.
     """
 
     TABLE: ClassVar[Layout] = Layout("Gauge ranges", "table used")

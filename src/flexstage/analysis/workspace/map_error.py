@@ -95,7 +95,7 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
 
 
 def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> MapError:
-    """Compute the error of x = J a at k points of strokes (k, ..., n) [m]; batch axes are between.
+    """Compute the error of x = J a at k combinations of strokes (k, ..., n) [m], with batch axes in the middle.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

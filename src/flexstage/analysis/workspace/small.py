@@ -67,8 +67,8 @@ class SecondOrder:
 class SmallMotion:
     """Rotation `turn` [rad] and `bend` (deflection over length) of every link and the platform, per unit of each coordinate (L, f).
 
-    `limit` (L) is the largest rotation [rad], by second-order error, or by contact of notch faces if `closes`.
-    `span` (L) is the bending length of a part [m]; zero for bending at a point.
+    `limit` (L) is the largest rotation [rad], limited by second-order error or, if `closes`, by contact of notch faces. `span` (L) is the
+    bending length of a part [m]; zero for bending at a point.
     """
 
     coordinates: tuple[str, ...]

@@ -83,7 +83,7 @@ def unlike(number: int, what: str) -> DesignError:
 
 
 def eliminate_each(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
-    """Eliminate as `eliminate`, but each design of a batch by its own pivots. The result is bit-identical to the single-design result.
+    """Eliminate like `eliminate`, but with separate pivots for each design of a batch. Results equal single-design results bit for bit.
 
     `scale` is (..., N). Designs may differ in the independent coordinates outside `keep`; the returned indices belong to the first design.
 

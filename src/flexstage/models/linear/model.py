@@ -53,7 +53,7 @@ class LinearModel(InNotebook, CheckedFields):
       sum G^T k imposed.
     - `output` C (..., p, n) and `feedthrough` D_u (..., p, m).
     - `rigid` (..., n, 6): motion of all coordinates if the stage moves rigidly with the ground, per ground twist at the platform's
-      reference point; `rigid_output` (..., p, 6): the outputs.
+      reference point; `rigid_output` (..., p, 6): the outputs in this motion.
     - `base_inertia` (..., n, 6): inertial force per unit base acceleration.
     - `inertial` (..., n, m): M_u, inertial forces due to motions that inputs impose (absent: zero).
     - `unknown`: outputs that the model does not determine, i.e. forces of locked DOFs.

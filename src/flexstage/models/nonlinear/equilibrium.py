@@ -41,7 +41,7 @@ class State(InNotebook):
 
     `status` is the outcome of each solution after `iterations`, with a `residual` relative to lengths and stiffnesses.
 
-    A case that did not converge is NaN. `reached` is the largest load fraction with an equilibrium, and `reasons` has a message.
+    A case that did not converge is NaN. `reached` is the largest load fraction with an equilibrium, and `reasons` explains each failure.
 
     `reactions` (..., h) act on the `held` coordinates [N, N m].
     """

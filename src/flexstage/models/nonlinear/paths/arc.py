@@ -261,7 +261,7 @@ def point_at(
 def complete_paths(
     model: Nonlinear, loads: Loads, hold: FixedCoordinates, solution: EquilibriumSolution, options: SolverOptions
 ) -> EquilibriumSolution:
-    """Continue cases that reached only a part of their load by arc length, to the whole load or to the limit point."""
+    """Continue by arc length the cases that reached only a fraction of their load, to the whole load or to the limit point."""
     partly = np.flatnonzero((solution.status != Status.CONVERGED) & (solution.reached > 0.0))
     for case in partly if options.arcs else ():
         one = np.array([case])
