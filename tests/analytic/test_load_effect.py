@@ -133,7 +133,7 @@ def test_a_deflection_that_weight_may_double_is_withheld(limit, known):
 def test_a_bound_of_stiffness_is_twice_that_of_frequencies():
     """A frequency goes with the root of a stiffness."""
     said = LoadEffect(0.004, "", "", None).text
-    assert "no stiffness by more than 0.4 %, no frequency by more than 0.2 %" in said
+    assert "no stiffness by more than 0.4 %, and no frequency by more than 0.2 %" in said
 
 
 def test_nothing_is_said_where_nothing_weighs():
@@ -316,7 +316,7 @@ def test_the_error_over_strokes_is_that_of_kinematics_alone():
 def test_only_the_load_effect_says_which_stage_results_are_of(dead: float, stiffens: float):
     doubts = Stability(np.array(dead), np.array(dead), np.zeros(1), np.array(stiffens), ("platform",), "by hand").warnings
     assert doubts
-    assert not any("told of" in str(each) or "results are of" in str(each) for each in doubts)
+    assert not any("told of" in str(each) or "results are for" in str(each) for each in doubts)
 
 
 def test_stages_guided_by_given_matrices_have_a_stroke_and_no_second_order():

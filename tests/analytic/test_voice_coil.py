@@ -186,7 +186,7 @@ def test_motions_that_no_force_causes_have_no_reach(rods, along, moved, unmoved)
     assert 0.0 < found.held.item() <= 10.0 * static_gain(lumped(mechanism), (f"platform.{moved}",), ("motor",)).values.item() * (1 + 1e-9)
     verdict = judge(replace(mechanism, requirements={"stroke.y": "at least 1 um"}))[0]
     assert verdict.value is None
-    assert "no actuator moves it" in verdict.reason
+    assert "no actuator drives this motion" in verdict.reason
     assert analyse(mechanism).force_workspace is not None
 
 
@@ -216,7 +216,7 @@ def test_travel_and_a_stress_end_the_reach_too():
     assert (found.held.item(), found.limited_by) == (pytest.approx(0.1 * mm, rel=1e-9), ("motor travel",))
     verdict = judge(replace(stage(), requirements={"stroke.x": "at least 50 um"}))[0]
     assert verdict.value is None
-    assert "its actuators have no specified limit" in verdict.reason
+    assert "the actuators of this motion have no specified limit" in verdict.reason
 
 
 def test_yield_of_the_leaves_ends_the_reach():

@@ -244,7 +244,7 @@ def test_the_warnings_of_designed_stages_are_counted_and_those_of_their_check(fl
     ended = flexstage("design", "spec.toml", "-o", "answers", "--architecture", "guide", "--json", "out.json", "--report", "out.html")
     assert ended.code == 0, ended.err
     (answer,) = json.loads((tmp_path / "out.json").read_text())["answers"]
-    assert any("platform: it is taken as rigid" in each for each in answer["warnings"])
+    assert any("platform: modelled as rigid" in each for each in answer["warnings"])
     (line,) = (each.split() for each in ended.out.splitlines() if each.startswith(" 1 "))
     assert line[-1] == str(len(answer["warnings"]))
     assert "Warnings: number of those that flexstage check prints." in (tmp_path / "out.html").read_text(encoding="utf-8")

@@ -177,7 +177,7 @@ def test_no_equilibrium_beyond_a_snap_is_taken_for_the_deflection_under_a_load()
     refused = fs.equilibrium(fs.nonlinear(stage), {DOWN: np.array([0.95, 1.5]) * limit})
     assert refused.converged.tolist() == [True, False]
     assert "at 0.66" in refused.reasons[1]
-    with pytest.raises(fs.DesignError, match=r"at 0\.66\d* of its loads it snaps or buckles"):
+    with pytest.raises(fs.DesignError, match=r"at 0\.66\d* of the loads the stage snaps or buckles"):
         fs.operating_point(stage, loads={DOWN: 1.5 * limit})
 
 

@@ -95,7 +95,7 @@ def test_a_sweep_asks_for_measures_along_a_path(tmp_path: Path):
         (fs.StrokePath("platform.y", ("1 mm", "1 mm")), "start and end are equal"),
         (fs.StrokePath("platform.y", ("0 mm", "1 kg")), "kg"),
         (fs.StrokePath("platform.y", ("0 mm", "1 mm"), points=1), "too few points"),
-        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "5 N"}), "it drives"),
+        (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "5 N"}), "the force that drives"),
         (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"platform.y": "0"}), "cannot be a fixed coordinate"),
         (fs.StrokePath("platform.y", ("0 mm", "1 mm"), hold={"gravity": "half"}), '"on" or "off"'),
     ],
@@ -117,7 +117,7 @@ def test_where_the_stage_is_not_stable_it_has_no_frequencies_and_that_is_said():
     pressed = stage(out=replace(OUT, points=2, hold={"platform.x": f"{-3.0 * np.pi**2 * UNIT:.6g} N"}))
     found = {each.requirement.key: each for each in judge(pressed)}["frequency.1 over out"]
     assert found.value is None
-    assert "of its loads it snaps or buckles" in found.reason
+    assert "of the loads the stage snaps or buckles" in found.reason
 
 
 def test_what_stays_on_a_path_stays():

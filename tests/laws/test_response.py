@@ -253,7 +253,7 @@ def test_the_default_grid_resolves_every_peak():
 
 def test_refusals_name_the_object_and_the_remedy():
     model = oscillator()
-    with pytest.raises(DesignError, match=r"states no damping.*damping=ModalDamping"):
+    with pytest.raises(DesignError, match=r"specifies no damping.*damping=ModalDamping"):
         response(model, ["platform.x"], ["u"], GRID)
     with pytest.raises(DesignError, match=r"plattform\.x: unknown output\. Use platform\.x"):
         response(model, ["plattform.x"], ["u"], GRID, damping=ModalDamping(0.01))

@@ -68,7 +68,7 @@ def test_a_stage_without_gauges_records_nothing() -> None:
 
 def test_a_stage_without_damping_is_refused() -> None:
     stage = replace(STAGE, damping=None)
-    assert "the design states no damping" in told(SOUND, stage)
+    assert "the design specifies no damping" in told(SOUND, stage)
     assert "would ring for ever" in told(SOUND, replace(STAGE, damping=ModalDamping(0.0)))
     assert "can be held" in told(SOUND, replace(STAGE, damping=ModalDamping(1e-8)))
 

@@ -90,7 +90,7 @@ def test_a_line_is_read():
         ("stroke.x", "at least 50 urad", "must be a displacement"),
         ("stroke.rx", "at least 50 um", "must be a rotation"),
         ("drift.x", "at most 5 um", "must be a drift"),
-        ("mass", "at most 5 kg at chuck", "the measure has no point"),
+        ("mass", "at most 5 kg at chuck", "the measure does not support a point"),
         ("stiffness.(1,1)", "at least 5 N/um", "Use three numbers"),
         ("stiffness.(0,0,0)", "at least 5 N/um", "Use three numbers"),
         ("stiffness.r(1,1,0)", "at least 5 N/um", "must be a rotational stiffness"),

@@ -1,4 +1,4 @@
-"""Collection of results; single ones may fail with an error."""
+"""Collection of results, with the reasons for those that fail."""
 
 from __future__ import annotations
 

@@ -50,11 +50,11 @@ else:
 KEPT = 48
 """Number of cached benches of single designs of a batch; each uses about a megabyte."""
 _TOGETHER = 3
-"""Number of required strokes up to which all corners of their box are computed; of more, the end of each."""
+"""Largest number of required strokes for which all corners of their box are computed; with more, only the end of each is."""
 
 
 class StageResults:
-    """Models and results of one stage, computed on first use. `command`: the required strokes as a box."""
+    """Models and results of one stage, computed on first use. `command` is the box of required strokes."""
 
     def __init__(self, mechanism: Mechanism, command: Mapping[str, float]) -> None:
         self.mechanism = mechanism
@@ -89,7 +89,7 @@ class StageResults:
             bench._points[name, at] = each  # noqa: SLF001
 
     def one(self, place: int, share: float) -> StageResults:
-        """Bench of one design of a batch with a share of its imaginary parts added; the last ones are cached."""
+        """Bench of one design of a batch, with a fraction `share` of its imaginary parts added. Recent benches are cached."""
         if (place, share) not in self._ones:
             if len(self._ones) >= KEPT:
                 self._ones.clear()
@@ -119,13 +119,13 @@ class StageResults:
         return bool(self.kinematics.thrusts) and not self.kinematics.actuated
 
     def correction(self, point: str) -> Matrix:
-        """Strokes per motion of a point, lost motion corrected by command."""
+        """Strokes per motion of a point, with lost motion corrected."""
         if point not in self._corrections:
             self._corrections[point] = mapping_at(self.mechanism, self.kinematics, point, mapping=self.lost.correction)
         return self._corrections[point]
 
     def stopped(self, point: str) -> tuple[Matrix, StrokeLimits]:
-        """Strokes per motion of a point, lost motion corrected by command, with stroke limits and stops within reach."""
+        """Strokes per motion of a point with lost motion corrected, and limits of strokes and of stops within reach."""
         return with_stops(self.mechanism, self.kinematics, self.correction(point), self.limits, point)
 
     @cached_property
@@ -145,7 +145,7 @@ class StageResults:
 
     @cached_property
     def drawn(self) -> LinearModel:
-        """Lumped model of a stage that is stable under its permanent load."""
+        """Lumped model; refused if the stage is unstable under its permanent load."""
         return standing(self.mechanism)
 
     @cached_property
@@ -155,7 +155,7 @@ class StageResults:
 
     @cached_property
     def links(self) -> LinearModel:
-        """Linear model link by link, for lost motion and drift."""
+        """Linear model with separate link stiffnesses, for lost motion and drift."""
         return self.model
 
     @cached_property
@@ -165,7 +165,7 @@ class StageResults:
 
     @cached_property
     def felt(self) -> StageResults:
-        """Bench of stiffness, modes, lost motion and drift under a significant permanent load; else this bench."""
+        """Bench of the loaded stage (stiffness, modes, lost motion, drift) if its permanent load is significant; else this bench."""
         if self.loaded is None or self.loaded.model is None:
             return self
         other = self.with_model(self.loaded.model)
@@ -200,7 +200,7 @@ class StageResults:
 
     @cached_property
     def stress(self) -> HingeStress:
-        """Stress of hinges over all strokes and forces, stress-free at zero voltage."""
+        """Stress of hinges over all strokes and forces; hinges are stress-free at zero voltage."""
         condition = "of all strokes and forces (coils at peak current)" if self.assembly.thrusts else FROM_ZERO
         return hinge_stress(self.mechanism, self.model, self._loaded, condition=condition)
 
@@ -218,11 +218,11 @@ class StageResults:
 
     @property
     def per_motion(self) -> Matrix:
-        """Inputs per displacement of the platform, lost motion corrected."""
+        """Inputs per displacement of the platform, with lost motion corrected."""
         return self.force_workspace(PLATFORM).per_motion if self.forced else self.lost.correction
 
     def corners(self) -> tuple[tuple[str, ...], Array]:
-        """Axes and corners (c, k) of the box of required strokes; of more than three axes, the end of each."""
+        """Axes and corners (c, k) of the box of required strokes; for more than three axes, only the end of each stroke."""
         box = self._driven_box()
         half = np.array(list(box.values()))
         alone = np.concatenate([np.diag(half), -np.diag(half)])
@@ -251,7 +251,7 @@ class StageResults:
         return buckling(self.mechanism, drawn(self.mechanism), self._loaded)
 
     def deflection(self, point: str) -> Deflection:
-        """Deflection of a point under gravity and specified forces, strokes fixed."""
+        """Deflection of a point under gravity and specified forces, with strokes fixed."""
         return deflection(self.mechanism, self.model, point=point)
 
     @cached_property

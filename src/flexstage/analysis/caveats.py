@@ -105,11 +105,11 @@ def defaults(mechanism: Mechanism) -> tuple[Default, ...]:
 def _stack_defaults(mechanism: Mechanism) -> Iterator[Default]:
     for name, piezo in _shared_stacks(mechanism).items():
         if np.all(np.asarray(piezo.mass) == 0.0):
-            advice = 'Its mass adds local modes and lowers others: mass = "0.12 kg"'
+            advice = 'The mass adds local modes and lowers frequencies: mass = "0.12 kg"'
             yield Default(f"parts.{name}", "stack mass 0 by default", advice, _STILL)
         if piezo.bias is None and piezo.voltage_low is not None and piezo.voltage_high is not None:
             middle = np.ravel(0.5 * (np.real(piezo.voltage_low) + np.real(piezo.voltage_high)))[0]
-            what, advice = f"bias {middle:g} V (mid-range) by default", f'Strokes are relative to it: bias = "{middle:g} V"'
+            what, advice = f"bias {middle:g} V (mid-range) by default", f'Strokes are relative to the bias: bias = "{middle:g} V"'
             yield Default(f"parts.{name}", what, advice, _LINEAR | _MEASURED)
 
 
@@ -125,7 +125,7 @@ def _massless_defaults(mechanism: Mechanism) -> Iterator[Default]:
             masses[f"parts.{link.link.part}"] = float(np.max(own[..., 0, 0] + 2.0 * own[..., 0, 6] + own[..., 6, 6]))
     for where, size in masses.items():
         if size > 0.0:
-            advice = "Add it to the adjacent bodies"
+            advice = "Add this mass to the adjacent bodies"
             yield Default(where, f"mass of a restricted part omitted ({size:.4g} kg)", advice, _STILL | {"stiffness"})
 
 
@@ -133,7 +133,7 @@ def _sticking(mechanism: Mechanism) -> Iterator[Default]:
     """Contacts without specified friction."""
     for name, part in mechanism.parts.items():
         if isinstance(part, Contact) and part.friction is None:
-            yield Default(f"parts.{name}", "no slip by default", "Specify it: friction = 0.15", frozenset({"mapping"}))
+            yield Default(f"parts.{name}", "no slip by default", "For slip, specify friction = 0.15", frozenset({"mapping"}))
 
 
 def _lossless(mechanism: Mechanism) -> Iterator[Default]:
@@ -149,11 +149,11 @@ def _lossless(mechanism: Mechanism) -> Iterator[Default]:
         if not isinstance(inner, Joint) and getattr(holder, "loss_factor", None) is None:
             where = f"materials.{material}" if material else f"parts.{link.link.part}"
             hints[where] = (
-                "Specify the drawn part that it replaces" if isinstance(inner, ComplianceMatrix) else "Specify it: loss_factor = 0.002"
+                "Specify the drawn part that the matrix replaces" if isinstance(inner, ComplianceMatrix) else "Specify loss_factor = 0.002"
             )
     for item in expand(mechanism).superelements.values():
         if item.part.loss_factor is None:
-            hints[f"parts.{item.link.part}"] = "Specify it: loss_factor = 0.002"
+            hints[f"parts.{item.link.part}"] = "Specify loss_factor = 0.002"
     for where, advice in hints.items():
         yield Default(where, "loss factor 0 by default (structural damping)", advice, _UNDAMPED)
 
@@ -166,7 +166,7 @@ def _ground_default(mechanism: Mechanism) -> Iterator[Default]:
     except DesignError:
         return  # the requirement reports the missing field
     if ground is not None and not ground.stated:
-        advice = f'Drift depends on it: ground = "{ground.material}"'
+        advice = f'Drift depends on this material: ground = "{ground.material}"'
         yield Default(
             "ground",
             f"material {ground.material} by default: {ground.source}",
@@ -312,7 +312,7 @@ def _stress_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Findi
     if np.min(safety, initial=np.inf) < 1.0:
         limit = stress.governing[stress.links.index(stress.weakest)]
         what = f"stress under weight, payloads and forces is {1.0 / float(np.min(safety)):.3g} times its {limit}"
-        yield Finding(stress.weakest, what, "Check masses and forces, or strengthen it")
+        yield Finding(stress.weakest, what, "Check masses and forces, or strengthen the hinge")
 
 
 def _seat_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[Finding]:
@@ -324,7 +324,7 @@ def _compression_findings(mechanism: Mechanism, model: LinearModel) -> Iterator[
     uses = np.real(share.usage(share.compression)).reshape(-1, len(share.actuators))[0]
     for name, use in zip(share.actuators, uses, strict=True):
         if use > 1.0:
-            what = f"compression under weight, payloads and forces is {use:.3g} times the maximum load of its stack"
+            what = f"compression under weight, payloads and forces is {use:.3g} times the maximum load of the stack"
             yield Finding(name, what, "Check masses and forces, or use a stronger stack")
 
 
@@ -337,7 +337,9 @@ def _points(mechanism: Mechanism) -> Iterator[Finding]:
             size = float(np.max(np.real(item.mass)))
             what = f"point mass of {size:.4g} kg without inertia: rotational frequencies are too high or missing"
             yield Finding(
-                where, what, 'Specify inertia = { xx = "...", yy = "...", zz = "..." } or an outline, or point = true if it is one'
+                where,
+                what,
+                'Specify inertia = { xx = "...", yy = "...", zz = "..." } or an outline, or mark it as a point mass by point = true',
             )
 
 
@@ -353,7 +355,7 @@ def _blockages(mechanism: Mechanism) -> Iterator[Finding]:
         result = kinematics(mechanism)
         yield from result.blockages
         if not result.mobility and not result.actuators:
-            what = "its links constrain all six degrees of freedom: no ideal motion remains"
+            what = "links constrain all six degrees of freedom, and no ideal motion remains"
             yield Finding(PLATFORM, what, "Free the degrees of freedom of links for the required motion")
 
 
@@ -389,7 +391,7 @@ def check(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 
 def part_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Return warnings for parts outside the validated range of beam theory, or not straight when free.
+    """Return warnings about parts that are outside the validated range of beam theory, or not straight when free.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> part_warnings(double_triangle())
@@ -402,8 +404,8 @@ def _not_straight(mechanism: Mechanism) -> Iterator[Finding]:
     """Flexures not straight when free, straight in linear models."""
     for name, part in mechanism.parts.items():
         if getattr(part, "is_bent", False):
-            what = "not straight when free; all models except for large displacements assume a straight, stress-free flexure"
-            yield Finding(f"parts.{name}", what, "Run flexstage stroke, or modes --at, for its effect")
+            what = "not straight when free; all models except the one for large displacements assume a straight, stress-free flexure"
+            yield Finding(f"parts.{name}", what, "Run flexstage stroke, or modes --at, to compute the effect")
 
 
 def _room(mechanism: Mechanism) -> tuple[Finding, ...]:

@@ -53,21 +53,22 @@ else:
 __all__ = ["Analysis", "Model", "analyse", "felt", "platform_modes", "read", "required_command"]
 
 _RIGID = "the ideal model has no elasticity"
-_UNLUMPED = "this needs the lumped model"
+_UNLUMPED = "only the lumped model computes this result"
 
 
 @dataclass(frozen=True, eq=False)
 class Analysis(InNotebook):
-    """All results of one model of a stage; a field without a result is `None`, with the reason in `missing` by field name.
+    """All results of one model of a stage. A field without a result is `None`; `missing` has the reason by field name.
 
     `response` is from the actuators' inputs to the platform's twist and all gauges, `transmissibility` from the ground to the platform.
     Only the lumped model gives `deflection` and `buckling` under permanent load, drift, error budget, and `units` (each distinct isolated
-    unit). All models give the `verdicts` on requirements.
+    unit). With any model, `verdicts` on requirements are by the lumped model.
 
     `loaded` is the effect of the permanent load. If it is significant, statics, modes, responses (`felt`), lost motion, drift, error budget
     and their verdicts are for the loaded stage. Other results and `linear` are nominal. `second_order` is the small-displacement error over
-    the required strokes (default: the available strokes). `ends` has critical load factors at the ends of the paths, up to the required
-    factor; None without paths. The error budget is for one kelvin and the required strokes (default: all single-axis strokes at once).
+    the required strokes; without these, over the available strokes. `ends` has critical load factors at the ends of the paths, up to the
+    required factor; None without paths. The error budget is for one kelvin and the required strokes; without these, for all single-axis
+    strokes at once.
 
     `freedoms` is the stiffness along ideal motions and constraints (None for six ideal motions), `mass` the effective mass of the platform.
     `stress` is at the required strokes; for force-driven stages without required strokes, at peak current.
@@ -139,7 +140,7 @@ def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
 @check_arguments
 @one_thread
 def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = True) -> Analysis:
-    """Compute all analyses of one model; without `whole`, only those of the short form, in half the time.
+    """Return all analyses of one model; without `whole`, only those of the short form, in half the time.
 
     The short form omits responses, isolated units and most of the workspace. Impossible results (lost motion of an under-actuated stage)
     are `None`, with the reason in `missing`. Raises `DesignError` if the model is refused.
@@ -225,7 +226,7 @@ def _errors(mechanism: Mechanism, command: Mapping[str, float] | None, reach: Wo
 
 
 def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
-    """Return the required platform strokes as a box of commands by coordinate [m, rad]; `None` without any.
+    """Return the required platform strokes by coordinate [m, rad], which form a box; `None` without any.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> required_command(double_triangle())["z"]
@@ -237,7 +238,7 @@ def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
 
 
 def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
-    """Compute modes, listed up to the description's frequency limit.
+    """Compute the modes, and list those up to the description's frequency limit.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> platform_modes(double_triangle(), mapped(double_triangle())).limit

@@ -135,7 +135,7 @@ def forward_kinematics(mechanism: Mechanism, kinematics: Kinematics, strokes: Ar
     The poses of all bodies are computed by Newton's method. Leaves and rods with end deflection w and slope t shorten by 0.6 w^2/L - 0.1 w
     t + L t^2/15, as in the beam constraint model (Awtar, Slocum & Sevincer 2007). Other links have fixed pivots.
 
-    Raises `DesignError` if the strokes do not determine the platform or the iteration does not converge.
+    Raises `DesignError` if the strokes do not determine the platform's motion or the iteration does not converge.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -215,7 +215,7 @@ def _newton(links: _Links, state: _State) -> tuple[_State, int]:
     raise refuse(
         "finite motion",
         f"no convergence: the last step was {before:.3g} times the stage's size, {np.max(links.length):.3g} m",
-        "The stage cannot be closed there; use smaller strokes or poses",
+        "The links cannot be connected there; use smaller strokes or poses",
     )
 
 

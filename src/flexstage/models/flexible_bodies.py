@@ -5,8 +5,8 @@ Each outline has a rectangular grid of quadratic hexahedra with 20 nodes. Points
 their cells.
 
 Loads are wrenches at the ends of the links on a body, balanced by the inertia of the accelerated body (inertia relief). The results are the
-twists of these ends against the body's mean motion. A linear model then has rigid bodies, with a compliance between each body and the ends
-of its links.
+twists of these ends relative to the body's mean motion. A linear model then has rigid bodies, with a compliance between each body and the
+ends of its links.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ _SAMPLES: Array = np.array(
 class BodyFlexibility:
     """Compliance (6 k, 6 k) [SI] of a body at the ends of its k `links`.
 
-    The coordinates are the twists of these ends against the mean motion of the body, at the points `ends` (k, 3), in the stage's axes.
+    The coordinates are the twists of these ends relative to the mean motion of the body, at the points `ends` (k, 3), in the stage's axes.
     Bodies with equal outlines and links belong to one `group`.
     """
 
@@ -112,7 +112,7 @@ def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     """
     assembly = expand(mechanism)
     if _is_varied(mechanism):
-        return BodyEstimates((), dict.fromkeys(assembly.bodies, "it is one of several designs"))
+        return BodyEstimates((), dict.fromkeys(assembly.bodies, "one of several designs"))
     if len(assembly.bodies) > _MOST:
         return BodyEstimates((), dict.fromkeys(assembly.bodies, f"the stage has more than {_MOST} bodies"))
     found: list[BodyFlexibility] = []
@@ -124,7 +124,7 @@ def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
         if reason is None and (ends := [link for link in links if np.any(span(link.part))]):
             estimate = _estimate(body, ends, mechanism.materials, known)
             found += [] if estimate is None else [estimate]
-            reason = None if estimate is not None else "with outlines that are separate or too thin"
+            reason = None if estimate is not None else "outlines separate or too thin"
         if reason is not None:
             reasons[name] = reason
     return BodyEstimates(tuple(found), reasons)
@@ -144,7 +144,7 @@ def with_estimated_bodies(model: LinearModel, mechanism: Mechanism) -> LinearMod
     True
     """
     if _is_varied(mechanism):
-        raise refuse("elastic_bodies", "several designs have rigid bodies", "Leave it out, or compute the designs one by one")
+        raise refuse("elastic_bodies", "not supported for several designs", "Remove this key, or compute the designs one by one")
     return with_flexible_bodies(model, mechanism, body_flexibilities(mechanism).found)
 
 
@@ -224,11 +224,11 @@ def _reason(body: PlacedBody, links: Sequence[PlacedLink], materials: Mapping[st
     """Why the flexibility of a body is not estimated."""
     solids = [placed.solid for placed in body.solids.values()]
     if not solids:
-        return "without outlines"
+        return "no outlines"
     if any(isinstance(each, Imported) for each in solids) or len(solids) > _MANY:
-        return f"with an imported outline, or more than {_MANY} outlines"
+        return f"an imported outline, or more than {_MANY} outlines"
     if any(materials[each.material].is_cubic or materials[each.material].density == 0.0 for each in solids):
-        return "of a crystal, or of a material without density"
+        return "material is a crystal, or has no density"
     if any(not isinstance(each, PlacedLink) and each.joints(body.name) for each in body.links):
         return "joined to a superelement"
     rigid = next((link.name for link in links if _is_rigid(link.part)), None)

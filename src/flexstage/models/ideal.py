@@ -73,7 +73,7 @@ def free_freedoms(link: PlacedLink) -> tuple[Freedom, ...]:
 def ideal(mechanism: Mechanism) -> Kinematics:
     """Compute the ideal kinematics of a stage.
 
-    Motions are small, about the nominal position. Raises `DesignError` if a stroke moves only its own actuator (an actuator without a path
+    Motions are small, about the nominal position. Raises `DesignError` if a stroke moves only its own actuator (an actuator not connected
     to the platform). Under-actuated stages are accepted, but their `mapping` raises `DesignError`.
 
     >>> from flexstage.cases.double_triangle import double_triangle

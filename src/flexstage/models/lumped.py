@@ -114,7 +114,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 
     - for a mechanism (K singular), naming the free bodies;
     - for a stroke that locked DOFs block;
-    - for a nominal position that negative stiffnesses make unstable. An unstable later design of a batch has NaN.
+    - for a nominal position that negative stiffnesses make unstable. A later design of a batch that is unstable is NaN.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lumped(double_triangle()).coordinates)
@@ -126,7 +126,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 def variants(
     mechanism: Mechanism, kept: Iterable[Mapping[str, tuple[Freedoms, Freedoms]]], masses: Masses = Masses.ALL
 ) -> Iterator[LinearModel]:
-    """Build one model for each item of `kept`: other (elastic, free) DOFs of restricted parts, by name.
+    """Build one model for each item of `kept`, which replaces the (elastic, free) DOFs of restricted parts by name.
 
     The stage is expanded only once. Raises `DesignError` as `lumped`.
 
@@ -381,7 +381,7 @@ def _retain_motions(stage: _Stage, inertia: Mapping[str, Contribution]) -> _Reta
         driven = _stroke_motion(stage, solution, rows)
     if not independent:
         what = f"every degree of freedom is locked, by {', '.join(stage.freedoms)}, so that nothing is elastic"
-        raise refuse("stage", what, "Add stiffness to a link; the ideal model computes the motion by strokes")
+        raise refuse("stage", what, "Add stiffness to a link; the ideal model computes the motion due to strokes")
     loose = np.zeros((len(names), 0)) if stage.order.sparse else _loose(stage, basis)
     if _moves_platform(loose, independent) and (floating := _driven_motions(stage, inertia, basis, loose)) is not None:
         return _RetainedMotions(basis, driven, tuple(names[index] for index in independent), None, floating)
@@ -438,7 +438,7 @@ def _blocked_findings(stage: _Stage, locked: list[tuple[str, Freedom]], missed: 
         blocking = [f"{locked[row][0]}.{locked[row][1].value}" for row in np.flatnonzero(missed[:, number])]
         if blocking:
             what = f"the stroke of actuator {name} is blocked: no elastic DOF between its locked axis and {', '.join(blocking[:6])}"
-            yield Finding(link, what, "Free one of these, or give it stiffness")
+            yield Finding(link, what, "Free one of these DOFs, or give it a stiffness")
 
 
 def _idle(
@@ -568,8 +568,8 @@ def _unstable(stage: _Stage, strains: Contributions, motion: Array) -> DesignErr
     steep = assemble(pushing, size)
     share = _critical_share(assemble(strains, size) + steep, steep)
     stiffnesses = ", ".join(f"{name} has {_least_entry(np.diag(strains[name].law), share)}" for name in pushing)
-    what = f"the nominal position is unstable: {stiffnesses}, the stable limit. The stage buckles in {_largest_coordinate(stage, motion)}"
-    return refuse(", ".join(pushing), what, "Make it less negative, or the stage stiffer in that motion")
+    what = f"the nominal position is unstable: {stiffnesses}. The stage buckles in {_largest_coordinate(stage, motion)}"
+    return refuse(", ".join(pushing), what, "Make this stiffness less negative, or the stage stiffer in that motion")
 
 
 def _critical_share(other: Array, steep: Array) -> float:
@@ -588,9 +588,9 @@ def _least_entry(diagonal: Array, share: float) -> str:
     """The most negative stiffness of a part by DOF, rotations over 0.1 m, and its stable fraction."""
     place = int(np.argmin(diagonal / _OVER**2))
     if diagonal[place] >= 0.0:
-        return f"a negative stiffness with coupled degrees of freedom, beyond {share:.4g} times that"
+        return f"a negative stiffness with coupled degrees of freedom (stable limit {share:.4g} times that)"
     unit = "N/m" if place < len(_OVER) // 2 else "N m/rad"
-    return f"{diagonal[place]:.6g} {unit} in {ALL[place].value}, beyond {share * diagonal[place]:.6g} {unit} ({share:.4g} times that)"
+    return f"{diagonal[place]:.6g} {unit} in {ALL[place].value} (stable limit {share * diagonal[place]:.6g} {unit}, {share:.4g} times that)"
 
 
 def _largest_coordinate(stage: _Stage, motion: Array) -> str:

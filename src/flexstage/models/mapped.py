@@ -90,7 +90,7 @@ def mapped(mechanism: Mechanism) -> LinearModel:
     springs = unit_stiffness(mechanism, assembly, kinematics)
     mass = moving_inertia(mechanism, assembly.bodies[PLATFORM])
     if mass is None:
-        raise refuse("bodies.platform", "it has no mass", "Specify its mass, centre and inertia, or give it solids")
+        raise refuse("bodies.platform", "mass missing", "Specify mass, centre and inertia, or add solids")
     return _model(mechanism, kinematics, springs, mass, _points(assembly, kinematics))
 
 
@@ -173,7 +173,7 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
 
 
 def chain_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) -> Number | None:
-    """Compute the compliance [m/N] of all links that carry an actuator's load, in its coordinate: the sum of f^T C f (virtual work).
+    """Compute the compliance [m/N] of all links that carry an actuator's load, in actuator coordinates: the sum of f^T C f (virtual work).
 
     f is the wrench in the locked DOFs of a link, in equilibrium with fixed strokes. The platform wrench w loads only this actuator, V^T w =
     R_a^T e, and no guide. Free DOFs carry no load; ideal joints are rigid.
@@ -374,7 +374,7 @@ def _compliance(link: PlacedLink) -> Array:
     """Compliance of a link's part; for a restricted part only of its elastic DOFs, as freed ones have no stiffness."""
     part = link.part
     if isinstance(part, Joint) or (isinstance(part, Restricted) and Freedom.X in part.free):
-        raise refuse(link.name, "it is an ideal joint or has no axial stiffness, and the unit's stiffness needs one", "")
+        raise refuse(link.name, "an ideal joint or a part without axial stiffness, which the unit's stiffness requires", "")
     try:
         whole = compliance(part.part if isinstance(part, Restricted) else part, link.material)
     except DesignError as error:

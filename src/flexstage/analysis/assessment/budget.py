@@ -29,7 +29,7 @@ from flexstage.models.linear.model import LinearModel
 from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, transport
 
-_NO_DENSITY = "no amplitude density is given (--input-asd)"
+_NO_DENSITY = "no amplitude density specified (--input-asd)"
 
 
 @check_arguments
@@ -44,25 +44,25 @@ def budget(
     noise: Mapping[str, Spectrum] | None = None,
     band: tuple[float, float] | None = None,
 ) -> ErrorBudget:
-    """Compute the error budget at a platform point for a box of commands (half widths [m, rad]) and a temperature change [K].
+    """Compute the error budget at a platform point for a box of displacements (half widths [m, rad]) and a temperature change [K].
 
-    Lost motion and drift (strokes fixed) are computed by the lumped model, of the loaded stage if its permanent load is significant. By
-    default, drift is for the ground material of the description (`ground_of`). A temperature change of `None` means 1 K if drift is known.
-    With 0 or `None`, drift is omitted if expansion coefficients are missing, with a note in `reasons`.
+    Lost motion and drift (strokes fixed) are computed by the lumped model; if the permanent load is significant, for the loaded stage.
+    Drift includes the ground material of the description (`ground_of`), unless `drifted` is specified. A temperature change of `None` means
+    1 K if drift is known. If expansion coefficients are missing, a change of 0 or `None` omits drift, as noted in `reasons`.
 
     All errors are largest absolute values:
 
     - lost motion: J diag(Lambda) R_a xi;
-    - crosstalk: J (Lambda - diag) R_a xi, with the motion outside the ideal motions;
-    - with the gains a = (R_a V^+ T)^-1 R_a xi: only the residual T a - V xi, as crosstalk;
+    - crosstalk: J (Lambda - diag) R_a xi, plus the motion outside the ideal motions;
+    - with lost motion corrected by the gains a = (R_a V^+ T)^-1 R_a xi: only the residual T a - V xi, listed as crosstalk;
     - linear map: finite minus linear kinematics at the corners;
     - gauge noise: `coverage` standard deviations;
     - quantisation: half a step of every gauge with the worst signs;
-    - stepping actuators: half a step of each in the same direction (standard deviation: step/sqrt(12)).
+    - stepping actuators: half a step of each with the worst signs (standard deviation: step/sqrt(12)).
 
     For a force-driven stage in open loop, the forces are u = (V^+ C)^+ xi with the static gain C of the elastic model. The parasitic motion
-    C u - V xi replaces lost motion, crosstalk and linear map. `noise` are one-sided densities of actuator inputs (current, force, stroke)
-    or wrenches, and of ground motion. Their rms values are over the `band` [Hz] (default: the band of `response`); for ground motion,
+    C u - V xi replaces lost motion, crosstalk and linear map. `noise` has one-sided power spectral densities of actuator inputs (current,
+    force, stroke), wrenches and ground motion. The resulting rms motion is over the `band` [Hz] (default: the band of `response`) and
     relative to the ground.
 
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -35,7 +35,7 @@ class KeyFigure:
 
 @dataclass(frozen=True)
 class Change:
-    """Key figure before and after a change; `None` if missing on one side."""
+    """Key figure before and after a change; `None` where it is missing."""
 
     TABLE: ClassVar[Layout] = Layout("Changes of key figures", "name old new difference relative")
 
@@ -51,13 +51,13 @@ class Change:
 
     @property
     def relative(self) -> Annotated[float | None, SHARE, Heading(digits=3)]:
-        """New over old minus one; None if undefined."""
+        """Relative change, (new - old)/old; None if undefined."""
         return None if self.old is None or self.new is None or self.old == 0.0 else self.new / self.old - 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Effect of changed values: the original description `stated`, the changed `addresses`, the key `figures` before and after."""
+    """Key `figures` before and after a change of the values at some `addresses`. `stated` is the original description."""
 
     stated: Mechanism
     addresses: tuple[str, ...]
@@ -65,7 +65,7 @@ class Comparison:
 
 
 def set_values(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> tuple[Change, ...]:
-    """Return the changed values before and after the change; only single numbers.
+    """Return each changed value that is a single number, before and after the change.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.addresses.address import set_value
@@ -100,9 +100,9 @@ def _value(figures: Mapping[str, KeyFigure], name: str) -> float | None:
 
 
 def key_figures(analysis: Analysis) -> tuple[KeyFigure, ...]:
-    """Return the key figures: required values, platform frequencies, stiffness, losses, strokes, strength.
+    """Return the key figures: values of requirements, platform frequencies, stiffness, lost motion, strokes, safety factors.
 
-    Names are as in requirements.
+    They are named like measures in `[requirements]`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

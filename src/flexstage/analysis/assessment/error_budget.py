@@ -1,4 +1,4 @@
-"""Error budget: every source of pose error for a command and temperature change, a row per axis."""
+"""Error budget: every source of pose error for a command and temperature change, with a row per axis."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisatio
 
 
 class ErrorBudget(Result):
-    """Largest errors by axis (rows) and source (columns) [m, rad], commanded by the ideal mapping, and with the lost-motion gains.
+    """Largest errors by axis (rows) and source (columns) [m, rad]: with `ideal` mapping, and with lost motion `corrected`.
 
     `missing` names unknown sources (e.g. unspecified gauge noise), which are NaN and omitted from the sums. `ground` is the ground material
     assumed for drift, `coverage` the number of standard deviations of gauge noise. `reasons` explain unknown sources. For a force-driven
-    stage, both commands are the forces computed by the elastic model.
+    stage, both matrices are for the forces computed by the elastic model.
     """
 
     ideal: Matrix
@@ -50,7 +50,7 @@ class ErrorBudget(Result):
 
     @property
     def sums(self) -> Annotated[Matrix, VIEW]:
-        """Sums by axis (rows); columns are the linear and root-sum-square sums for both commands."""
+        """Linear and root-sum-square sums (columns) by axis (rows), for `ideal` and `corrected`."""
         columns = [
             function(matrix.values)
             for matrix in (self.ideal, self.corrected)
@@ -61,7 +61,7 @@ class ErrorBudget(Result):
 
 
 def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> list[int]:
-    """Return the columns of R_a for the names of a command; raises `DesignError` for unknown names.
+    """Return the columns of R_a for the coordinates of a command. Raises `DesignError` for unknown coordinates.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -78,7 +78,7 @@ def command_columns(kinematics: Kinematics, command: Mapping[str, Number]) -> li
 
 
 def command_strokes(kinematics: Kinematics, command: Mapping[str, Number], *, depth: int = 0) -> Array:
-    """Compute strokes (2^c, ..., n) [m] at the corners of a box of commands over c coordinates, a = R_a xi.
+    """Compute the strokes a = R_a xi (2^c, ..., n) [m] at the corners of a box of displacements along c coordinates.
 
     `depth` is the least number of batch axes between the corners and the strokes.
 

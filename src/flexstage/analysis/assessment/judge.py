@@ -1,4 +1,4 @@
-"""Evaluation of the requirements of a design file: only required values are computed."""
+"""Evaluation of the requirements of a design file; only values with a requirement are computed."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class Estimate:
 def judge(mechanism: Mechanism, bench: StageResults | None = None) -> tuple[Verdict, ...]:
     """Evaluate every `[requirements]` line of a description by the lumped model; reuse the results of `bench` if present.
 
-    Stiffness, frequencies, lost motion, corrected strokes and drift are for the loaded stage if its permanent load is significant (1 %).
-    For an unknown value (a safety factor without yield stress), the verdict is failed, with the reason. Raises `DesignError` for unreadable
+    Stiffness, frequencies, lost motion, corrected strokes and drift are for the loaded stage if its permanent load is significant (1 %). A
+    requirement with an unknown value (a safety factor without yield stress) fails, with the reason. Raises `DesignError` for unreadable
     lines.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -42,7 +42,7 @@ def judge(mechanism: Mechanism, bench: StageResults | None = None) -> tuple[Verd
 
 
 def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array | str, ...]:
-    """Compute SI values (...) of measures by the lumped model, for one design or a batch; for a missing value, a text with the reason.
+    """Compute SI values (...) of measures by the lumped model, for one design or a batch. A missing value is replaced by its reason.
 
     Measures of simultaneous required strokes (corner, gauge.range) use the strokes in the `[requirements]` lines.
 
@@ -87,7 +87,7 @@ def _required_strokes(lines: tuple[Requirement, ...]) -> dict[str, float]:
 
 
 def value_or_reason(bench: StageResults, asked: Measure) -> Array | str:
-    """Compute the value (...) of one measure; for a missing value, return a text with the reason.
+    """Compute the value (...) of one measure; if it is missing, return the reason.
 
     >>> from flexstage.analysis.assessment.requirements import measure
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -145,6 +145,6 @@ def _loaded_doubt(bench: StageResults, drawn: Verdict) -> str:
     if loaded.passed:
         return ""
     return (
-        f"withheld: the nominal value is {float(drawn.value):.4g} {line.quantity.si}, softened by weight (load factor {factor:.3g}): "
-        f"loaded it may be {float(np.asarray(loaded.value)):.4g} {line.quantity.si}"
+        f"withheld: the nominal value is {float(drawn.value):.4g} {line.quantity.si}; softened by weight (load factor {factor:.3g}), "
+        f"the stage may have only {float(np.asarray(loaded.value)):.4g} {line.quantity.si}"
     )

@@ -1,4 +1,4 @@
-"""Measures: numbers of a stage for requirements, sweeps, optimisation and tolerances; a function for each."""
+"""Measures: scalar results of a stage for requirements, sweeps, optimisation and tolerances. A function computes each."""
 
 from __future__ import annotations
 
@@ -74,19 +74,19 @@ class Extreme(Enum):
     LARGEST = "largest"
 
     def of(self, values: Array) -> Array:
-        """Measure (...) from its pieces (..., m)."""
+        """Return the measure (...) from its pieces (..., m)."""
         return np.min(values, axis=-1) if self is Extreme.LEAST else np.max(values, axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
 class MeasureKind:
-    """Kind of measure: the `form` of its key, its `quantity`, the one `about` an axis, and the function for its SI value.
+    """Kind of measure: the `form` of its key, its `quantity` (`about`: for rotations), and the function `work` for its SI value.
 
-    The first sentence of that function's docstring is the meaning. `pointed`: a point may be specified. `extreme`: the function returns
-    pieces (..., m), and the measure is the least or largest; an optimiser uses all pieces (every actuator, hinge, stack). `softening`:
-    power of 1 - 1/factor of its change where the permanent load softens the measure most. `over_strokes`: the measure covers all strokes.
-    `felt`: it depends on lost motion or drift, which the permanent load changes. `analytic`: complex-step differentiation is valid.
-    `along`: it is along a path of the design, or at a point of the path.
+    The first sentence of the docstring of `work` is the meaning. `pointed`: a point may be specified. `extreme`: `work` returns pieces
+    (..., m), and the measure is the least or largest; an optimiser uses all pieces (every actuator, hinge, stack). `softening`: at worst, a
+    permanent load with load factor n multiplies the measure by (1 - 1/n)^softening. `over_strokes`: the measure covers all strokes. `felt`:
+    it depends on lost motion or drift, which the permanent load changes. `analytic`: complex-step differentiation is valid. `along`: it is
+    evaluated along a path of the design, or at a point of the path.
     """
 
     form: str
@@ -108,7 +108,7 @@ class MeasureKind:
         return first[:1].lower() + first[1:]
 
     def pieces(self, bench: StageResults, asked: Measure) -> Array:
-        """Pieces (..., m); a smooth measure has one."""
+        """Pieces (..., m); a measure without `extreme` has one."""
         found = np.asarray(self.work(bench, asked))
         return found[..., None] if self.extreme is None else found
 
@@ -125,7 +125,8 @@ class MeasureKind:
 class Measure:
     """Measure of a stage: its `key`, `kind`, `name` (an axis, actuator, gauge, path, number) and point.
 
-    `place` is the value of a path's drive; without it, the measure is the worst along the path. `path` is the path of a worst value.
+    `place` is the value of a path's drive; without it, the measure is the worst along the path. `path` names the path of a measure `over` a
+    path.
     """
 
     key: str
@@ -139,9 +140,9 @@ class Measure:
 
 @partial(MeasureKind, "stroke.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, extreme=Extreme.LEAST, felt=True)
 def stroke(bench: StageResults, asked: Measure) -> Array:
-    """Symmetric stroke along one axis, lost motion corrected by command.
+    """Symmetric stroke along one axis, with lost motion corrected.
 
-    Limits are each actuator and stop in both directions; for force-driven stages the continuous limits of the forces.
+    Every actuator and stop limits it in both directions; for force-driven stages, the continuous force limits do.
     """
     if bench.forced:
         return bounds_along(bench.force_workspace(asked.point), asked.name)
@@ -158,7 +159,7 @@ def stroke(bench: StageResults, asked: Measure) -> Array:
 
 @partial(MeasureKind, "corner", RATIO, extreme=Extreme.LARGEST, felt=True)
 def corner(bench: StageResults, _: Measure) -> Array:
-    """Largest ratio of demand to available actuator stroke or stop gap, all required strokes at once."""
+    """Largest ratio of required to available actuator stroke or stop gap, with all required strokes at once."""
     return utilisation(*with_stops(bench.mechanism, bench.kinematics, bench.lost.correction, bench.limits), bench.box()).ratio
 
 
@@ -183,13 +184,13 @@ def _nth(frequencies: Array, asked: Measure) -> Array:
 
 @partial(MeasureKind, "safety", RATIO, extreme=Extreme.LEAST, over_strokes=True)
 def safety(bench: StageResults, _: Measure) -> Array:
-    """Yield over peak stress in the worst hinge at the worst corner of the strokes, from zero voltage, or at peak current."""
+    """Stress limit over peak stress in the worst hinge, at the worst corner of the strokes from zero voltage, or at peak current."""
     return _known_safety(bench.stress)
 
 
 @partial(MeasureKind, "safety.at_strokes", RATIO, extreme=Extreme.LEAST)
 def safety_at_strokes(bench: StageResults, _: Measure) -> Array:
-    """Yield over peak stress in the worst hinge at the worst corner of the required strokes."""
+    """Stress limit over peak stress in the worst hinge, at the worst corner of the required strokes."""
     return _known_safety(bench.stress_at_strokes)
 
 
@@ -208,14 +209,14 @@ def buckling(bench: StageResults, _: Measure) -> Array:
 
 @partial(MeasureKind, "stiffness.<axis>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
 def stiffness(bench: StageResults, asked: Measure) -> Array:
-    """Stiffness of the platform along one axis, the others free."""
+    """Stiffness of the platform along one axis, with the other axes free."""
     index = COMPONENTS.index(asked.name)
     return 1.0 / _compliance(bench, asked)[..., index, index]
 
 
 @partial(MeasureKind, "stiffness.<direction>", STIFFNESS, about=TWISTING, pointed=True, softening=1.0)
 def directed_stiffness(bench: StageResults, asked: Measure) -> Array:
-    """Stiffness of the platform along a direction, or with r about it, all else free."""
+    """Stiffness of the platform along a direction (about it with r), with all other motions free."""
     along, start = direction_of(asked.name, asked.key), 3 * asked.name.startswith("r")
     return 1.0 / (along @ _compliance(bench, asked)[..., start : start + 3, start : start + 3] @ along)
 
@@ -239,7 +240,7 @@ def direction_of(name: str, where: str = "direction") -> Array:
 def least_stiffness(bench: StageResults, asked: Measure) -> Array:
     """Least stiffness of the platform over all directions of force.
 
-    Real directions, so that complex-step derivatives apply to a simple eigenvalue.
+    The direction is real, so that complex-step derivatives of a simple eigenvalue are exact.
     """
     block = _compliance(bench, asked)[..., :3, :3]
     worst = np.linalg.eigh(0.5 * np.real(block + np.swapaxes(block, -1, -2)))[1][..., :, -1]
@@ -252,7 +253,7 @@ def _compliance(bench: StageResults, asked: Measure) -> Array:
 
 @partial(MeasureKind, "deflection.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, softening=-1.0)
 def deflection(bench: StageResults, asked: Measure) -> Array:
-    """Motion under gravity and specified forces, strokes fixed."""
+    """Motion under gravity and specified forces, with strokes fixed."""
     causes = bench.deflection(asked.point).by_cause
     return magnitude(np.sum(causes.values[..., causes.rows.index(f"{asked.point}.{asked.name}"), :], axis=-1))
 
@@ -261,7 +262,7 @@ def deflection(bench: StageResults, asked: Measure) -> Array:
 def force(bench: StageResults, asked: Measure) -> Array:
     """Blocked force of the platform along one axis.
 
-    For force-driven stages: the continuous travel times the stiffness.
+    For force-driven stages, the continuous stroke times the stiffness.
     """
     if bench.forced:
         bounds = np.min(bounds_along(bench.force_workspace(PLATFORM), asked.name), axis=-1)
@@ -356,7 +357,7 @@ def map_error(bench: StageResults, asked: Measure) -> Array:
 
 @partial(MeasureKind, "drift.<axis>", DRIFT, about=TILT_DRIFT, pointed=True, felt=True)
 def drift(bench: StageResults, asked: Measure) -> Array:
-    """Motion per kelvin of uniform temperature, strokes fixed, with the ground's material."""
+    """Motion per kelvin of uniform temperature change, with strokes fixed; the ground expands too."""
     return magnitude(bench.drift.motion.at(f"{asked.point}.{asked.name}", "uniform"))
 
 
@@ -366,7 +367,9 @@ def mass(bench: StageResults, _: Measure) -> Array:
     own = bench.assembly.bodies[PLATFORM].mass
     if own is None:
         raise refuse(
-            "platform", "the platform has neither solids nor a specified mass", "Add a solid of a material with a density, or its mass"
+            "platform",
+            "the platform has neither solids nor a specified mass",
+            "Specify the mass, or add a solid of a material with a density",
         )
     return np.asarray(own.mass)
 
@@ -375,7 +378,7 @@ def mass(bench: StageResults, _: Measure) -> Array:
 def total_mass(bench: StageResults, _: Measure) -> Array:
     """Mass of all bodies, links and stacks without payload.
 
-    Links by their integrals over the profile, including end masses.
+    Masses of links are integrals over their profiles, including end masses.
     """
     bodies = [body.mass.mass for body in bench.assembly.bodies.values() if body.mass is not None]
     ends = [link_mass(link.part, link.material) for link in bench.assembly.links.values()]
@@ -407,7 +410,7 @@ def opening(bench: StageResults, _: Measure) -> Array:
 
 @partial(MeasureKind, "resolution.<axis>", FINE, about=FINE_ROTATION, pointed=True)
 def resolution(bench: StageResults, asked: Measure) -> Array:
-    """Pose error of one resolution step of every gauge, worst signs."""
+    """Pose error due to one resolution step of every gauge, with the worst signs."""
     seen = pose_resolution(bench.mechanism, bench.kinematics)
     inverse = transport(bench.arm(asked.point)) @ seen.inverse.values
     return (magnitude(inverse) @ seen.gauge_steps[..., None])[..., COMPONENTS.index(asked.name), 0]
@@ -415,13 +418,13 @@ def resolution(bench: StageResults, asked: Measure) -> Array:
 
 @partial(MeasureKind, "gauge.range", RATIO, extreme=Extreme.LARGEST)
 def gauge_range(bench: StageResults, _: Measure) -> Array:
-    """Largest gauge reading over half its range, all required strokes at once."""
+    """Largest ratio of gauge reading to half its range, with all required strokes at once."""
     return gauge_swing(bench.kinematics, bench.box()) / half_ranges(bench.assembly)
 
 
 @partial(MeasureKind, "gauge.range.<gauge>", RATIO)
 def own_gauge_range(bench: StageResults, asked: Measure) -> Array:
-    """Gauge reading over half its range, all required strokes at once."""
+    """Ratio of the gauge reading to half its range, with all required strokes at once."""
     return gauge_range.pieces(bench, asked)[..., bench.kinematics.gauges.index(asked.name)]
 
 
@@ -439,7 +442,7 @@ def load(bench: StageResults, _: Measure) -> Array:
 
 @partial(MeasureKind, "load.<actuator>", FORCE, over_strokes=True)
 def own_load(bench: StageResults, asked: Measure) -> Array:
-    """Largest compression of the stack at the worst corner of the strokes, with permanent load."""
+    """Largest compression of the stack at the worst corner of the strokes, including permanent load."""
     share = bench.load_share
     return share.range(bench.limits.from_zero)[1][..., share.actuators.index(asked.name)]
 
@@ -476,7 +479,7 @@ def _each_design(
 
 
 def value_or_bound(work: Callable[[StageResults, Measure], Any], bench: StageResults, asked: Measure) -> Any:
-    """Return the value of a measure, or its lower bound if only that is known."""
+    """Return the value of a measure, or its lower bound if only this bound is known."""
     try:
         return work(bench, asked)
     except LowerBoundError as error:
@@ -528,14 +531,14 @@ def _largest(values: Array) -> Any:
 
 
 _LEAST = {"stiffness", "frequency"}
-_MOVED = "Largest motion of the platform along that axis on a path, relative to its static equilibrium."
+_MOVED = "Largest motion of the platform along that axis on a path, relative to the static equilibrium."
 _FORCED = "Largest holding force of the drive of a path, at large displacements."
 path_force = _worst_along("force", "force", FORCE, _FORCED, MOMENT)
 _STIFF = "Least stiffness along the drive of a path, at large displacements."
 path_stiffness = _worst_along("stiffness", "stiffness", STIFFNESS, _STIFF, TWISTING)
 path_stress = _worst_along("stress", "stress", PRESSURE, "Largest stress of a flexure over a path, at large displacements.")
 path_strain = _worst_along("strain", "strain", RATIO, "Largest strain of a flexure over a path, at large displacements.")
-path_frequency = _worst_along("frequency", "f1", FREQUENCY, "Lowest natural frequency along a path, drive free under its force.")
+path_frequency = _worst_along("frequency", "f1", FREQUENCY, "Lowest natural frequency along a path, drive free under its holding force.")
 
 
 @partial(MeasureKind, "buckling.factor", RATIO)
@@ -572,15 +575,15 @@ def _least_factor(bench: StageResults, load_cases: Iterable[cases.LoadCase]) -> 
 
 @partial(MeasureKind, "frequency.unwanted", FREQUENCY, softening=0.5)
 def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
-    """Lowest natural frequency with the required motions of the platform held.
+    """Lowest natural frequency with the required motions of the platform fixed.
 
-    The null space N of the rows C of these motions gives the constrained stage, N'KN and N'MN. By interlacing it is not above
-    the n + 1st frequency of the free stage, n the number of held motions. Rayleigh's quotient of the real mode, so that derivatives by
-    complex step are exact.
+    With the null space N of the n constraint rows of these motions, the constrained stage has the matrices N'KN and N'MN. By interlacing,
+    the frequency is at most that of mode n + 1 of the free stage. The Rayleigh quotient of the real mode gives exact complex-step
+    derivatives.
     """
     axes = [axis for axis, value in bench.command.items() if value]
     if not axes:
-        raise refuse(asked.key, "no stroke is required, so that no motion is held", 'Add for example "stroke.x" = "at least 50 um"')
+        raise refuse(asked.key, "no required stroke, and so no motion to fix", 'Add e.g. "stroke.x" = "at least 50 um"')
     model = bench.model
     rows = np.real(model.output[..., model.output_index(tuple(f"{PLATFORM}.{axis}" for axis in axes)), :])
     free = scipy.linalg.null_space(rows.reshape(-1, *rows.shape[-2:])[0])
@@ -588,7 +591,7 @@ def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
     try:  # of 1 / omega^2, so that coordinates without mass are no obstacle
         inverse = np.linalg.inv(np.linalg.cholesky(np.real(stiffness)))
     except np.linalg.LinAlgError:
-        raise refuse(asked.key, "the stage with its required motions held has a motion without stiffness", "Add links") from None
+        raise refuse(asked.key, "with the required motions fixed, the stage has a motion without stiffness", "Add links") from None
     lowest = np.linalg.eigh(inverse @ np.real(mass) @ np.swapaxes(inverse, -1, -2))[1][..., :, -1]
     mode = np.einsum("...ji,...j->...i", inverse, lowest)
     square = np.einsum("...i,...ij,...j->...", mode, stiffness, mode) / np.einsum("...i,...ij,...j->...", mode, mass, mode)
@@ -598,10 +601,10 @@ def unwanted_frequency(bench: StageResults, asked: Measure) -> Array:
 @partial(MeasureKind, "clearance", LENGTH, analytic=False)
 @_each_design
 def clearance(bench: StageResults, asked: Measure) -> float:
-    """Smallest gap of outlines that no joint connects, at rest and at the corners of the required strokes; negative for an overlap.
+    """Smallest gap between outlines not connected by a joint, at rest and at the corners of the required strokes; negative for an overlap.
 
-    Corners by the linear model: of more than three strokes, the end of each. Bodies are rigid, a link moves by the mean of its bodies.
-    Without required strokes or actuators, at rest.
+    The linear model gives the motion at the corners (at the ends of single strokes, if more than three are required). Bodies are rigid; a
+    link moves by the mean of its bodies. Without required strokes or actuators, only the gap at rest counts.
     """
     found = [least_gap(bench.mechanism, each) for each in ({}, *_corner_twists(bench))]
     known = [each.distance for each in found if each is not None]
@@ -636,7 +639,7 @@ def over(kind: MeasureKind) -> MeasureKind:
     'frequency.<n> over <path>'
     """
     if kind.softening <= 0.0:
-        raise refuse(kind.form, "unknown along a path", "Use a frequency or a stiffness over it")
+        raise refuse(kind.form, "unknown along a path", "Use a frequency or a stiffness over a path")
 
     @_each_design
     def least(bench: StageResults, asked: Measure) -> float:
@@ -665,7 +668,7 @@ _PATH_MOTIONS = tuple(
 MEASURES: Register[MeasureKind] = Register(
     "flexstage.measures", {each.form: each for each in (*globals().values(), *_PATH_MOTIONS) if isinstance(each, MeasureKind)}
 )
-"""Measures by the form of their keys, in the order above: names in `[requirements]` lines and studies."""
+"""Measures by the form of their keys, in the sequence above. `[requirements]` lines and studies use these keys."""
 
 
 def measure_kind(form: str) -> MeasureKind:

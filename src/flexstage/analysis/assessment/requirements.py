@@ -47,7 +47,7 @@ class Sense(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Requirement(Measure):
-    """Requirement line: a measure, the sense of its limit [SI], and the text of the line."""
+    """Requirement line: a measure, its `limit` [SI] with a `sense`, and the `text` of the line."""
 
     text: str
     sense: Sense
@@ -56,7 +56,7 @@ class Requirement(Measure):
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
-    """Verdict on a requirement for the design's `value` (...) in SI; `None` with the `reason` if unknown."""
+    """Verdict on a requirement by the `value` (...) of the design in SI. An unknown value is `None`, with the `reason`."""
 
     requirement: Requirement
     value: Array | None
@@ -64,7 +64,7 @@ class Verdict:
 
     @property
     def margin(self) -> Array:
-        """Relative margin (...) to the limit: 0.1 is 10 % reserve, negative fails; NaN without a value.
+        """Relative margin (...) to the limit (0.1: 10 % reserve); negative if the requirement is not met, NaN without a value.
 
         For a limit of zero, it is the absolute margin in SI.
         """
@@ -76,7 +76,7 @@ class Verdict:
 
     @property
     def passed(self) -> Array:
-        """Whether the requirement is met (...), within a relative rounding of 1e-9; false for a missing value."""
+        """Whether the requirement is met (...), within a relative rounding error of 1e-9; false for a missing value."""
         return np.nan_to_num(self.margin, nan=-np.inf) >= -_SLACK
 
 
@@ -164,7 +164,7 @@ def _read(mechanism: Mechanism, where: str, key: str, text: str) -> Requirement:
     match = _LINE.fullmatch(text)
     if match is None:
         raise refuse(
-            where, f'invalid requirement (got "{text}")', 'Use "at least" or "at most" and a value, e.g. "at least 50 um" of a stroke'
+            where, f'invalid requirement (got "{text}")', 'Use "at least" or "at most" and a value, e.g. "at least 50 um" for a stroke'
         )
     requested = _measure(mechanism, f"{key} at {match['point']}" if match["point"] else key, where)
     limit = parse(match["value"], requested.quantity, where=where)
@@ -173,7 +173,7 @@ def _read(mechanism: Mechanism, where: str, key: str, text: str) -> Requirement:
 
 
 def measure(mechanism: Mechanism, text: str, where: str) -> Measure:
-    """Read the name of a measure: a key as in `[requirements]`, some keys with `at` and a named point. Raises `DesignError` at `where`.
+    """Read the name of a measure: a key as in `[requirements]`, for some keys with `at` and a named point. Raises `DesignError` at `where`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> read = measure(double_triangle(), "stroke.x at platform", "responses.reach")
@@ -220,7 +220,7 @@ def _accepts_name(placeholder: str, name: str, where: str) -> bool:
 def _point_and_quantity(where: str, kind: MeasureKind, name: str, point: str | None, points: tuple[str, ...]) -> tuple[str, Quantity]:
     """Point of a measure, and its quantity: the rotational one about an axis."""
     if point and not kind.pointed:
-        raise refuse(where, f"the measure has no point (got at {point})", f'Remove "at {point}"')
+        raise refuse(where, f"the measure does not support a point (got at {point})", f'Remove "at {point}"')
     point = point or PLATFORM
     if point not in points:
         raise refuse(where, f"unknown point (got at {point})", suggest_nearest(point, points))
@@ -239,5 +239,5 @@ def _kind(key: str, names: Mapping[str, tuple[str, ...]], where: str) -> tuple[M
         if fits and (name in names[placeholder] or _accepts_name(placeholder, name, where)):
             return measure_kind(form), name
     known = [spelt for form in MEASURES for spelt in _keys_of_form(form, names)]
-    advice = f"{suggest_nearest(key, known)}. Measures of other packages require that package"
+    advice = f"{suggest_nearest(key, known)}. For a measure of another package, install that package"
     raise refuse(where, f'unknown measure "{key}"', advice)

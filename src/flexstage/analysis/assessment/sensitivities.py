@@ -42,9 +42,9 @@ class Sensitivities(Result):
     """Derivatives of modes and gains with respect to P parameters at one design.
 
     `frequency` (P, k) is in Hz per SI unit of the parameter; for the modes of a cluster, it is the derivative of the mean frequency.
-    `clusters` lists the groups of modes. `one_sided` has, per cluster of c modes, the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi,
+    `clusters` lists the groups of modes. For each cluster of c modes, `one_sided` has the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi,
     converted to frequency slopes. They are valid for changes of a single parameter and cannot be added. `gain` and `loss` (P, n) are for
-    the n actuators; n = 0 if the strokes do not determine the platform. `missing` has the reasons for absent results.
+    the n actuators; n = 0 if the strokes do not determine the platform's motion. `missing` has the reasons for absent results.
     """
 
     parameters: tuple[str, ...]
@@ -62,7 +62,7 @@ class Sensitivities(Result):
 
     @property
     def frequency_slopes(self) -> Annotated[Matrix, VIEW]:
-        """Change of each frequency per unit of each parameter; for a cluster of modes, of their mean."""
+        """Change of each frequency per unit of each parameter; for a cluster of modes, of their mean frequency."""
         return self._slopes(self.frequency, self._modes, "Hz")
 
     @property
@@ -72,7 +72,7 @@ class Sensitivities(Result):
 
     @property
     def loss_slopes(self) -> Annotated[Matrix, VIEW]:
-        """Change of each actuator's loss per unit of each parameter."""
+        """Change of each actuator's lost motion per unit of each parameter."""
         return self._slopes(self.loss, self.actuators, "1")
 
     def _slopes(self, values: Array, columns: tuple[str, ...], top: str) -> Matrix:
@@ -90,7 +90,7 @@ class Sensitivities(Result):
 
     @property
     def relative_loss(self) -> Annotated[Matrix, VIEW]:
-        """Change of each actuator's loss per relative change of each parameter (P, n)."""
+        """Change of each actuator's lost motion per relative change of each parameter (P, n)."""
         return Matrix(self.loss * self.values[:, None], self.parameters, self.actuators, "1")
 
 
@@ -101,8 +101,8 @@ def sensitivities(
 ) -> Sensitivities:
     """Compute derivatives of the lowest `modes` frequencies and of all gains with respect to addressed numbers (default: all).
 
-    Modes closer than `cluster` (relative gap) are repeated modes. Only the derivative of their mean is smooth. A cluster is listed
-    completely. Gains require strokes that determine the platform; otherwise `missing` has the reason. Raises `DesignError` for unknown
+    Modes closer than `cluster` (relative gap) count as repeated. Only the derivative of their mean is smooth. All modes of a cluster are
+    listed. Gains require strokes that determine the platform's motion; otherwise `missing` has the reason. Raises `DesignError` for unknown
     addresses, and for addresses that are not a single number in the description.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -164,9 +164,9 @@ def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findin
 
 
 def override_level(mechanism: Mechanism, name: str) -> int:
-    """Return the override level of an address: 0 no override, 1 in all instances of a unit, 2 in a single instance.
+    """Return the override level of an address: 0 for no override, 1 for all instances of a unit, 2 for a single instance.
 
-    Named numbers have higher levels. A number that depends on others has a higher level than these.
+    Named numbers have higher levels. A number that depends on others has a higher level than they have.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [override_level(double_triangle(), f"{place}.thickness") for place in ("parts.neck", "horizontal/front", "B1/front")]

@@ -34,7 +34,7 @@ _NUMBERED = re.compile(r"([^\d/]+)(0|[1-9]\d*)(|/.*| \(link\))")
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """One mode: the platform's kinetic-energy fraction, and whether it is a `platform` mode or a `local` mode near a platform mode.
+    """One mode: a `platform` mode, a `local` mode near a platform mode, or another one. `platform_share` is a kinetic-energy fraction.
 
     `compliance_share` is the mode's fraction of the platform's static compliance along its platform motion. `energy_share` lists the bodies
     and links with a kinetic-energy fraction of at least 1 %, largest first.
@@ -64,16 +64,16 @@ class Mode:
 
 
 class Modes(Result):
-    """Undamped natural modes of a stage, ascending.
+    """Undamped natural modes of a stage, sorted by frequency.
 
     `frequencies` (..., k) are in Hz, `shapes` (..., n, k) are mass-normalised, `platform_shapes` (..., 6, k) are the platform's twists.
     `share` (..., k) is the kinetic-energy fraction of the platform body, `compliance_share` (..., k) the fraction of the platform's static
-    compliance. `bodies` names the rows of `energies` (..., b, k), the kinetic-energy fractions of bodies and links. `chosen` (..., k) are
-    the modes of the platform frequencies.
+    compliance. `bodies` names the rows of `energies` (..., b, k), the kinetic-energy fractions of bodies and links. `chosen` (..., k) marks
+    platform modes.
 
-    `names`, `in_plane` and `platform` (indices of the chosen modes) are for the first design. A mode with equal fractions of several bodies
-    is named after all of them. `limit` determines only the number of listed modes. If `partial`, the stage is large and only its lowest
-    modes were computed.
+    `names`, `in_plane` and `platform` (indices of the platform modes) are for the first design. A mode with equal fractions of several
+    bodies is named after all of them. `limit` determines only the number of listed modes. If `partial`, the stage is large and only its
+    lowest modes were computed.
     """
 
     frequencies: Array
@@ -119,7 +119,7 @@ class Modes(Result):
         return len(self.names)
 
     def dominant_bodies(self, index: int) -> tuple[str, float]:
-        """Return the body or link with the largest kinetic-energy fraction in a mode (several if equal), and the fraction; first design."""
+        """Return the body or link (several if equal) with the largest kinetic-energy fraction in a mode, and the fraction; first design."""
         shares = first_design(self.energies, 2)[:, index]
         most = np.flatnonzero(shares >= np.max(shares) - _EQUAL)
         return _set([self.bodies[place] for place in most]), float(np.sum(shares[most]))
@@ -133,19 +133,19 @@ class Modes(Result):
 
     @property
     def platform_frequencies(self) -> Array:
-        """Platform frequencies (..., 6) [Hz], ascending, by design; NaN for a design with fewer."""
+        """Platform frequencies (..., 6) [Hz], ascending; NaN where a design has fewer."""
         ordered = np.sort(np.where(self.chosen, self.frequencies, np.nan), axis=-1)
         return ordered[..., : int(np.max(np.sum(self.chosen, axis=-1), initial=0))]
 
     @property
     def highest(self) -> float:
-        """Highest platform frequency of the first design below the limit, or its first one [Hz]."""
+        """Highest platform frequency of the first design below the limit; without one below, its lowest [Hz]."""
         frequencies = first_design(self.platform_frequencies, 1)
         return float(max(frequencies[frequencies < self.limit], default=frequencies[0]))
 
     @property
     def local(self) -> Annotated[tuple[int, ...], VIEW]:
-        """Local modes below 1.5 times the highest platform mode."""
+        """Local modes below 1.5 times the frequency of the highest platform mode."""
         if not self.platform:
             return ()
         highest = first_design(self.platform_frequencies, 1)[-1]
@@ -159,10 +159,10 @@ class Modes(Result):
 def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
     """Compute the undamped natural modes of a model (Eq. 28 of Shin & Moon).
 
-    At each platform mode, the modes reach a tenth of the platform's static compliance in one more direction (`models.batch.choice`). Modes
-    closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that shapes align with the platform's axes. Shapes
-    without platform motion align with the coordinates that move most. Modes below `limit` [Hz] are listed. Motions are small. For a large
-    stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes are computed.
+    At a platform mode, the modes up to it reach a tenth of the platform's static compliance in a further direction (`models.batch.choice`).
+    Modes closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that shapes align with the platform's axes.
+    Shapes without platform motion align with the coordinates that move most. Modes below `limit` [Hz] are listed. Displacements are small.
+    For a large stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes are computed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -218,10 +218,9 @@ def clusters(values: Array, gap: float) -> list[list[int]]:
 
 
 def repeated_groups(values: Array, gap: float = _REPEATED) -> list[list[int]]:
-    """Return groups of indices of ascending eigenvalues omega^2 whose frequencies agree within `gap` or rounding.
+    """Return groups of indices of ascending eigenvalues omega^2 whose frequencies agree within `gap` or rounding error.
 
-    Rounding: the eigenvalues are computed as 1/lambda, with a relative error of eps times the ratio to the least eigenvalue, times a
-    factor.
+    Eigenvalues are computed as 1/lambda. Their relative rounding error is eps times their ratio to the least eigenvalue, times a factor.
 
     >>> repeated_groups(np.array([1.0, 1.0 + 1e-9, 2.0]))
     [[0, 1], [2]]

@@ -52,7 +52,7 @@ def pair_modes(own: Moving, other: Moving) -> dict[int, Pair]:
     assurance is relative to each mode's total kinetic energy, including motion without an output.
 
     Any mode of the other model can be paired, also a local mode. Modes closer than 1 % are compared as a subspace and paired in ascending
-    order. If the modal assurance is below `RELIABLE`, the pair is the most similar one, but not a match.
+    order. Below a modal assurance of `RELIABLE`, the paired mode is only the most similar one, not a match.
 
     >>> from flexstage.analysis.dynamics.modes import modes
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -40,9 +40,9 @@ class Rate(Enum):
 class Spectrum(CheckedFields):
     """One-sided power spectral density of an input.
 
-    `density` is one number (white), or a table (f,) over `frequencies` (f,) in Hz. Its unit is (unit of the input)^2/Hz; for the `rate`
-    velocity or acceleration, the unit of this rate squared per Hz. A table is log-log interpolated, and zero outside. Example for floor
-    acceleration: `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
+    `density` is one number (white noise), or a table (f,) over `frequencies` (f,) in Hz. Its unit is (unit of the input)^2/Hz; with `rate`,
+    it is (unit of the velocity or acceleration)^2/Hz. A table is interpolated log-log and is zero outside. Example for floor acceleration:
+    `Spectrum(1e-8, rate=Rate.ACCELERATION)` in (m/s^2)^2/Hz.
     """
 
     density: float | Array
@@ -64,7 +64,7 @@ class Spectrum(CheckedFields):
 
 
 class RandomResponse(Result):
-    """One-sided densities (..., f, p) [unit^2/Hz] and rms values (..., p) [unit] of outputs, with the share of each input.
+    """One-sided densities (..., f, p) [unit^2/Hz] and rms values (..., p) [unit] of outputs, with the contribution of each input.
 
     `shares` (..., p, m) are the mean squares due to each input. The inputs are uncorrelated, so the sum of mean squares is rms^2. `method`
     is the method of integration.
@@ -107,10 +107,10 @@ def random_response(
 ) -> RandomResponse:
     """Compute densities S_yy = sum_j |H_ij|^2 S_j and rms = (integral of S_yy over `band`)^(1/2) for uncorrelated inputs.
 
-    `spectra` maps input names to one-sided densities. The names are as for `response` without groups (`ground.z` is floor motion). `band`
-    is (low, high) in Hz, with low > 0. The integration is by Gauss-Legendre quadrature with 8 nodes per panel. Panels end at multiples of
-    each resonance's half width, at the tables' points and six times a decade. The rule thus resolves every peak (error 1e-8, compared with
-    the Lyapunov equation). Raises `DesignError` for unknown names, an empty band, or non-positive densities.
+    `spectra` maps input names to one-sided densities. The names are those of single channels in `response` (`ground.z` is floor motion).
+    `band` is (low, high) in Hz, with low > 0. The integration is by Gauss-Legendre quadrature with 8 nodes per panel. Panels end at
+    multiples of each resonance's half width, at the points of tables and six times per decade. Every peak is thus resolved (error 1e-8,
+    compared with the Lyapunov equation). Raises `DesignError` for unknown names, an empty band, or non-positive densities.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -142,7 +142,7 @@ def spectrum_findings(spectra: Mapping[str, Spectrum], band: tuple[float, float]
         [] if 0.0 < low < high < np.inf else [Finding("band", f"invalid band (got {low:g} Hz to {high:g} Hz)", "Use 0 < low < high in Hz")]
     )
     if not spectra:
-        result.append(Finding("spectra", "no input has a spectrum", "Add at least one, e.g. {'ground.z': Spectrum(1e-18)}"))
+        result.append(Finding("spectra", "no input has a spectrum", "Add a spectrum, e.g. {'ground.z': Spectrum(1e-18)}"))
     for name, spectrum in spectra.items():
         result += _table_findings(name, np.asarray(spectrum.density), spectrum.frequencies)
     return result
@@ -150,10 +150,10 @@ def spectrum_findings(spectra: Mapping[str, Spectrum], band: tuple[float, float]
 
 def _table_findings(name: str, density: Array, frequencies: Array | None) -> list[Finding]:
     wrong = not np.all(np.isfinite(density)) or np.any(density < 0.0) or (frequencies is not None and np.any(density == 0.0))
-    findings = [Finding(name, "its density is negative or not finite, or zero in a table", "Correct the entries")] if wrong else []
+    findings = [Finding(name, "invalid density (negative or not finite, or zero in a table)", "Correct it")] if wrong else []
     if frequencies is not None and (density.shape != frequencies.shape or np.any(np.diff(frequencies) <= 0.0) or frequencies[0] <= 0.0):
         findings.append(
-            Finding(name, "its frequencies do not ascend from above 0, or are not as many as the densities", "Correct the table")
+            Finding(name, "invalid frequencies (expected positive ascending numbers, one for each density)", "Correct the table")
         )
     return findings
 

@@ -19,7 +19,7 @@ from flexstage.models.linear.port import ports
 
 _MODES_SHOWN = 12
 _WITHOUT_RESONANCES = (1.0, 1000.0)
-"""Band [Hz] of a rigid body that only forces drive."""
+"""Default band [Hz] without resonances (a rigid body driven only by forces)."""
 _ANGLES = np.linspace(-1.45, 1.45, 25)
 
 
@@ -61,7 +61,7 @@ def response(
 def transmissibility(
     model: LinearModel, outputs: str | Iterable[str] = (PLATFORM,), frequencies: Array | None = None, *, damping: Damping | None = None
 ) -> Response:
-    """Compute the transmissibility (..., f, p, 6): absolute motion of outputs over ground motion, at the platform's reference.
+    """Compute the transmissibility (..., f, p, 6): absolute motion of outputs over motion of the ground at the platform's reference.
 
     T = C_r + omega^2 C (K + j omega D - omega^2 M)^-1 M_b. Damping acts on motion relative to the ground. At low frequency, T of the
     platform's twist tends to the unit matrix. Gauges and stress resultants depend only on relative motion: their T tends to zero.

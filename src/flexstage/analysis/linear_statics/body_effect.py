@@ -94,4 +94,6 @@ def body_findings(effects: Sequence[BodyEffect]) -> Iterator[Finding]:
     for body in dict.fromkeys(each.body for each in large):
         worst = [each for each in large if each.body == body][:2]
         values = " and ".join(f"{each.quantity} by {100.0 * each.change:.0f} %" for each in worst)
-        yield Finding(body, f"it is taken as rigid; its flexibility changes {values}", "Make it stiffer, or include it: --elastic-bodies")
+        yield Finding(
+            body, f"modelled as rigid, but its flexibility changes {values}", "Make the body stiffer, or include it: --elastic-bodies"
+        )

@@ -1,4 +1,4 @@
-"""Deflection of the platform under permanent load: own weight, payloads and specified forces, strokes fixed."""
+"""Deflection of the platform under permanent load: own weight, payloads and specified forces, with strokes fixed."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 class Deflection(Result):
     """Twist (..., 6, causes) of the platform's reference, or of a named point, by cause: own weight, each payload, each specified force.
 
-    In closed loop, the gauges measure the deflection and the strokes compensate for it. In open loop, it is the load term of Eq. 11 (Shin &
-    Moon).
+    In closed loop, the gauges measure the deflection and the strokes compensate for it. In open loop, the deflection is the load term of
+    Eq. 11 (Shin & Moon).
     """
 
     point: str
@@ -34,7 +34,7 @@ class Deflection(Result):
 
 @check_arguments
 def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> Deflection:
-    """Compute the deflection of a platform point under gravity and specified forces: q = K^-1 f, strokes fixed, small displacements.
+    """Compute the deflection of a platform point under gravity and specified forces, q = K^-1 f, with strokes fixed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -1,4 +1,4 @@
-"""Drive force of stages that flexures guide and forces drive: force per displacement, compared with the ideal guide."""
+"""Drive force per displacement of force-driven flexure stages, compared with the ideal guide."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class DriveForce(Result):
         "Drive force per displacement, compared with the ideal guide",
         "table",
         head="along",
-        notes=("Ideal guide: flexures equally stiff in their intended DOFs, rigid in the others. Negative: softer than the ideal guide.",),
+        notes=("The ideal guide has the same flexures, rigid except in their intended DOFs. Negative: softer than the ideal guide.",),
     )
 
     force: Matrix
@@ -71,7 +71,7 @@ def drive_force(kinematics: Kinematics, model: LinearModel, workspace: ForceWork
     (True, 1.0)
     """
     if model.is_sparse or model.designs:
-        raise refuse("drive force", "the stage is too large, or a batch of designs", "Analyse one design of fewer bodies")
+        raise refuse("drive force", "the stage is too large, or a batch of designs", "Analyse one design with fewer bodies")
     names, inputs = workspace.coordinates, workspace.per_motion
     loads = np.swapaxes(model.output[model.output_index(tuple(f"{workspace.point}.{name}" for name in names))], -1, -2)
     driven = model.input_matrix[:, model.input_index(inputs.rows)] @ inputs.values

@@ -27,8 +27,8 @@ def amplified(mechanism: Mechanism) -> Amplified:
     `bends` in the stage's z direction. Voltages, bias and capacitance are those of the stage's single actuator. Half of the mass of all
     bodies and links is at each face.
 
-    The part is exact in statics, without internal modes: valid well below the first internal mode with both faces fixed. Loads and preload
-    of the actuator are ignored. Raises `DesignError` for a stage without exactly one actuator.
+    The part is exact in statics. It has no internal modes, so it is valid well below the first internal mode with both faces fixed. Loads
+    and preload of the actuator are ignored. Raises `DesignError` for a stage without exactly one actuator.
 
     >>> from flexstage.cases.registry import case
     >>> part = amplified(case("bridge"))

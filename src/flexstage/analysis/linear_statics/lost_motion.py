@@ -24,14 +24,14 @@ from flexstage.spatial.frame import COMPONENTS, MOTION
 _PLATFORM_TWIST = tuple(f"platform.{name}" for name in COMPONENTS)
 INTERNAL = "internal stress"
 LOADED = "geometric"
-"""Name of the budget share due to the geometric stiffness of a loaded or displaced stage."""
+"""Name of the contribution of the geometric stiffness of a loaded or displaced stage to the budget."""
 
 
 class Shares(dict[str, Array]):
-    """Shares (...) of a total by name."""
+    """Contributions (...) to a total by name."""
 
     def __str__(self) -> str:
-        """The first design's shares, largest first, four digits, without rounding (below 1e-9 of the largest).
+        """Contributions in the first design, largest first, with four digits; rounding errors (below 1e-9 of the largest) are omitted.
 
         >>> print(Shares({"foot.rz": np.array(0.01), "pzt.x": np.array(1e-17), "pivot.rz": np.array(0.25)}))
         pivot.rz  0.25
@@ -46,7 +46,7 @@ class Shares(dict[str, Array]):
 
 @dataclass(frozen=True, eq=False)
 class ActuatorLoss:
-    """Transmission `gain` of an actuator (1: ideal) and its `loss`; `budget` has the fractions of the loss by link and axis."""
+    """Transmission `gain` of an actuator (1: ideal) and its `loss`; `budget` has the contributions to the loss by link and axis."""
 
     gain: Annotated[Array, RATIO]
     loss: Annotated[Array, RATIO]
@@ -54,7 +54,7 @@ class ActuatorLoss:
 
     @property
     def budget_by_link(self) -> Annotated[Mapping[str, Array], RATIO]:
-        """Shares of the loss by link."""
+        """Contributions to the loss by link."""
         links: dict[str, Any] = {}
         for key, share in self.budget.items():
             link = key.rpartition(".")[0] or key
@@ -67,8 +67,8 @@ class LostMotion(Result):
 
     `gain` is the elastic T = dx/da (..., 6, n). `transfer` is R_a V^+ T (..., n, n), with the transmission of each actuator on its
     diagonal. `loss` is Lambda = I - transfer. `parasitic` is the part of T outside the ideal motions. `budget` has the contribution of
-    every link and axis to each entry of Lambda; their sum is Lambda. `correction` has the corrected command gains, a = (R_a V^+ T)^-1 R_a
-    xi. `energy` is the strain energy by part, per squared stroke.
+    every link and axis to each entry of Lambda; their sum is Lambda. `correction` has the gains of the corrected strokes, a = (R_a V^+
+    T)^-1 R_a xi. `energy` is the strain energy by part, per squared stroke.
     """
 
     gain: Matrix
@@ -83,11 +83,11 @@ class LostMotion(Result):
 
     @property
     def actuators(self) -> Annotated[Mapping[str, ActuatorLoss], VIEW]:
-        """Diagonal loss of each actuator."""
+        """Transmission and own (diagonal) loss of each actuator."""
         return {name: ActuatorLoss(self.transfer.at(name, name), self.loss.at(name, name), self.of(name)) for name in self.loss.rows}
 
     def of(self, actuator: str) -> Shares:
-        """Return the budget of an actuator's own (diagonal) loss by part: shares whose sum is the loss."""
+        """Return the budget of an actuator's own (diagonal) loss by part: contributions whose sum is the loss."""
         index = self.loss.rows.index(actuator)
         return Shares({name: share.values[..., index, index] for name, share in self.budget.items()})
 
@@ -101,9 +101,9 @@ def lost_motion(kinematics: Kinematics, model: LinearModel) -> LostMotion:
     the deformation of link e in the ideal motion of stroke j. For one unloaded lever, the diagonal is eps / (1 + eps), eps = K_theta2 /
     (r_1^2 K_1) (Eq. 11 of Shin & Moon). Motions are small.
 
-    For a model about a displaced state, the ideal motion is that of the nominal position. The budget then requires the model
-    `linearise(state, inner=False)`, and has the additional share `geometric` for the geometric stiffness. Raises `DesignError` if the
-    strokes do not determine the platform.
+    For a model about a displaced state, the ideal motion is still for the nominal position. The budget then requires the model
+    `linearise(state, inner=False)`, and has an additional contribution `geometric` of the geometric stiffness. Raises `DesignError` if the
+    strokes do not determine the platform's motion.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

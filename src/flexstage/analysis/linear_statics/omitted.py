@@ -35,7 +35,7 @@ class Omitted:
 
     @property
     def interaction(self) -> Annotated[float, RATIO]:
-        """Part of the difference not explained by single degrees of freedom."""
+        """Difference that single degrees of freedom do not explain."""
         return self.full - self.simple - sum(self.changes.values())
 
     @property
@@ -45,7 +45,7 @@ class Omitted:
 
 
 def omitted(mechanism: Mechanism, simple: Restrictions, channel: tuple[str, str]) -> Omitted:
-    """Compare the static response of an output to an input, `channel` = (output, input), between restricted and full parts.
+    """Compare the static responses with restricted and with full parts, for the `channel` = (output, input).
 
     `simple` locks or frees degrees of freedom, by part or by link (`vertical/pivot`). Each of them regains its elasticity individually.
     Only for a single design.

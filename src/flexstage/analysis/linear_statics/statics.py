@@ -125,10 +125,10 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
 
 
 class FreedomStiffness(Result):
-    """Stiffness of each degree of freedom at a point [N/m, N m/rad], strokes fixed: with the others free, and with them fixed.
+    """Stiffness of each degree of freedom at a point [N/m, N m/rad] with strokes fixed, and with the others free or fixed.
 
-    `motions` are the coordinates of the platform's ideal motions, `constraints` the coordinates that its links constrain. The free
-    stiffness is the result of a push test at the point. It includes the coupling of an ideal motion into other axes.
+    `motions` are the coordinates of the platform's ideal motions, `constraints` the coordinates that links constrain. The free stiffness is
+    the result of a push test at the point. It includes the coupling of an ideal motion into other axes.
     """
 
     point: str
@@ -147,7 +147,7 @@ def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffnes
     """Compute stiffness by degree of freedom for fewer than six ideal motions: along ideal motions, and along constraints.
 
     The statics `found` are at a point of the platform. The stiffness is 1 / C_ii with the other degrees of freedom free, and K_ii with the
-    others fixed; NaN for a locked degree of freedom. Returns None for six ideal motions, or for different read-out and load points.
+    others fixed; NaN for a locked degree of freedom. Returns None for six ideal motions, or if read-out and load points differ.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -164,7 +164,7 @@ def freedom_stiffness(found: Statics, kinematics: Kinematics) -> FreedomStiffnes
 
 
 def by_freedom(values: Array, names: tuple[str, ...]) -> Matrix:
-    """Return a table of stiffness (..., n, 2) by named degree of freedom: with the others free, and with them fixed.
+    """Return a table of stiffness (..., n, 2) by named degree of freedom, with the others free or fixed.
 
     >>> by_freedom(np.ones((2, 2)), ("z", "rx")).unit
     (('N/m', 'N/m'), ('N m/rad', 'N m/rad'))

@@ -19,9 +19,9 @@ from flexstage.base.units.quantity import RATIO, STIFFNESS
 class UnitOutput:
     """Output properties of one isolated unit, in its own frame.
 
-    `unit` is the unit's name, `copy` the analysed instance. `direction` (3,) is the direction of the output, `stiffness` the 6x6 at the
-    output with strokes fixed. If the output is guided along the direction, `gain` is the output per stroke, and `ideal_gain` the gain
-    without elasticity.
+    `unit` is the unit's name, `copy` the analysed instance. `direction` (3,) is the direction of the output, `stiffness` the 6x6 stiffness
+    at the output with strokes fixed. If the output is guided along the direction, `gain` is the output per stroke, and `ideal_gain` the
+    gain without elasticity.
     """
 
     unit: str
@@ -45,7 +45,7 @@ class UnitOutput:
 
     @cached_property
     def lateral(self) -> Annotated[tuple[float, float], STIFFNESS]:
-        """Least and largest stiffness across the output direction, all other DOFs fixed [N/m]: eigenvalues of K in the plane across."""
+        """Least and largest stiffness across the output direction [N/m] with all other DOFs fixed: eigenvalues of K across it."""
         across = np.linalg.svd(self.direction[None, :])[2][1:]
         softest, stiffest = np.linalg.eigvalsh(across @ self._translations @ across.T)
         return float(softest), float(stiffest)

@@ -52,7 +52,7 @@ class UnitResult(UnitOutput):
 
 
 def units(mechanism: Mechanism, *, omissions: bool = True) -> dict[str, UnitResult]:
-    """Analyse the first instance of every isolated unit with exactly one actuator at its output. One design.
+    """Analyse the first instance of every isolated unit with exactly one actuator at its output. Only for a single design.
 
     A unit that cannot be isolated (a carriage guided by neighbouring units) is omitted. `omissions`: also compute the errors of lever
     theory, which takes most of the time.
@@ -103,7 +103,7 @@ def as_vector(direction: Array) -> Vector:
 
 
 def unit_alone(mechanism: Mechanism, copy: str, unit: str, direction: Array, *, omissions: bool = True) -> UnitResult:
-    """Analyse one isolated instance of a unit with output along a direction (3,); with `omissions`, the errors of lever theory.
+    """Analyse one isolated instance of a unit with output along a direction (3,); with `omissions`, also the errors of lever theory.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(unit_alone(double_triangle(), "B4", "vertical", np.array([0.0, 0.0, 1.0])).gain, 1)

@@ -1,4 +1,4 @@
-"""Load paths of a design in SI numbers: from the static equilibrium, along a drive, under constant loads."""
+"""Load paths of a design in SI units: relative to the static equilibrium, along a drive, under constant loads."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class DrivePath:
         return start + target, {name: float(operating_point.coordinate(rest, name)) for name in self.locked}
 
     def points(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Points:
-        """Return the points of the path, from which single columns can be computed."""
+        """Return the points of the path. `Points.column` computes a single characteristic of them."""
         (result,) = self.points_of_designs((model,), values)
         return result
 
@@ -169,9 +169,9 @@ def _contradictions(stated: StrokePath, loads: dict[str, float], locked: list[st
     owner, _, component = stated.drive.rpartition(".")
     own = f"{owner}.{FORCES[COMPONENTS.index(component)]}" if component in COMPONENTS else stated.drive
     if own in loads:
-        yield Finding(f"{where}.hold", f"{own} is constant, and it drives {stated.drive}", "Remove one of the two")
+        yield Finding(f"{where}.hold", f"{own} is both a constant load and the force that drives {stated.drive}", "Remove one of the two")
     if stated.drive in locked:
-        yield Finding(f"{where}.hold.{stated.drive}", "the drive cannot be a fixed coordinate", "Remove it")
+        yield Finding(f"{where}.hold.{stated.drive}", "the drive cannot be a fixed coordinate", "Remove this entry")
 
 
 def path_findings(mechanism: Mechanism) -> Iterator[Finding]:

@@ -74,16 +74,16 @@ class LoadCase(CheckedFields):
 
 @dataclass(frozen=True, eq=False)
 class CaseFactor:
-    """Critical load factor of a `load` at an operating point `place`, with the `kind` of end and the `buckling_mode`.
+    """Critical load factor of a `load` at an operating point `place`, with the `kind` of critical point and the `buckling_mode`.
 
-    `factor` is infinite if the stage is stable up to the largest factor, and NaN if unknown, for the reason `why`. `bound` is the factor up
+    `factor` is infinite if the stage is stable up to the largest factor, and NaN if unknown; `why` is the reason. `bound` is the factor up
     to which the stage is known to be stable, NaN if unknown.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Load cases and stroke ends",
         "load place factor bound kind buckling_mode why",
-        notes=("Each load alone, all else constant; actuators are free where a force brings the stage to the operating point.",),
+        notes=("Only this load grows, all others are constant. Actuators are free if a force brings the stage to the operating point.",),
     )
 
     load: str
@@ -127,13 +127,13 @@ class CaseFactors(Result):
             least = min(short, key=lambda case: case.factor)
             requested = f" (expected {self.demand:g} or more)" if self.demand > 1.0 else ""
             others = f"; {len(short) - 1} more of {len(self.cases)} load cases have a factor below {bound:g}" if short[1:] else ""
-            what = f"critical load factor of {least.load} {least.factor:.4g}{requested}: {buckling_clause(least.buckling_mode)}{others}"
+            what = f"critical load factor of {least.load} is {least.factor:.4g}{requested}: {buckling_clause(least.buckling_mode)}{others}"
             yield Finding(least.place, what, "Reduce stroke or load, or stiffen the parts that carry the load")
         for case in self.cases:
             if np.isnan(case.factor) and not case.bound >= bound:
                 yield Finding(
                     case.place,
-                    f"critical load factor of {case.load} unknown: {case.why}",
+                    f"critical load factor of {case.load} is unknown: {case.why}",
                     "Run flexstage stroke to find the largest displacement",
                 )
 
@@ -146,7 +146,7 @@ def buckling_factors(
 
     The loads are the weight with payloads, and the specified forces with preloads; for a path in `[paths]`, also the loads in its `hold`.
     One load grows at a time; all others are constant. The operating points are the static equilibrium and both ends of every path. For a
-    design without paths, they are both stroke ends of every actuator (at most eight), and the worst corner of the strokes by linearised
+    design without paths, they are both stroke ends of every actuator (of at most eight), and the worst corner of the strokes by linearised
     buckling.
 
     At an operating point, a constant-direction force displaces a coordinate, as for `--at`; a stroke is fixed. Load factors are computed up
@@ -247,7 +247,7 @@ def _factor(model: Nonlinear, case: LoadCase, most: float) -> CaseFactor:
 
 
 def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tolerance: float = ENOUGH) -> Critical:
-    """Compute the critical load factor of a load case on the path from its operating point; a factor below 1, on the path from zero load.
+    """Compute the critical load factor of a load case on the path from its operating point; if it is below 1, on the path from zero load.
 
     Raises `DesignError` if there is no equilibrium at the operating point, and as `critical_load` does.
 

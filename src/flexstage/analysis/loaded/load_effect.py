@@ -35,7 +35,7 @@ else:
     nonlinear = LazyModule("flexstage.models.nonlinear.stage")
 
 _BENT = "flexures that are not straight when free"
-_WARM = "its temperatures"
+_WARM = "temperatures"
 FELT = 0.01
 """Relative change of a stiffness or frequency due to permanent load, above which results are computed for the loaded stage."""
 _MODES = 6
@@ -68,7 +68,7 @@ class LoadEffect:
         """Sentence on the effect; empty for stages without permanent load.
 
         >>> LoadEffect(0.004, "frequency 1", "", None).text
-        'Weight, payloads and forces change stiffness and frequencies by up to 0.4 % (frequency 1): results are of the unloaded stage.'
+        'Weight, payloads and forces change stiffness and frequencies by up to 0.4 % (frequency 1): results are for the unloaded stage.'
         """
         cause, size = f"{self.cause[0].upper()}{self.cause[1:]}", f"{100.0 * abs(self.change):.2g} %"
         if self.model is not None:
@@ -77,17 +77,17 @@ class LoadEffect:
                 "error budget, loops and their requirements are for the loaded stage, at large displacements; other results are nominal."
             )
         if self.why and not self.change:
-            return f"The effect of {self.cause} on the stage is unknown, as {self.why}; results are of the unloaded stage."
+            return f"The effect of {self.cause} on the stage is unknown, as {self.why}; results are for the unloaded stage."
         if self.why:
-            return f"{cause} may change a stiffness by up to {size}; results are of the unloaded stage, as {self.why}."
+            return f"{cause} may change a stiffness by up to {size}; results are for the unloaded stage, as {self.why}."
         if self.figure:
             what = f"{cause} change stiffness and frequencies by up to {size} ({self.figure})"
-            return f"{what}: results are of the unloaded stage."
+            return f"{what}: results are for the unloaded stage."
         if not self.change:
             return ""
         return (
-            f"{cause} change no stiffness by more than {size}, no frequency by more than "
-            f"{50.0 * abs(self.change):.2g} %: results are of the unloaded stage."
+            f"{cause} change no stiffness by more than {size}, and no frequency by more than "
+            f"{50.0 * abs(self.change):.2g} %: results are for the unloaded stage."
         )
 
 

@@ -78,8 +78,8 @@ def operating_point(
     forces. Strokes in `at` (of a stack, by its name) are fixed. Coordinates in `fixed` are fixed at their equilibrium value, or at the
     value in `at`.
 
-    Raises `DesignError` for unknown names, contradictory conditions, and a missing equilibrium (with the largest fraction that has one).
-    Also if the stage is unstable under the forces.
+    Raises `DesignError` for unknown names, contradictory conditions, and a missing equilibrium (with the largest fraction of the
+    displacement that has one). It is also raised if the stage is unstable under the forces.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = operating_point(parallelogram(), {"platform.x": 1e-4})
@@ -179,14 +179,14 @@ def _contradictions(requested: Conditions) -> Iterator[Finding]:
         owner, _, component = name.rpartition(".")
         load = f"{owner}.{FORCES[COMPONENTS.index(component)]}" if component in COMPONENTS else ""
         if name in requested.at and (load in requested.loads or load in requested.at):
-            what = f"its force is a result, but {load} specifies it"
+            what = f"the force along this coordinate is a result, but {load} specifies it"
             yield Finding(name, what, f"Remove {load}, or {name}")
     bodies = [
         requested.model.assembly.points[owner][0] if owner in requested.model.assembly.points else owner for owner in _owners(requested)
     ]
     for body in dict.fromkeys(bodies):
         if bodies.count(body) > 6:
-            yield Finding(body, f"too many coordinates fixed (got {bodies.count(body)}, expected 6 at most)", "Fix fewer")
+            yield Finding(body, f"too many coordinates fixed (got {bodies.count(body)}, expected 6 at most)", "Fix fewer coordinates")
 
 
 def _owners(requested: Conditions) -> list[str]:
@@ -223,7 +223,7 @@ def _require_stable(requested: Conditions, state: State) -> None:
             else "the stage is unstable under its weight, loads or strokes"
         )
         what = f"{under} ({ways}, largest strain {most:.2%}){_stable_until(requested)}"
-        lock = f"Fix it: --fixed {loose[0]}, or run" if loose else "Run"
+        lock = f"Use --fixed {loose[0]}, or run" if loose else "Run"
         raise refuse(", ".join(loose) or PLATFORM, what, f"{lock} flexstage buckle to find the buckling mode")
 
 
@@ -249,8 +249,8 @@ def _idle(requested: Conditions, state: State) -> Iterator[Finding]:
     """Drives and loads without effect."""
     for name, value in {**requested.loads, **requested.driven}.items():
         if value == 0.0 and name not in requested.coordinates:
-            yield Finding(name, "zero has no effect", "Use another value, or remove it")
+            yield Finding(name, "zero has no effect", "Use another value, or remove this entry")
     moved = np.abs(state.pose.position - requested.rest.pose.position) / requested.model.size
     turned = np.abs(state.pose.turn - requested.rest.pose.turn)
     if any(requested.driven.values()) and max(np.max(moved), np.max(turned)) < _STILL:
-        yield Finding(", ".join(requested.driven), "no effect on the stage", "Check the connections of its ends")
+        yield Finding(", ".join(requested.driven), "no effect on the stage", "Check the links of this actuator")

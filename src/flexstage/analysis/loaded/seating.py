@@ -107,7 +107,7 @@ def seating_findings(found: Mapping[str, Seating]) -> Iterator[Finding]:
             yield Finding(name, what, "Increase the preload, or check that its source is described: a spring, a magnet, weight")
         elif slip > 1.0:
             what = f"the ball slips: weight, payloads and forces give a tangential force of {slip:.3g} times the friction limit"
-            yield Finding(name, what, "Increase the preload; its stiffness holds without slip")
+            yield Finding(name, what, "Increase the preload; its stiffness is valid without slip")
         if crush > 1.0:
             what = f"the greatest pressure, {pressure / 1e6:.4g} MPa, is {crush:.3g} times the onset of yield in the softer material"
             yield Finding(name, f"{what} ({_ONSET:g} times its yield stress)", "Use a larger ball, a harder material or less preload")

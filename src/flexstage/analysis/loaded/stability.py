@@ -56,7 +56,7 @@ _SHAPES = 6
 
 @dataclass(frozen=True, eq=False)
 class Stability:
-    """Buckling load factors of a stage (...): `dead` of weight, payloads and forces, strokes zero.
+    """Buckling load factors of a stage (...): `dead` for weight, payloads and forces, at zero strokes.
 
     `worst` (...) is the load factor of the permanent load together with the worst `strokes` (..., m) [m]; it is infinite without softening.
     `stiffens` (...) is the largest relative stiffening by the permanent load. `moving` names the bodies with the largest motion in the
@@ -66,7 +66,7 @@ class Stability:
     TABLE: ClassVar[Layout] = Layout(
         "Buckling of the stage",
         "dead worst",
-        notes=("Load factor at which the stage buckles as a whole: linearised, every column with its actual end conditions.",),
+        notes=("Load factor at which the whole stage buckles, linearised; every column has its actual end conditions.",),
     )
 
     dead: Annotated[Array, RATIO, Heading("permanent load", digits=4, infinite="none", mark=SAFETY)]
@@ -78,7 +78,7 @@ class Stability:
 
     @property
     def refusals(self) -> tuple[Finding, ...]:
-        """Error if the nominal position buckles under its permanent load."""
+        """Error if the stage buckles in its nominal position under permanent load."""
         least = float(np.min(np.real(self.dead)))
         if least >= 1.0:
             return ()
@@ -86,7 +86,7 @@ class Stability:
             f"the nominal position is unstable: weight, payloads and forces are {1.0 / least:.3g} times the critical load "
             f"(load factor {least:.3g}), {buckling_clause(' and '.join(self.moving))}"
         )
-        return (Finding("stage", what, "Reduce the load, stiffen the parts in compression, or turn them to tension"),)
+        return (Finding("stage", what, "Reduce the load, stiffen the parts in compression, or put them in tension"),)
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
@@ -97,18 +97,22 @@ class Stability:
         dead, worst, stiffer = (float(each) for each in (np.min(np.real(self.dead)), np.min(np.real(self.worst)), np.max(self.stiffens)))
         if 1.0 <= dead < DOUBTFUL:
             what = (
-                f"weight, payloads and forces soften it: load factor {dead:.3g}, {buckling_clause(' and '.join(self.moving))}. In that "
-                f"motion the loaded stage is {100.0 / dead:.2g} % less stiff than the nominal one, its frequency {_lower(dead):.2g} % lower"
+                f"weight, payloads and forces soften the stage: load factor {dead:.3g}, {buckling_clause(' and '.join(self.moving))}. In "
+                f"that motion the loaded stage is {100.0 / dead:.2g} % less stiff than the nominal one, and its frequency "
+                f"{_lower(dead):.2g} % lower"
             )
-            advice = "Use the lower values for results of the unloaded stage; stiffen the parts in compression, or turn them to tension"
+            advice = "Reduce results of the unloaded stage accordingly; stiffen the parts in compression, or put them in tension"
             yield Finding("stage", what, advice)
         if worst < DOUBTFUL and worst < 0.99 * dead:
             what = f"load factor {worst:.3g} at the worst corner of the strokes"
             if worst >= 1.0:
-                what += f": there the stage is up to {100.0 / worst:.2g} % less stiff than printed, a frequency {_lower(worst):.2g} % lower"
+                what += (
+                    f": there the stage is up to {100.0 / worst:.2g} % less stiff than printed, and a frequency "
+                    f"up to {_lower(worst):.2g} % lower"
+                )
             yield Finding("stage", what, "Stiffen the parts that the stacks compress, or limit the strokes")
         if stiffer > 1.0 / DOUBTFUL:
-            what = f"weight, payloads and forces stiffen it by up to {100.0 * stiffer:.2g} % in one motion"
+            what = f"weight, payloads and forces stiffen the stage by up to {100.0 * stiffer:.2g} % in one motion"
             yield Finding("stage", what, "Expect higher frequencies in that motion than without load")
 
 
@@ -171,7 +175,7 @@ def _require_neutral(square: Array) -> None:
     if np.max(np.abs(square)) > _NEUTRAL:
         frequency = float(np.sqrt(np.max(np.abs(square)))) / (2.0 * np.pi)
         what = f"weight acts as a spring on a motion without stiffness (frequency {frequency:.3g} Hz), which this model neglects"
-        raise refuse("stage", what, "Place the centre of mass on the axis of the bearing, or set gravity along it")
+        raise refuse("stage", what, "Place the centre of mass on the axis of the bearing, or set gravity along this axis")
 
 
 @SESSION.keep(2)
@@ -192,7 +196,7 @@ def is_large(mechanism: Mechanism, model: LinearModel) -> bool:
 
 
 def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
-    """Return the lumped model with the `geometric` stiffness of its permanent load in the nominal position; one design.
+    """Return the lumped model with the `geometric` stiffness of its permanent load in the nominal position. Only one design.
 
     Internal bending of parts is massless.
 

@@ -18,7 +18,7 @@ _CORNERS = 12
 
 
 def standing(mechanism: Mechanism) -> LinearModel:
-    """Return the lumped model of a stage after a check that its nominal position is stable; no check for a batch or superelements.
+    """Return the lumped model after a check that the nominal position is stable (no check for a batch or superelements).
 
     Raises `DesignError` if the load factor of weight, payloads and forces is below 1.
 

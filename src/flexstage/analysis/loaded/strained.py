@@ -19,7 +19,7 @@ _STRAIN, _CURVING = 0.02, 40.0
 
 
 def strain_warnings(strained: Strains) -> Iterator[Finding]:
-    """Return warnings for flexures whose strain, stress or curvature exceeds the limits of the theory in any case.
+    """Return warnings for flexures whose strain, stress or curvature exceeds the limits of the theory in any load case.
 
     >>> none = np.zeros((1, 1))
     >>> [str(each.where) for each in strain_warnings(Strains(("leaf",), none + 0.03, none, none, np.array([np.nan])))]
@@ -29,14 +29,17 @@ def strain_warnings(strained: Strains) -> Iterator[Finding]:
     for name, most in zip(strained.names, _most(largest), strict=True):
         if most > _STRAIN:
             what = f"strain beyond linear elasticity (got {most:.2%}, expected {_STRAIN:.0%} or less)"
-            yield Finding(name, what, "Reduce the stroke, or make it longer or thinner")
+            yield Finding(name, what, "Reduce the stroke, or make the flexure longer or thinner")
     for name, most, limit in zip(strained.names, _most(stress), strained.limit, strict=True):
         if most > limit:
             what = f"stress above the material's limit (got {most / 1e6:.4g} MPa, expected {limit / 1e6:.4g} MPa or less)"
-            yield Finding(name, what, "Reduce the stroke, make it longer or thinner, or use a stronger material")
+            yield Finding(name, what, "Reduce the stroke, make the flexure longer or thinner, or use a stronger material")
     for name, most in zip(strained.names, _most(curving), strict=True):
         if most > _CURVING:
-            what = f"b^2 k / t too large for two shape functions across its width (got {most:.3g}, expected {_CURVING:g} or less)"
+            what = (
+                "b^2 k / t (width b, curvature k, thickness t) too large for two shape functions across the width "
+                f"(got {most:.3g}, expected {_CURVING:g} or less)"
+            )
             yield Finding(name, what, "Expect a bending error of some tenths of a per cent")
 
 

@@ -35,9 +35,9 @@ _FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
 
 
 class Stroke(Result):
-    """Characteristics of a stage over the stroke of a `drive`: a row of `along` for each point.
+    """Characteristics of a stage over the stroke of a `drive`. The matrix `along` has a row for each point.
 
-    Columns: the drive's value, its holding force and stiffness (of a coordinate), and the platform's displacement and rotation vector.
+    Columns are the drive's value, its holding force and stiffness (of a coordinate), and the platform's displacement and rotation vector.
     `lost` is the relative lost motion of a stack's stroke. Further columns are the platform's first natural frequencies (with the
     coordinate free under the holding force), the largest stress and strain of a flexure, and the number of unstable modes (0: stable).
     Drive and displacements are relative to the static deflection `sag` under weight and loads; if `sag` is None, relative to the nominal
@@ -93,9 +93,9 @@ def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics 
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """States (k,) along a drive's `values`, relative to `rest`, and their characteristics, computed on first use.
+    """States (k,) along a drive's `values`, and their characteristics relative to `rest`, computed on first use.
 
-    `locked` coordinates remain fixed when the stage is free. The ideal `kinematics` is needed for lost motion.
+    `locked` coordinates remain fixed when the drive is released. Lost motion requires the ideal `kinematics`.
     """
 
     drive: str
@@ -122,7 +122,7 @@ class Points:
 
     @cached_property
     def frequencies(self) -> Array:
-        """Natural frequencies (k, n) of the free stage [Hz]; NaN if unstable."""
+        """Natural frequencies (k, n) of the released stage [Hz]; NaN if it is unstable."""
         with np.errstate(invalid="ignore"):
             return np.sqrt(eigenvalues(self.about)) / (2.0 * np.pi)
 

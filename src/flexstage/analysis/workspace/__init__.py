@@ -1,1 +1,1 @@
-"""Workspace of a stage: strokes, forces, stress, buckling, loads, gauges, clearance and volts."""
+"""Workspace of a stage: strokes, forces, stress, buckling, loads, gauges, clearance and voltages."""

@@ -38,7 +38,7 @@ class Ends(Enum):
 
 
 class Buckling(Result):
-    """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst corner (negative: tension throughout), `length` [m].
+    """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst corner (negative if always in tension), `length` [m].
 
     `ends` lists the assumed end conditions of each column. `stage` is the buckling of the whole stage: its end conditions are exact, and
     columns and bodies can buckle together.
@@ -67,12 +67,12 @@ class Buckling(Result):
 
     @property
     def min_factor(self) -> Annotated[Array, RATIO]:
-        """The load factor of the whole stage over the worst strokes (...)."""
+        """Load factor of the whole stage for the worst strokes (...)."""
         return self.stage.worst
 
     @property
     def weakest(self) -> Annotated[str | None, VIEW]:
-        """Link with the least Euler load factor on the first design; None without a column in compression."""
+        """Link with the least Euler load factor in the first design; None without a column in compression."""
         if not self.links:
             return None
         first = 1.0 / self.factor.reshape(-1, len(self.links))[0]
@@ -89,7 +89,7 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     """Compute Euler loads of slender parts, and their largest compression over the corners of the strokes under permanent load.
 
     Slender parts are leaves, rods, notches, necks and stacks. The Euler load is P = pi^2 E I / L_e^2, with the least second moment of the
-    thinnest section over the whole length. The load of notched hinges is thus underestimated. A lower torsional buckling load takes
+    thinnest section assumed over the whole length. The load of notched hinges is thus underestimated. A lower torsional buckling load takes
     precedence. The load factor of the whole stage is for the actual end conditions. Compressions below 1e-9 of the largest force in any
     part are rounding errors and count as zero.
 

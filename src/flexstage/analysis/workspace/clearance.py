@@ -103,8 +103,8 @@ class Clearance(Result):
 def clearance(mechanism: Mechanism) -> Clearance:
     """Compare the bounding box with the envelope, and the outlines with the aperture (a rectangle about the z axis).
 
-    The convex outlines are tested in plan by separating axes. The result is exact for boxes and round discs; for tilted cylinders, the
-    depth is an upper bound. A body is outside the aperture if its through hole along z encloses the aperture. Parts without dimensions
+    The convex outlines are tested in plan by separating axes. The result is exact for boxes and round discs. The depth of a tilted cylinder
+    may be overestimated. A body is outside the aperture if its through hole along z encloses the aperture. Parts without dimensions
     (compliance matrices, joints) are ignored.
 
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -43,16 +43,15 @@ class ForceWorkspace(Result):
 
     `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate. The other ideal
     coordinates are zero if `alone`, else free. `bounds` (coordinates x causes) [m, rad] are the continuous motion limits by cause, `short`
-    the limits in short use (a coil's `duty`); NaN if unspecified. `current`, `voltage`, `power` and `rise` (coordinates x coils) are
-    required per motion to hold it: i, R i, i^2 R, and i^2 R times the thermal resistance [K]. `unmoved` are ideal motions that no input
-    drives.
+    the limits for short use (a coil's `duty`); NaN if unspecified. `current`, `voltage`, `power` and `rise` (coordinates x coils) hold a
+    unit motion: i, R i, i^2 R, and i^2 R times the thermal resistance [K]. `unmoved` are ideal motions that no input drives.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Reach",
         "held held_briefly limited_by",
         head="along",
-        notes=("Elastic motion in both directions. Continuous: without time limit; short use: for a coil's duty cycle, `duty`.",),
+        notes=("Elastic motion in both directions. Continuous motion has no time limit; short use is for a coil's duty cycle, `duty`.",),
     )
 
     point: str
@@ -80,7 +79,7 @@ class ForceWorkspace(Result):
 
     @property
     def limited_by(self) -> Annotated[tuple[str, ...], VIEW]:
-        """Cause of the least limit of each coordinate, on the first design; empty without a known limit."""
+        """Cause of the least limit of each coordinate, in the first design; empty without a known limit."""
         first = np.nan_to_num(np.real(first_design(self.bounds.values, 2)), nan=np.inf)
         return tuple(self.bounds.columns[int(np.argmin(row))] if np.isfinite(np.min(row, initial=np.inf)) else "" for row in first)
 
@@ -106,7 +105,7 @@ def _least(bounds: Array) -> Array:
 
 @check_arguments
 def force_workspace(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> ForceWorkspace:
-    """Compute the force workspace: limits over compliance along every ideal motion, for stages with force actuators.
+    """Compute the force workspace of a stage with force actuators: the limits of the elastic motion along every ideal motion.
 
     The elastic model gives C = dx/du for strokes and forces u. The inputs per motion are G = C^-1 for as many inputs as motions; for more
     inputs, G is the least-norm inverse relative to the input limits. Coils limit the motion by peak and continuous current, heat i^2 R
@@ -329,7 +328,7 @@ def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
     for name, bounds in _travel(assembly, model, inputs, np.eye(len(inputs))):
         owner = name.removesuffix(" travel")
         known[inputs.index(owner)].append((name, bounds[..., inputs.index(owner)]))
-    require(Finding(name, "no limit of its force is specified", _LIMIT) for name, own in zip(inputs, known, strict=True) if not own)
+    require(Finding(name, "force limit missing", _LIMIT) for name, own in zip(inputs, known, strict=True) if not own)
     low, high = [], []
     for name, own in zip(inputs, known, strict=True):
         if name in strokes.actuators:
@@ -346,11 +345,11 @@ def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
 def bounds_along(found: ForceWorkspace, name: str) -> Array:
     """Return the limits (..., k) of the motion along one coordinate, infinite if unspecified. Raises `DesignError` if none is specified."""
     if name not in found.coordinates:
-        what = "no actuator moves it" if name in found.unmoved else "not an ideal motion of this stage"
-        raise refuse(f"stroke.{name}", what, f"Its actuators move it along {', '.join(found.coordinates)}")
+        what = "no actuator drives this motion" if name in found.unmoved else "not an ideal motion of this stage"
+        raise refuse(f"stroke.{name}", what, f"Use one of {', '.join(found.coordinates)}")
     place = found.coordinates.index(name)
     if np.any(np.isnan(found.held[..., place])):
-        what = "its actuators have no specified limit"
+        what = "the actuators of this motion have no specified limit"
         raise refuse(f"force_workspace.{name}", what, _LIMIT)
     values = found.bounds.values[..., place, :]
     return np.where(np.isnan(values), np.inf, values)

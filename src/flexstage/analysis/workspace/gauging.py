@@ -1,4 +1,4 @@
-"""Gauges (displacement sensors): range at the commanded corner, largest mounting radius, and pose resolution."""
+"""Gauges (displacement sensors): readings over a box of displacements, largest mounting radius, and pose resolution."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ _LEVEL = 1e-9
 
 
 class GaugeRange(Result):
-    """Gauge readings at the worst corner of a box of commands, and half ranges (gauges start at mid-range), (..., g) each.
+    """Gauge readings at the worst corner of a box of displacements, and half ranges (gauges start at mid-range), (..., g) each.
 
     `swing` is the largest reading and `limit` half the range, in `units` by gauge (m, rad). `radius` [m] is each gauge's distance from the
     platform's axis. `largest_here` [m] is the largest radius at the gauge's angle for which the reading is within the range,
-    `largest_anywhere` [m] the largest such radius at any angle. Infinite: within the range everywhere. NaN: outside the range even on the
-    axis, or the gauge is not between platform and ground.
+    `largest_anywhere` [m] the largest such radius at any angle. An infinite radius means that the gauge is within its range everywhere. NaN
+    means that the gauge is outside even on the axis, or not between platform and ground.
     """
 
     TABLE: ClassVar[Layout] = Layout("Gauge ranges", "table used")
@@ -75,7 +75,7 @@ class PoseResolution(Result):
     TABLE: ClassVar[Layout] = Layout(
         "Pose resolution of the gauges",
         "table",
-        notes=("Worst: all gauges one step off with the worst signs. Rms: independent steps. Noise: rms of the gauge noise.",),
+        notes=("Errors for one step of all gauges: worst signs, independent signs (rms); and rms error due to gauge noise.",),
     )
 
     inverse: Matrix
@@ -172,7 +172,7 @@ def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolut
 
 
 def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number]) -> GaugeRange:
-    """Compute gauge readings over the corners of a box of commands (half widths by coordinate [m, rad]), and half ranges.
+    """Compute gauge readings over the corners of a box of displacements (half widths by coordinate [m, rad]), and half ranges.
 
     The platform's axis is the line along z through its reference point. Gauges that are not between platform and ground have no largest
     radius.
@@ -206,7 +206,7 @@ def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[s
 
 
 def gauge_swing(kinematics: Kinematics, command: Mapping[str, Number]) -> Array:
-    """Compute the largest reading (..., g) [m, rad] over the corners of a box of motions (half widths).
+    """Compute the largest reading (..., g) [m, rad] over the corners of a box of displacements (half widths).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -34,7 +34,9 @@ class LoadRange(Result):
     TABLE: ClassVar[Layout] = Layout(
         "Axial forces of the stacks over all strokes",
         "min_force max_force usage pull",
-        notes=("From zero voltage, with permanent load, without preload; negative: tension, relative to preload and tensile limit.",),
+        notes=(
+            "Strokes from zero voltage, with permanent load, without preload. Tension is negative; preload and tensile limit bound it.",
+        ),
     )
 
     actuators: tuple[str, ...]
@@ -69,7 +71,7 @@ class LoadShare(Result):
 
     @property
     def compression(self) -> Annotated[Array, FORCE, Along("actuators")]:
-        """Compression (..., n) [N] under gravity and all forces, strokes zero, without preload."""
+        """Compression (..., n) [N] under gravity and all forces at zero strokes, without preload."""
         return np.sum(self.loads.values, axis=-1)
 
     def under(self, force: Array, at: Array) -> Array:
@@ -87,11 +89,11 @@ class LoadShare(Result):
         )
 
     def usage(self, compression: Array) -> Array:
-        """Return compression including preload over the maximum load (..., n); NaN if unspecified."""
+        """Return the ratio (..., n) of compression, including preload, to the maximum load; NaN if unspecified."""
         return (compression + np.nan_to_num(self.preload)) / self.maximum
 
     def pull(self, compression: Array) -> Array:
-        """Return tension over the sum of preload and tensile limit (..., n); infinite if neither is specified.
+        """Return the ratio (..., n) of tension to the sum of preload and tensile limit; infinite if neither is specified.
 
         Above 1, the stack separates or breaks.
         """
@@ -119,15 +121,15 @@ class LoadShare(Result):
         for place, name in enumerate(self.actuators):
             if share[place] <= 1.0 or -first[place] <= _ROUNDING * scale:
                 continue
-            what = f"tension of {-first[place]:.4g} N in its stack at the worst corner of the strokes"
+            what = f"tension of {-first[place]:.4g} N in the stack at the worst corner of the strokes"
             if np.isinf(share[place]):
                 yield Finding(name, f"{what}, preload and tensile limit missing", 'Add e.g. preload = "200 N"')
             else:
-                yield Finding(name, f"{what}, {share[place]:.3g} times its limits", "Preload it, or limit the voltage")
+                yield Finding(name, f"{what}, {share[place]:.3g} times its limits", "Preload the stack, or limit the voltage")
 
 
 def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
-    """Compute the distribution of weight (bodies, links, payloads) and specified forces over the stacks, strokes fixed.
+    """Compute the distribution of weight (bodies, links, payloads) and specified forces over the stacks, with strokes fixed.
 
     Every force f at a point acts on its body's coordinates; the stack forces are C K^-1 f. Displacements are small. All stacks are assumed
     to transmit tension, also without preload and tensile limit: check `pull`.

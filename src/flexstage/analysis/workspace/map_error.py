@@ -28,8 +28,8 @@ class MapError(Result):
     """Error of the linear map: finite pose minus J a.
 
     `errors` (k, ..., 6) [m, rad] are for the `strokes` (k, ..., n) [m]. `worst` (..., 6) is the largest error by axis, at `worst_strokes`
-    (..., 6, n). If all errors are rounding, `worst` is 0 at the first strokes. `residual` (...) [m] is the largest residual of redundant
-    constraints.
+    (..., 6, n). If all errors are rounding errors, `worst` is 0 at the first strokes. `residual` (...) [m] is the largest residual of
+    redundant constraints.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -95,7 +95,7 @@ def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: Strok
 
 
 def map_error_at(mechanism: Mechanism, kinematics: Kinematics, strokes: Array) -> MapError:
-    """Compute the error of x = J a at k points of strokes (k, ..., n) [m]; batch axes are between.
+    """Compute the error of x = J a at k combinations of strokes (k, ..., n) [m], with batch axes in the middle.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -101,7 +101,7 @@ def _crossings(normals: Array, offsets: Array) -> Array:
     half = count // 2
     choices = [choice for choice in combinations(range(count), size) if len({index % half for index in choice}) == size]
     if len(choices) > _MOST_VERTEX_CANDIDATES:
-        raise refuse("reachable polytope", f"{half} strokes give {len(choices)} candidate vertices", "Use half-spaces and membership only")
+        raise refuse("reachable polytope", f"{half} strokes give {len(choices)} candidate vertices", "Check poses by low <= R_a xi <= high")
     picked = np.array(choices)
     square = normals[picked]
     scale = np.linalg.norm(normals, axis=0)

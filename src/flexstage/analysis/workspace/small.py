@@ -32,10 +32,10 @@ _ATOM = 1e-10
 
 @dataclass(frozen=True)
 class SecondOrder:
-    """Second-order error of linear kinematics over a box of motions: largest relative `error`, at the part `link`, by the cause `why`.
+    """Second-order error of linear kinematics over a box of motions: largest relative `error`, in the part `link`, with the cause `why`.
 
     `shortening` is the foreshortening [m] of the bent leaf or rod `shortened` (empty without one), which displaces a guide sideways.
-    `held_twice`: redundant constraints may also stretch flexures.
+    `held_twice` is true if redundant constraints may also stretch flexures.
     """
 
     error: Annotated[float, RATIO]
@@ -67,8 +67,8 @@ class SecondOrder:
 class SmallMotion:
     """Rotation `turn` [rad] and `bend` (deflection over length) of every link and the platform, per unit of each coordinate (L, f).
 
-    `limit` (L) is the largest rotation [rad], by second-order error, or by contact of notch faces if `closes`.
-    `span` (L) is the bending length of a part [m]; zero for bending at a point.
+    `limit` (L) is the largest rotation [rad], limited by second-order error or, if `closes`, by contact of notch faces. `span` (L) is the
+    bending length of a part [m]; zero for bending at a point.
     """
 
     coordinates: tuple[str, ...]
@@ -85,14 +85,14 @@ class SmallMotion:
         return self.turn @ half, self.bend @ half
 
     def use(self, command: Mapping[str, Number]) -> tuple[float, str]:
-        """Return the largest ratio of motion to limit over all links for a box of commands (half widths), and the link's name."""
+        """Return the largest ratio of motion to limit over all links for a box of displacements (half widths), and the link's name."""
         turned, bent = self._moved(command)
         shares = np.maximum(turned / self.limit, bent / _SMALL)
         worst = int(np.argmax(shares > (1.0 - 1e-9) * np.max(shares)))
         return float(shares[worst]), self.names[worst]
 
     def second_order(self, command: Mapping[str, Number]) -> SecondOrder:
-        """Return the largest theta^2 / 2 of a rotation, or of a deflection over length, over a box of commands (half widths).
+        """Return the largest theta^2 / 2 of a rotation, or of a deflection over length, in a box of displacements (half widths).
 
         The foreshortening of a leaf or rod of length L is 3 u^2 / (5 L) + L theta^2 / 24. Here u is the end deflection relative to the
         middle, theta the rotation between the ends.
@@ -108,16 +108,16 @@ class SmallMotion:
         return SecondOrder(error, self.names[worst], why, shortening=float(shorter[most]), shortened=shortened)
 
     def doubt(self, command: Mapping[str, Number]) -> str:
-        """Return the reason why linear models are invalid for a box of commands; empty if they are valid."""
+        """Return the reason why linear models are invalid for a box of displacements; empty if they are valid."""
         share, name = self.use(command)
         if share <= 1.0:
             return ""
         place = self.names.index(name)
         turned, bent = (float(each[place]) for each in self._moved(command))
         if turned / self.limit[place] < bent / _SMALL:
-            return f"{name} bends by {bent:.3g} of its length, beyond {_SMALL:.3g} the error of linear models exceeds {100.0 * ERROR:g} %"
+            return f"{name} bends by {bent:.3g} of its length; above {_SMALL:.3g}, the error of linear models exceeds {100.0 * ERROR:g} %"
         why = "its faces touch" if self.closes[place] else f"the error of linear models exceeds {100.0 * ERROR:g} %"
-        return f"{name} turns by {1e3 * turned:.4g} mrad, beyond {1e3 * self.limit[place]:.4g} mrad {why}"
+        return f"{name} turns by {1e3 * turned:.4g} mrad; above {1e3 * self.limit[place]:.4g} mrad, {why}"
 
     def warnings(self, single: SingleAxis) -> Iterator[Finding]:
         """Yield warnings for single-axis strokes beyond small motions, with the usable stroke."""
@@ -126,7 +126,7 @@ class SmallMotion:
             if doubt:
                 unit = "rad" if name.startswith("r") else "m"
                 left = float(stroke) / self.use({name: float(stroke)})[0]
-                what = f"at the full stroke of +-{float(stroke):.4g} {unit} {doubt}"
+                what = f"at the full stroke of +-{float(stroke):.4g} {unit}, {doubt}"
                 yield Finding(f"stroke.{name}", what, f"Use +-{left:.4g} {unit} at most")
 
 

@@ -34,18 +34,18 @@ class HingeStress(Result):
 
     `nominal` and `peak` (with the notch factor) are von Mises stresses [Pa]. `yield_stress` [Pa] is NaN if unspecified. `strokes` (..., L,
     n) [m] are at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts).
-    `limit` [Pa] is the least of yield stress, fatigue limit and allowable stress (NaN: none; absent: yield stress). `governing` names this
-    limit in the first design.
+    `limit` [Pa] is the least of yield stress, fatigue limit and allowable stress (NaN without any; `None`: yield stress). `governing` names
+    this limit in the first design.
 
-    `places` are the ends and faces with the largest stress (empty for a batch). `condition` is the range of strokes. `actuators` with their
-    `units` may be stroke or force actuators, or coordinates of the platform.
+    `places` are the ends and faces with the largest stress (empty for a batch). `condition` describes the range of strokes in words.
+    `actuators` with their `units` may be stroke or force actuators, or coordinates of the platform.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Stress in the hinges",
         "table places",
         head="hinge",
-        notes=("Von Mises stress at the worst corner {self.condition}, with permanent load; peak: with the notch factor.",),
+        notes=("Von Mises stress at the worst corner {self.condition}, with permanent load. The peak includes the notch factor.",),
     )
 
     links: tuple[str, ...]
@@ -80,7 +80,7 @@ class HingeStress(Result):
 
     @property
     def weakest(self) -> Annotated[str, VIEW]:
-        """Link with the least known safety factor, on the first design."""
+        """Link with the least known safety factor in the first design."""
         first = np.nan_to_num(self.safety.reshape(-1, len(self.links))[0], nan=np.inf)
         return self.links[int(index_of_largest(1.0 / first))]
 
@@ -119,8 +119,8 @@ def hinge_stress(
     - `stroke_limits(mechanism).from_zero` for a stage assembled without voltage, whose hinges are also bent by the bias;
     - `stroke_limits(mechanism)` for a stage that is stress-free at its bias.
 
-    With a `command`, they are limits of its coordinates. `condition` is a text that describes the limits. The stress is by linear beam
-    theory, with the maxima of a section added (see `beams.stress`).
+    With a `command`, `limits` are those of its coordinates. `condition` describes the limits in words. The stress is by linear beam theory,
+    with the maxima of a section added (see `beams.stress`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -62,7 +62,7 @@ class StrokeLimits:
 
 
 class SingleAxis(Result):
-    """Strokes of the platform along one coordinate at a time, the others held at zero: from `low` to `high` (..., f) [m, rad].
+    """Strokes of the platform along one coordinate with the others fixed at zero, from `low` to `high` (..., f) [m, rad].
 
     `limiting` names the actuator, or stop (`stops/end`), that ends each stroke (first design, `high` side).
     """
@@ -90,7 +90,7 @@ class SingleAxis(Result):
 
 
 class Utilisation(Result):
-    """Actuator utilisation for a box of simultaneous commands.
+    """Actuator utilisation for a box of simultaneous displacements.
 
     `demand` (..., n) [m] is the largest absolute stroke over the corners of the box, `available` (..., n) [m] the symmetric stroke. Stops
     within reach are listed with the actuators (`stops/end`); their gaps are listed as strokes.
@@ -228,7 +228,7 @@ def single_axis(mapping: Matrix, limits: StrokeLimits, *, at: str = PLATFORM, pr
 
 
 def utilisation(mapping: Matrix, limits: StrokeLimits, command: Mapping[str, Number], *, provenance: str = "") -> Utilisation:
-    """Compute each actuator's demand, sum_j |R_ij| c_j, for a box of commands (half widths by coordinate [m, rad]).
+    """Compute each actuator's demand, sum_j |R_ij| c_j, for a box of displacements (half widths c by coordinate [m, rad]).
 
     >>> pair = Matrix(np.array([[1.0, 0.085]]), ("B1",), ("x", "rz"), "1")
     >>> used = utilisation(pair, StrokeLimits(("B1",), np.array([-75e-6]), np.array([75e-6])), {"x": 50e-6, "rz": 244e-6})

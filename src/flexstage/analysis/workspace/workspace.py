@@ -37,11 +37,11 @@ _FURTHER = frozenset({"worst_case", "polytope", "drive", "map_error", "gauges", 
 
 
 class Workspace(Result):
-    """Workspace of one design; a field is `None` without a result, with the reason in `reasons` by field name.
+    """Workspace of one design. A field without a result is `None`; `reasons` has the reason by field name.
 
-    `single_axis` are ideal strokes; `corrected` are strokes with commands that correct lost motion. `worst_case` is the actuators' demand
-    for the box `command` of motions (half widths by coordinate, all at once); `gauges` are the gauges' readings. Stress, buckling and loads
-    are for a stage that is stress-free at zero voltage, over all strokes and under permanent load.
+    `single_axis` are ideal strokes; `corrected` are strokes with lost motion corrected. `worst_case` is the actuators' demand for the box
+    `command` of motions (half widths by coordinate, all at once); `gauges` are the gauges' readings. Stress, buckling and loads are for a
+    stage that is stress-free at zero voltage, over all strokes and under permanent load.
     """
 
     command: Annotated[Mapping[str, Number], MOTION]
@@ -82,7 +82,7 @@ def workspace(
     """Compute the workspace of one design; default `command`: all single-axis strokes at once.
 
     Without `whole`, only strokes, resolution, stress and buckling are computed (in two thirds of the time); other fields are `None` without
-    a reason. Raises `DesignError` if the strokes do not determine the platform.
+    a reason. Raises `DesignError` if the strokes do not determine the platform's motion.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -119,7 +119,7 @@ def workspace(
 
 
 def all_strokes(mechanism: Mechanism) -> Mapping[str, float]:
-    """Return the ideal single-axis strokes as a box of commands by coordinate [m, rad].
+    """Return the ideal single-axis strokes by coordinate [m, rad], as half widths of a box.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(1e6 * all_strokes(double_triangle())["z"], 6)

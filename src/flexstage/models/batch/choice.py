@@ -1,4 +1,4 @@
-"""Platform frequencies: those at which the modes reach a tenth of the platform's static compliance, in one more direction each.
+"""Platform frequencies: at each, the modes reach a tenth of the platform's static compliance in one more direction.
 
 The platform twist in a mass-normalised mode is phi. The platform's static compliance is C = sum phi phi^T / omega^2. H(f) is the sum over
 the modes up to frequency f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed
@@ -21,7 +21,7 @@ THRESHOLD = 0.1
 """Fraction of the static compliance in some direction that the modes must exceed. Most stages give equal results from 0.1 to 0.7."""
 
 MARGIN = 5e-3
-"""Required distance of the eigenvalues of H from the threshold for a result by iteration, whose modes change H by 2e-3 at most."""
+"""Required distance of the eigenvalues of H from the threshold for modes by iteration, whose errors change H by 2e-3 at most."""
 
 _LOCKED = 1e-12
 """Relative square root of a compliance below which a direction is locked, with rotations taken over 0.1 m."""

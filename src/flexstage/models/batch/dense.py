@@ -1,4 +1,4 @@
-"""All modes by dense matrices: for the nominal design, for small stages or stages with locked DOFs, and for designs without iteration."""
+"""All modes by dense matrices: for the nominal design, small stages, stages with locked DOFs, and designs not solved by iteration."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SINGULAR = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class AllModes:
-    """All modes of one design: `values` lambda (k,) and `shapes` (n, k); empty where K is singular.
+    """All modes of one design: `values` lambda (k,) and `shapes` (n, k); empty if K is singular.
 
     `parts` (6, k) is the participation of the modes in the platform compliance. Repeated modes are sorted by decreasing participation.
     """

@@ -78,8 +78,8 @@ Ranges = tuple[Array, Array]
 def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None = None, ranges: Ranges | None = None) -> Plan:
     """Plan a family of designs, which differ in the numbers at the addresses.
 
-    With `ranges`, the kernel's input is fitted once by polynomials (in seconds), if their error is at most 1e-10. The input of a design
-    within the ranges then takes less time than its solution. Without a fit, or outside the ranges, the input is computed from the
+    With `ranges`, the kernel's input is fitted once by polynomials (in seconds), if their error is at most 1e-10. For a design within the
+    ranges, the input then takes less time than the solution. Without a fit, or outside the ranges, the input is computed from the
     description.
 
     Raises `DesignError` for unknown addresses, and for a mechanism whose nominal stiffness is singular.
@@ -101,7 +101,7 @@ def plan_family(family_: Family, choice: Choice | None = None, ranges: Ranges | 
     """
     choice = choice or Choice()
     if family_.mechanism.elastic_bodies:
-        raise refuse("elastic_bodies", "several designs have rigid bodies", "Leave it out, or compute the designs one by one")
+        raise refuse("elastic_bodies", "not supported for several designs", "Remove this key, or compute the designs one by one")
     model = lumped(family_.mechanism)  # raises `DesignError` for free motions of bodies
     if family_.topology.locked:
         return Plan(family_, choice, {})

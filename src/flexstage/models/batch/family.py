@@ -66,7 +66,7 @@ def _number(mechanism: Mechanism, address: str) -> Any:
     quantity_of(mechanism, address)
     value = get(mechanism, address)
     if np.ndim(value):
-        raise refuse(address, "it has several components", "Use the address of one of them")
+        raise refuse(address, "a number with several components", "Use the address of one component")
     return value
 
 

@@ -65,7 +65,7 @@ SOURCE = Path(__file__).with_name("kernel.c")
 
 
 def kernel_name() -> str:
-    """Return a name of the library from its lanes and content, or "no kernel". Equal names give bit-identical results.
+    """Return a name of the library, formed from its vector lanes and content, or "no kernel". Equal names give bit-identical results.
 
     >>> kernel_name()[:9] in {"no kernel", "kernel av", "kernel ss", "kernel ne", "kernel pl"}
     True

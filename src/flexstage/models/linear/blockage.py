@@ -1,7 +1,7 @@
 """Blockage: the locked DOFs that prevent a stroke, and the DOFs to free.
 
 A stroke is blocked if forces in locked DOFs are in equilibrium on all bodies and do work only on the stroke. Usually several sets of such
-forces exist. The set with the least sum of magnitudes (a linear programme) has few forces and gives the links.
+forces exist. The set with the least sum of magnitudes (a linear programme) has few forces; their links are the result.
 """
 
 from __future__ import annotations

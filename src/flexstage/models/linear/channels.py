@@ -137,7 +137,7 @@ def place_twists(places: Mapping[str, Place], motions: Motions) -> list[Array]:
 
 
 def gauge_rows(assembly: Assembly, motions: Motions) -> list[Array]:
-    """Compute the reading (..., 1, n) of every gauge per coordinate: weighted body motions against the base, along or about an axis.
+    """Compute the reading (..., 1, n) of every gauge per coordinate: weighted body motions relative to the base, along or about an axis.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand

@@ -24,8 +24,8 @@ def damping_law(model: LinearModel, damping: Damping | None = None) -> Damping:
     if law is None:
         raise refuse(
             "damping",
-            "the design states no damping, which determines the response at a resonance",
-            'State it in the design, for example damping = { law = "modal", ratio = 0.01 }, or pass damping=ModalDamping(0.01)',
+            "the design specifies no damping, which determines the response at a resonance",
+            'Specify it in the design, e.g. damping = { law = "modal", ratio = 0.01 }, or pass damping=ModalDamping(0.01)',
         )
     return law
 
@@ -43,7 +43,7 @@ def modal_ratios(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
 def law_rates(model: LinearModel, solved: Eigen, damping: Damping) -> Array:
     """Compute 2 zeta_r omega_r (..., k) [1/s] of each mode by a law.
 
-    For a mode at 0 Hz, it is the mass factor of Rayleigh damping, and zero by other laws.
+    For a mode at 0 Hz, it is the mass factor of Rayleigh damping, and zero for other laws.
     """
     rates = 2.0 * law_ratios(model, solved, damping) * np.sqrt(solved.values)
     own = np.asarray(damping.mass_factor)[..., None] if isinstance(damping, RayleighDamping) else 0.0

@@ -74,16 +74,16 @@ def _require_served(constraints: Array, scale: Array, choice: _Choice) -> None:
 
 def _require_none(others: Array) -> None:
     if len(others):
-        raise unlike(int(others[0]), "locked degrees of freedom depend on each other in another way than in the first design")
+        raise unlike(int(others[0]), "has locked degrees of freedom that depend on each other in another way than in the first")
 
 
 def unlike(number: int, what: str) -> DesignError:
     """Build the error for a design of a batch (`number` from 0) that is inconsistent with the choices for the first design."""
-    return refuse("designs", f"design {number + 1} of the batch {what}", "Analyse them one by one")
+    return refuse("designs", f"design {number + 1} of the batch {what}", "Analyse the designs one by one")
 
 
 def eliminate_each(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
-    """Eliminate as `eliminate`, but each design of a batch by its own pivots. The result is bit-identical to the single-design result.
+    """Eliminate like `eliminate`, but with separate pivots for each design of a batch. Results equal single-design results bit for bit.
 
     `scale` is (..., N). Designs may differ in the independent coordinates outside `keep`; the returned indices belong to the first design.
 
@@ -126,8 +126,8 @@ def _require_alike(parts: Sequence[Elimination], designs: Sequence[list[int]], k
         theirs = _freedom(part, keep)
         if theirs != mine:
             counts = [f"{len(kept)} of the platform and {others} others" for kept, others in (theirs, mine)]
-            other = counts[0] if counts[0] != counts[1] else "as many, but other ones"
-            raise unlike(numbers[0], f"has other motions than the first, which has {counts[1]}: {other}")
+            other = f"{counts[0]} instead of {counts[1]}" if counts[0] != counts[1] else f"also {counts[1]}, but other ones"
+            raise unlike(numbers[0], f"has other motions than the first: {other}")
 
 
 def _freedom(solution: Elimination, keep: tuple[int, ...]) -> tuple[tuple[int, ...], int]:

@@ -27,7 +27,7 @@ class Response(Result):
     """Frequency response: complex `values` (..., f, p, m), H_ij = output i over input j, for e^{+j omega t}.
 
     `frequencies` (f,) are in Hz. `outputs` and `inputs` have names and units; the unit of an entry is output unit / input unit. Batch axes
-    lead.
+    come first.
     """
 
     frequencies: Annotated[Array, FREQUENCY, Called("frequency")]
@@ -112,9 +112,9 @@ def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Dam
     each = 16.0 * math.prod(model.designs) * (outputs * (2 * len(model.coordinates) + 3 * inputs) + 1)
     require_memory(
         "response",
-        f"{lines:,} lines of {outputs:,} outputs and {inputs:,} inputs",
+        f"{lines:,} frequencies of {outputs:,} outputs and {inputs:,} inputs",
         each * lines,
-        lambda memory: f"Request {int(memory / each):,} lines at most, or fewer outputs and inputs",
+        lambda memory: f"Request {int(memory / each):,} frequencies at most, or fewer outputs and inputs",
     )
     if isinstance(damping, StructuralDamping):
         return _structural(model, chosen, frequencies)
@@ -177,7 +177,7 @@ def imposed_on(model: LinearModel, name: str, chosen: Ports) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Dampers:
-    """Damping matrix (..., n, n) of the coordinates, and forces (..., n, m) per rate of each input, transmitted by dampers."""
+    """Damping matrix (..., n, n) of the coordinates, and forces (..., n, m) per unit velocity of each input, transmitted by dampers."""
 
     resisted: Array
     dragged: Array

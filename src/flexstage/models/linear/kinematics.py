@@ -21,7 +21,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 @dataclass(frozen=True)
 class FreeInternalMode:
-    """Free internal mode, independent of strokes and platform (a strut that spins): the `bodies` that move, the `links` that deform."""
+    """Free internal mode, independent of strokes and platform (a spinning strut). In it, `bodies` move and `links` deform."""
 
     TABLE: ClassVar[Layout] = Layout("Free internal modes (zero stiffness)", "bodies links")
 
@@ -211,7 +211,7 @@ class Kinematics(Result):
         if not self.actuated:
             strokes = "1 stroke does" if len(self.actuators) == 1 else f"{len(self.actuators)} strokes do"
             motions = f"{self.mobility} ideal motion{'' if self.mobility == 1 else 's'}"
-            immobile_note = f"; the links hold {', '.join(self.immobile)}" if self.immobile else ""
+            immobile_note = f"; the links block {', '.join(self.immobile)}" if self.immobile else ""
             mend = [finding.advice for finding in self.blockages] or [self._advice]
             raise refuse(
                 "mapping",
@@ -252,7 +252,7 @@ def _freeing(blockage: Blockage) -> str:
     if not blockage.ends:
         return f"F{hint}"
     hinge = "a hinge at each end" if len(blockage.ends) > 1 else "a hinge at that end"
-    return f"It joins {' and '.join(blockage.ends)} without a hinge, and is elastic along its axis only: put {hinge}; or f{hint}"
+    return f"The actuator joins {' and '.join(blockage.ends)} without a hinge and is elastic only along its axis: add {hinge}; or f{hint}"
 
 
 def _scales(names: tuple[str, ...], rotation: Number) -> Array:

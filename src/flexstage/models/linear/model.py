@@ -53,12 +53,12 @@ class LinearModel(InNotebook, CheckedFields):
       sum G^T k imposed.
     - `output` C (..., p, n) and `feedthrough` D_u (..., p, m).
     - `rigid` (..., n, 6): motion of all coordinates if the stage moves rigidly with the ground, per ground twist at the platform's
-      reference point; `rigid_output` (..., p, 6): the outputs.
+      reference point; `rigid_output` (..., p, 6): the outputs in this motion.
     - `base_inertia` (..., n, 6): inertial force per unit base acceleration.
     - `inertial` (..., n, m): M_u, inertial forces due to motions that inputs impose (absent: zero).
     - `unknown`: outputs that the model does not determine, i.e. forces of locked DOFs.
 
-    Batch axes lead. An array without batch axes is valid for every design. `viscous` are the dampers (..., d, d) [N s/m] of parts, by
+    Batch axes come first. An array without batch axes is valid for every design. `viscous` are the dampers (..., d, d) [N s/m] of parts, by
     stiffness contribution. A damper resists the rate of the contribution's elastic deformation (G q minus the imposed deformation) in the
     first d rows. The damping law of the model is added. Link forces do not include dampers.
 
@@ -66,8 +66,8 @@ class LinearModel(InNotebook, CheckedFields):
     removed modes. Frequencies and shapes thus do not depend on the choice of coordinates. `idle_output` (..., p, k) are the outputs of the
     k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground acceleration (both absent: none).
 
-    `floating` (n, k) are the mass-normalised motions without stiffness of a platform that only forces drive (absent: none). K is then
-    singular, and `solve` returns the elastic displacement without momentum in these motions (inertia relief).
+    `floating` (n, k) are the mass-normalised motions without stiffness of a force-driven platform (absent: none). K is then singular, and
+    `solve` returns the elastic displacement without momentum in these motions (inertia relief).
 
     The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`). `solve` and `momenta` use no dense
     matrix; K and M are assembled on request.
@@ -151,7 +151,7 @@ class LinearModel(InNotebook, CheckedFields):
 
     @property
     def scale(self) -> float:
-        """Typical eigenvalue of the model [1/s^2]: the median over the coordinates of stiffness over inertia."""
+        """Typical eigenvalue of the model [1/s^2]: the median of stiffness/inertia over the coordinates."""
         stiff, heavy = (np.real(np.diag(each)) for each in (self.stiffness_matrix, self.inertia_matrix))
         used = (stiff > 0.0) & (heavy > 0.0)
         return float(np.median(stiff[used] / heavy[used])) if used.any() else 1.0

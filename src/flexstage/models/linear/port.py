@@ -57,7 +57,7 @@ def ports(model: LinearModel, outputs: str | Iterable[str], inputs: str | Iterab
     sources = {channel.name: number for number, channel in enumerate(model.inputs)}
     columns = _expand_groups(inputs, (*sources, *_further_inputs(model)), "input")
     named = {"outputs": rows, "inputs": columns}
-    require(Finding(kind, "no name given", "Name at least one") for kind, names in named.items() if not names)
+    require(Finding(kind, "names missing", "Specify at least one name") for kind, names in named.items() if not names)
     picked = [known[name] for name in rows]
     require_known(model, rows)
     require_held(model, rows, columns)

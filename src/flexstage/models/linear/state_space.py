@@ -56,8 +56,8 @@ def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int 
 
     With ground displacement as input, the states are eta + Phi^T M_b u, so that no input is differentiated.
 
-    Modal damping is exact. Rayleigh damping is exact except for omitted coordinates. Structural damping has no time-domain form; each mode
-    has its equivalent ratio, as `note` states.
+    Modal damping is exact. Rayleigh damping is exact, except that the static term is undamped. Structural damping has no time-domain form;
+    each mode has its equivalent ratio, as `note` states.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports
@@ -121,7 +121,7 @@ def _note(model: LinearModel, damping: Damping, modes: int | None) -> str:
 
 
 def _law_note(damping: Damping, modes: int | None) -> str:
-    left = "freedoms without inertia" if modes is None else f"modes above the first {modes}"
+    left = "DOFs without inertia" if modes is None else f"modes above the first {modes}"
     if isinstance(damping, ModalDamping):
         return f"modal damping, exact; {left} as a static term"
     if isinstance(damping, RayleighDamping):

@@ -15,7 +15,7 @@ _SEEN = 1e-9
 _TENTH = 0.1
 _METRE = np.array([1.0, 1.0, 1.0, _TENTH, _TENTH, _TENTH])
 """Rotations are compared with translations over 0.1 m."""
-_ALLOWED = "Modes, responses and loops are available; a spring in that motion gives it a stiffness"
+_ALLOWED = "Modes, responses and loops are available; to give this motion a stiffness, add a spring"
 _ADVICE = "Add stiffness in that degree of freedom to a link of these bodies, or lock it"
 
 
@@ -28,7 +28,7 @@ def require_known(model: LinearModel, outputs: Iterable[str]) -> None:
     """
     unknown = set(model.unknown)
     require(
-        Finding(name, "unknown force, as this degree of freedom of the link is locked", "Specify its stiffness")
+        Finding(name, "unknown force, as this degree of freedom of the link is locked", "Specify a stiffness for it")
         for name in outputs
         if name in unknown
     )
@@ -89,7 +89,7 @@ def floats(model: LinearModel, inputs: tuple[str, ...]) -> list[bool]:
 
 
 def require_held(model: LinearModel, outputs: Iterable[str], inputs: Iterable[str]) -> None:
-    """Raise `DesignError` for wrenches that drive a free internal mode, if one of the outputs measures it: its displacement is unbounded.
+    """Raise `DesignError` for wrenches that drive a free internal mode, if an output measures this mode: its displacement is unbounded.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -117,7 +117,11 @@ def require_balanced(model: LinearModel, where: str, load: Array, rows: list[int
     if model.floating is not None:
         force = model.base_inertia @ load if rows is None else np.swapaxes(model.output[rows], -1, -2) @ load
         if np.any(np.abs(model.floating.T @ force) > _SEEN * (np.abs(model.floating).T @ np.abs(force))):
-            raise refuse(where, "drives a motion without stiffness, so that no equilibrium exists", "Turn gravity, or add a spring")
+            raise refuse(
+                where,
+                "drives a motion without stiffness, so that no equilibrium exists",
+                "Change the direction of gravity, or add a spring",
+            )
     if model.idle_output is None or model.idle_inertia is None:
         return
     load = np.real(first_design(load, 1))

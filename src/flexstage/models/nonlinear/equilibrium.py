@@ -41,7 +41,7 @@ class State(InNotebook):
 
     `status` is the outcome of each solution after `iterations`, with a `residual` relative to lengths and stiffnesses.
 
-    A case that did not converge is NaN. `reached` is the largest load fraction with an equilibrium, and `reasons` has a message.
+    A case that did not converge is NaN. `reached` is the largest load fraction with an equilibrium, and `reasons` explains each failure.
 
     `reactions` (..., h) act on the `held` coordinates [N, N m].
     """
@@ -121,12 +121,14 @@ def failure_reason(status: int, share: float) -> str:
     if status == Status.CONVERGED:
         return ""
     if status == Status.CRITICAL:
-        return f"at {share:.4g} of its loads it snaps or buckles: the equilibrium beyond is not the continuation of the unloaded stage"
+        return (
+            f"at {share:.4g} of the loads the stage snaps or buckles: the equilibrium beyond is not the continuation of the unloaded stage"
+        )
     if status == Status.NOT_FOLLOWED:
         return f"equilibrium was followed to {share:.3g} of the path from the unloaded stage: a state beyond is not its continuation"
-    what = "its stiffness is singular" if status == Status.SINGULAR else "Newton's method does not converge"
-    progress = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the path to it"
-    return f"{what} under the whole load; {progress}. It may end there: see fs.continuation (by arc length) and fs.critical_load"
+    what = "the stiffness is singular" if status == Status.SINGULAR else "Newton's method does not converge"
+    progress = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the load path"
+    return f"{what} under the whole load; {progress}. The path may end there: see fs.continuation (by arc length) and fs.critical_load"
 
 
 def require_equilibrium(solution: State) -> None:
@@ -136,9 +138,9 @@ def require_equilibrium(solution: State) -> None:
     """
     if not bool(solution.converged):
         status, share = int(solution.status), float(solution.reached)
-        progress = f": equilibrium was followed to {share:.3g} of them" if share else ""
+        progress = f"; equilibrium was followed to {share:.3g} of the load" if share else ""
         has_reason = status in (Status.CRITICAL, Status.NOT_FOLLOWED)
-        what = failure_reason(status, share) if has_reason else f"under its weight and loads no equilibrium was found{progress}"
+        what = failure_reason(status, share) if has_reason else f"no equilibrium was found under weight and loads{progress}"
         raise refuse("stage", what, LESS)
 
 
@@ -201,7 +203,7 @@ def equilibria(
     stated: Number = 1.0,
     options: SolverOptions = USUAL,
 ) -> list[State]:
-    """Compute the states of several designs of one structure under the same loads, each as by `equilibrium`.
+    """Compute the states of several designs of one structure under the same loads, each as `equilibrium` does.
 
     `hold` applies to all designs, or has one entry per design.
 
@@ -250,7 +252,7 @@ def _require_alike(models: Sequence[Nonlinear]) -> None:
     for number, other in enumerate(models[1:], start=2):
         for what, of in _STRUCTURE.items():
             if of(first) != of(other):
-                difference = f"its {what} differ from the first design: {_first_difference(of(first), of(other))}"
+                difference = f"{what} differ from the first design: {_first_difference(of(first), of(other))}"
                 raise refuse(f"design {number}", difference, "Analyse designs of another structure separately")
 
 
@@ -259,7 +261,7 @@ _STRUCTURE: Mapping[str, Callable[[Nonlinear], list[object]]] = {
     "flexures": lambda model: [f"{name} of kind {group.law.signature}" for group in model.flexures for name in group.names],
     "links": lambda model: [f"{each.name} of {' and '.join(each.joins)}" for each in model.assembly.links.values()],
     "other links": lambda model: list(model.hinges.names),
-    "locked freedoms": lambda model: model.hinges.locked.tolist(),
+    "locked degrees of freedom": lambda model: model.hinges.locked.tolist(),
     "superelements": lambda model: [each.name for each in model.elements],
     "inputs": lambda model: [each.name for each in model.inputs],
 }
@@ -267,7 +269,7 @@ _STRUCTURE: Mapping[str, Callable[[Nonlinear], list[object]]] = {
 
 def _first_difference(one: list[object], other: list[object]) -> str:
     pairs = itertools.zip_longest(one, other, fillvalue="none")
-    return next(f"{ours} there, {theirs} here" for ours, theirs in pairs if ours != theirs)
+    return next(f"{theirs} instead of {ours}" for ours, theirs in pairs if ours != theirs)
 
 
 def corrected(

@@ -1,4 +1,4 @@
-"""Results of many designs at large displacements, and gradients of results by numbers of the description (docs/nonlinear.md, 31)."""
+"""Results of many designs at large displacements, and their gradients by numbers of the description (docs/nonlinear.md, 31)."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def gradients(
     weight: Number = 1.0,
     stated: Number = 1.0,
 ) -> Array:
-    """Compute gradients (a, ...) of results by the numbers at `names` (a addresses), per SI unit, for constant loads.
+    """Compute gradients (a, ...) of results with respect to the numbers at `names` (a addresses), per SI unit, for constant loads.
 
     By the implicit function theorem, dq/dp = - K^-1 dF/dp. K is the tangent stiffness, including the inner unknowns of flexures. dF/dp is
     the derivative of the residual at the known state. Residual and results are differentiated by a fourth-order central difference with
@@ -95,7 +95,7 @@ def gradients(
 def _slope(mechanism: Mechanism, name: str, size: float, evaluate_near: Callable[[Nonlinear], Array]) -> Array:
     value = get(mechanism, name)
     if value is None or not isinstance(locate(mechanism, name).node, NumberNode):
-        raise refuse(name, "not a single number of the description", "Specify the number, or use another one")
+        raise refuse(name, "not a single number of the description", "Specify the number, or use another address")
     step = _SHARE * (abs(float(value)) or size)
     models = (nonlinear(set_value(mechanism, name, float(value) + place * step)) for place in _STENCIL)
     return np.sum([weight * evaluate_near(model) for model, weight in zip(models, _STENCIL.values(), strict=True)], axis=0) / step

@@ -97,10 +97,10 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
     - Plate fields are quasi-static, without mass.
     - The stiffness is symmetrised. It has one contribution per link, and the contribution `geometric`.
     - Forces inside flexures are `unknown`. Gauges measure along their nominal lines.
-    - Without `inner` coordinates, each flexure is a 6x6 about its middle, in the frame of its start, as for lost motion and drift. Its
-      statics is unchanged; modes are by Guyan reduction.
+    - Without `inner` coordinates, each flexure is a 6x6 stiffness about its middle, in the frame of its start, as for lost motion and
+      drift. Statics are unchanged; modes are by Guyan reduction.
 
-    Raises `DesignError` if no case has a state, for `locked` names that are not fixed, and if matrices take more than 8 GB.
+    Raises `DesignError` if no case has a state, for `locked` names that are not fixed, and if matrices need more than 8 GB.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium
@@ -134,7 +134,7 @@ def _require_memory(state: State, *, inner: bool) -> None:
     size = model.freedoms + own + sum(len(each.squares) for each in model.elements)
     needed, most = (f"{each / 1e9:.0f} GB" for each in (8.0 * _MATRICES * cases * size**2, MEMORY))
     if 8.0 * _MATRICES * cases * size**2 > MEMORY:
-        what = f"small motions about {cases} states have {size:,} coordinates: dense matrices of {needed}, above {most}"
+        what = f"linearisation about {cases} states has {size:,} coordinates; its dense matrices of {needed} exceed {most}"
         raise refuse("stage", what, "Use fewer states at once (state.case), or no coordinates of flexures (inner=False)")
 
 

@@ -1,4 +1,4 @@
-"""Body poses of large stages from the flexures along a spanning tree, which starts at the ground, without gaps between its links.
+"""Body poses of large stages, computed from the flexures along a spanning tree from the ground, without gaps between links.
 
 A solution step rotates bodies by finite rotations, but displaces them to first order. Along a chain of many links, this difference opens a
 gap at every link, which causes wrong restoring forces.

@@ -53,7 +53,8 @@ class Corotated:
 class PortMotion:
     """Motions (..., 6 p) of the ports in the corotated frame, and their derivatives (..., 6 p, 6 p) by the body motions.
 
-    Also the `frame` (..., 3, 3), and the derivatives (..., 3, 6 p) of its rotation and of the mean position.
+    `frame` (..., 3, 3) is the corotated frame. `turning` and `drift` (..., 3, 6 p) are the derivatives of its rotation and of the mean
+    position.
     """
 
     motion: Array

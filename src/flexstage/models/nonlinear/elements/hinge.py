@@ -1,4 +1,4 @@
-"""Links with a 6x6 about a centre, at large displacements: springs, stacks, specified matrices, joints (docs/nonlinear.md, 15).
+"""Links with a 6x6 stiffness about a centre, at large displacements: springs, stacks, specified matrices, joints (docs/nonlinear.md, 15).
 
 Both bodies are rigidly extended to frames a and b at the centre. The deformation is psi = log(R_a^T R_b) and d = R_m^T (x_b - x_a) in the
 half-way frame R_m = R_a exp(psi / 2). It does not depend on the order of the ends. A strut (a spring with a length L) turns about both
@@ -22,7 +22,7 @@ _STEP = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Hinges:
-    """l links with a 6x6 about a centre: body numbers, nominal link axes `turn` (l, 3, 3), arms (l, 3) from the body references.
+    """l links with a 6x6 stiffness about a centre: body numbers, nominal link axes `turn` (l, 3, 3), arms (l, 3) from the body references.
 
     - `stiffness` (l, 6, 6).
     - `stroke`, `thrust` (l, 6, m): free deformation and wrench on the second body per input.

@@ -32,7 +32,9 @@ _ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
 
 @dataclass(frozen=True, eq=False)
 class Strains:
-    """Strains of l flexures by name: the largest strain (..., l), and b^2 k / t (..., l) for the largest curvature k.
+    """Strains of l flexures by name: the `largest` strain (..., l), and `curving` b^2 k / t (..., l).
+
+    In this ratio, b is the width, t the thickness and k the largest curvature.
 
     `stress` (..., l) is the largest von Mises stress on the faces [Pa]; `limit` (l,) the lowest stress limit of the material, NaN if
     unknown.
@@ -46,7 +48,7 @@ class Strains:
 
 
 def strains(state: State) -> Strains:
-    """Compute strains at the ends and the points of every flexure, at its thinnest section.
+    """Compute strains at the ends and the points of every flexure, for its thinnest section.
 
     The strain is |N| / E A + |k_z| t / 2 + |k_y| b / 2 + k_x^2 b^2 / 12, the largest possible sum at an edge of the section. At a clamped
     end of a leaf, the stress is 1 / (1 - nu^2) times the stress of a beam with this strain. Stress includes stretch, bending about both
@@ -81,11 +83,11 @@ def strains(state: State) -> Strains:
 
 
 def law_reserve(state: State) -> tuple[float, str]:
-    """Return the remaining range of the link laws at a state (1 undeformed, 0 at the limit), and a text with the limiting link.
+    """Return the remaining range of the link laws at a state (1 undeformed, 0 at the limit), and a clause with the limiting link.
 
-    The strain limit of flexures is 5 %. The limit of a 6x6 of a link or superelement is a 10 % error of a law of small motions: a relative
-    rotation of its ends of 0.46 rad, or a displacement of 0.3 of its length. If the length is unknown, the extent of the stage is used. For
-    a spring with a length, the displacement limit is twice as large. Links without stiffness have no limit.
+    The strain limit of flexures is 5 %. The limit of the 6x6 stiffness of a link or superelement is a 10 % error of a law of small motions:
+    a relative rotation of its ends of 0.46 rad, or a displacement of 0.3 of its length. If the length is unknown, the extent of the stage
+    is used. For a spring with a length, the displacement limit is twice as large. Links without stiffness have no limit.
     """
     model, pose, hinges = state.model, state.pose, state.model.hinges
     used = [(float(np.max(strains(state).largest, initial=0.0)) / _STRAIN, f"a flexure has a strain of {_STRAIN:.0%} there")]
@@ -98,7 +100,7 @@ def law_reserve(state: State) -> tuple[float, str]:
     for each in model.elements:
         motion = port_motion(each, pose.position[:, each.bodies], pose.turn[:, each.bodies]).motion
         shares[each.name] = _share(motion.reshape(-1, 6), _SHIFT * _diagonal(each.place))
-    used += [(share, f"{name} is deformed beyond the range of its 6x6 there") for name, share in shares.items()]
+    used += [(share, f"{name} is deformed beyond the range of its 6x6 stiffness there") for name, share in shares.items()]
     return min((1.0 - share, why) for share, why in used)
 
 

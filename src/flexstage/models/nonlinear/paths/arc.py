@@ -91,8 +91,8 @@ class Point:
       slope up to this point.
     - `motions`: number of independent motions that decrease the potential.
     - `stiffness`: product of the lowest stiffness of the stage and the stiffness of the weakest flexure between fixed ends, relative to the
-      `reference`. Where the flexure's stiffness is zero, the stage's has a pole, but not the product. It is negative for unstable states,
-      and NaN without a reference.
+      `reference`. Where the flexure's stiffness is zero, the stage's stiffness has a pole, but the product has none. It is negative for
+      unstable states, and NaN without a reference.
     """
 
     found: EquilibriumSolution
@@ -261,7 +261,7 @@ def point_at(
 def complete_paths(
     model: Nonlinear, loads: Loads, hold: FixedCoordinates, solution: EquilibriumSolution, options: SolverOptions
 ) -> EquilibriumSolution:
-    """Continue cases that reached only a part of their load by arc length, to the whole load or to the limit point."""
+    """Continue by arc length the cases that reached only a fraction of their load, to the whole load or to the limit point."""
     partly = np.flatnonzero((solution.status != Status.CONVERGED) & (solution.reached > 0.0))
     for case in partly if options.arcs else ():
         one = np.array([case])

@@ -34,7 +34,7 @@ class NoCriticalLoadError(DesignError):
 
 
 class Kind(Enum):
-    """Type of a critical point: a `LIMIT` point, a maximum of the load, or a `BIFURCATION` into another path."""
+    """Type of a critical point: a `LIMIT` point (maximum of the load), or a `BIFURCATION` into another path."""
 
     LIMIT = "limit"
     BIFURCATION = "bifurcation"
@@ -44,7 +44,7 @@ class Kind(Enum):
 class Critical:
     """Critical point: the `factor` on a load, the buckling mode `shape` (n, 6) of its `bodies`, and its `kind`.
 
-    The sign of the shape: its largest component, with translations over the stage size, is positive (of equal components, the first).
+    The largest component of the shape, with translations over the stage size, is positive (of equal components, the first).
 
     `link` names a flexure that buckles between fixed ends; otherwise it is empty. `state` is the last stable state. `bend` is the factor of
     an earlier imperfect bifurcation, or `None`.
@@ -103,7 +103,7 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     - `LowerBoundError` if the path ends earlier: at the end of the range of a law (`strain.law_reserve`), or without a further equilibrium.
     """
     if not any(load.values()):
-        raise refuse("load", "the load is zero", "Name a force or moment and its size")
+        raise refuse("load", "the load is zero", "Specify a force or moment with its size")
     require(Finding(name, "not a fixed coordinate", suggest_nearest(name, hold or {})) for name in locked or () if name not in (hold or {}))
     low = 0.0 if known is None else 1.0
     start = _at(model, load, low, rest=rest or {}, hold=hold or {}, shares=(weight, stated), start=known)
@@ -112,11 +112,11 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     begin = first_point(loading, start.pose, low)
     if begin.motions:
         under = "with" if low else "without"
-        raise refuse("stage", f"it is not stable, or has no equilibrium, {under} the load", "Check its weight and its specified forces")
+        raise refuse("stage", f"the stage is not stable, or has no equilibrium, {under} the load", "Check weight and specified forces")
     followed = follow_to_event(loading, begin, most, tolerance, reserve=lambda point: law_reserve(state_at(loading, point, ())))
     if followed.event is None or followed.factor > most:
         what = f"no critical point up to {most:g} times the load"
-        raise NoCriticalLoadError([Finding("load", what, "Name a larger load, or another one")])
+        raise NoCriticalLoadError([Finding("load", what, "Use a larger load, or another one")])
     return _critical(loading, followed, start.held)
 
 

@@ -175,9 +175,9 @@ def _not_followed(last: Point, why: str, bent: Point | None) -> LowerBoundError:
     """Error of a path that ends without a critical point: stable up to its end, or up to its bend."""
     bend = _bend(bent, last)
     bound = last.factor if bend is None else bend
-    reason = why if bend is None else f"it bends off there, an imperfect bifurcation, and moves {1.0 / _FLAT:g} times as far per load"
+    reason = why if bend is None else f"imperfect bifurcation, beyond which the stage moves {1.0 / _FLAT:g} times as far per unit of load"
     what = f"stable up to {bound:.6g} times the load, and not followed beyond: {reason}"
-    return LowerBoundError([Finding("load", what, "Follow the load with fs.continuation, or use another one")], bound)
+    return LowerBoundError([Finding("load", what, "Follow the load with fs.continuation, or use another load")], bound)
 
 
 def _bend(bent: Point | None, last: Point) -> float | None:

@@ -238,7 +238,7 @@ def continuation(
     names = [channel.name for channel in model.inputs]
     unknown = [name for name in load if name not in names]
     if unknown or not any(load.values()):
-        raise refuse(", ".join(unknown) or "load", "not a load of this stage, or zero", "Name a force, moment or stroke and its size")
+        raise refuse(", ".join(unknown) or "load", "not a load of this stage, or zero", "Specify a force, moment or stroke with its size")
     loading = proportional_loading(start, load, 0.0, options)
     begin = first_point(loading, start.pose, 0.0)
     return _along(loading, [begin, *continue_path(loading, begin, step, points)], start.held)
@@ -303,10 +303,10 @@ def beyond(
     """
     start, what = critical.state, f"at {critical.factor:.6g} times the load"
     if critical.kind is not Kind.BIFURCATION and side < 0.0:
-        raise refuse("side", f"{what} the path continues to one side only: a {critical.kind.value}", "Use the other side")
+        raise refuse("side", f"{what} the path continues to one side only ({critical.kind.value} point)", "Use the other side")
     if critical.link and critical.kind is Kind.BIFURCATION:
         raise refuse(
-            critical.link, f"{what} the flexure buckles between fixed ends", "Model it as two parts with a light body between them"
+            critical.link, f"{what} the flexure buckles between fixed ends", "Model the flexure as two parts with a light body between them"
         )
     loading, into = proportional_loading(start, load, critical.factor, options), None
     if critical.kind is Kind.BIFURCATION:
