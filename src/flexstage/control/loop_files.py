@@ -117,5 +117,5 @@ def _about(found: LoopStudy) -> str:
     gains = ", ".join(f"{each.actuator} {each.stiffness:.6g} N/m" for each in sensed)
     form = "g/(s + a)" if law.order == 1 else "g s/(s + a)^2"
     numbers = f"g = {law.gain:.6g} 1/s, a = {2.0 * math.pi * law.corner:.6g} 1/s"
-    where = "With" if found.damping.rate is not None else "Not included, analogue and around it:"
-    return f"{said}. {where} force feedback, stroke = {form} tension / k, {numbers}, k: {gains}."
+    where = "Includes" if found.damping.rate is not None else "Does not include the analogue"
+    return f"{said}. {where} force feedback in the legs: stroke = {form} tension / k, {numbers}, k: {gains}."

@@ -73,9 +73,9 @@ class LoopOptions:
         TuningObjective | None,
         word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: balance.", show_default=False),
     ] = None
-    quick: Annotated[
-        bool, typer.Option("--quick", help="Plain tuning: the highest bandwidth within --max-sensitivity, without optimisation.")
-    ] = False
+    quick: Annotated[bool, typer.Option("--quick", help="Plain tuning: the highest bandwidth that Ms allows, without optimisation.")] = (
+        False
+    )
     max_sensitivity: Annotated[
         str | None, text_option("--max-sensitivity", "NUMBER", "Maximum peak sensitivity Ms of a tuned loop. Default: 2.")
     ] = None
@@ -103,9 +103,7 @@ class LoopOptions:
             "Amplitude of a step or sine, e.g. x=1um. Default: 1 um or 10 urad (sine: first axis only). Repeatable.",
         ),
     ] = None
-    seconds: Annotated[
-        float | None, text_option("--seconds", "NUMBER", "Duration of the simulation in seconds. Default: until settled.")
-    ] = None
+    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until settled.")] = None
     feedforward: Annotated[
         list[str] | None,
         text_option(

@@ -259,7 +259,7 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
         yield (
             "rounding is counted as white noise, but it is not white: the readings of "
             f"{', '.join(budget.slowly_rounding)} change by at most {most:.2g} steps rms from sample to sample, and white rounding needs "
-            f"half a step; a reading at rest may be wrong by half a step ({half}), which the loop cannot correct"
+            f"half a step. A reading at rest may be wrong by half a step ({half}), which the loop cannot correct"
         )
     quiet = [name for name in given.actuators if given.hardware.amplifiers.get(name, Amplifier()).noise_density is None]
     if quiet:

@@ -81,7 +81,8 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
 
     With --at, --load, --fixed or --temperature, the plant is linearised at that operating point.
 
-    With --record, the plant is the identified model of the test. With --fea, it is a finite-element model of the nominal stage, to 1 %.
+    With --record, the plant is the identified model of the test. With --fea, it is a finite-element model of the nominal stage, with
+    frequencies accurate to 1 %.
 
     Example of a comparison: flexstage loop stage.toml --floor VC-D --tune-for balance --compare --report loops.html
     """

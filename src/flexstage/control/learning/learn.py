@@ -146,8 +146,8 @@ class LearningSettings:
 def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: LearningSettings) -> LearningResult:
     """Learn the command for a true path (n, f), at rest at both ends: command = path + d, d <- Q (d + gain P^^-1 e) after each pass.
 
-    `run` simulates a pass with a commanded path and a number, and returns the measured poses (n, f). Raises `DesignError` as `robust_band`
-    does.
+    `run(path, number)` simulates pass `number` along a commanded path, and returns the measured poses (n, f). Raises `DesignError` as
+    `robust_band` does.
     """
     robust = robust_band(closed, control, lesson.gain, lesson.spread)
     frequencies = frequencies_of(wanted, closed.step or 1.0)

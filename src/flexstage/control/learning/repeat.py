@@ -29,10 +29,10 @@ _OFFSETS, _PHASES, _FINEST = 5, 16, 8
 class Repeater:
     """Repetitive controller d = z^-P (W d + L e) of the error e: taps `keep` (2m+1,) of W and `teach` (2m+1, f, f) of L.
 
-    Both filters are noncausal by m samples, and include the fraction of a sample in the `period` P [samples]. In the `band`, W = 1.
-    `contraction` is the largest ||W - G L|| over all frequencies, in lengths; G are the loop's responses with shifted modes. With a
-    contraction below 1 the loop is stable and repeating errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao &
-    Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353). `amplifies` is the largest ||(I + W z) (I + (W - G L) z)^-1|| over |z| = 1:
+    Both filters are noncausal by m samples, and include the fraction of a sample in the `period` P [samples]. W is the low-pass filter of
+    the `band`. `contraction` is the largest ||W - G L|| over all frequencies, in lengths; G are the loop's responses with shifted modes.
+    With a contraction below 1 the loop is stable and repeating errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao
+    & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353). `amplifies` is the largest ||(I + W z) (I + (W - G L) z)^-1|| over |z| = 1:
     amplification between the harmonics.
     """
 
@@ -56,7 +56,7 @@ class Repeater:
 
 
 def repeater(closed: Loop, control: System, period: float, gain: float, spread: float) -> Repeater:
-    """Design the filters for a `period` [s] in the widest contracting band, for relative mode shifts up to `spread`.
+    """Design the filters for a `period` [s] in the widest band in which errors decrease, for relative mode shifts up to `spread`.
 
     `gain` is the gain of the loop's inverse. Finite filters also act beyond their band; therefore the band is narrower than for iterative
     learning. Raises `DesignError` as `robust_band` does, and for a period too short for filters whose band contains a harmonic.

@@ -161,7 +161,7 @@ class StageController:
     # --- time ---
 
     def advance(self, count: int) -> None:
-        """Simulate `count` samples. If the simulation diverges, positions are reset and all servos are switched off."""
+        """Simulate `count` samples. If the simulation diverges, the loop is reset and all servos are switched off."""
         if count < 1:
             return
         wanted = np.stack([self._course(axis, count) for axis in range(len(self.axes))], axis=-1)

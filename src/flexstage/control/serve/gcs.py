@@ -1,7 +1,7 @@
 """Commands of the General Command Set, syntax version 2.0, supported by the virtual controller.
 
 References: two manuals of Physik Instrumente, "E-727 user manual", E727T0005, 2019-06-28 (syntax, wave generator, data recorder), and
-"C-863.12 Mercury Controller user manual", MS249E, version 1.2.1 (motion, answers, error codes). Each command cites its section.
+"C-863.12 Mercury Controller user manual", MS249E, version 1.2.1 (motion, answers, error codes).
 """
 
 from __future__ import annotations

@@ -74,7 +74,7 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
         stage_section(data),
         section("Comparison of controllers", [compared, drawn if lines else None]),
         caveat_section(mechanism, found.warnings),
-        section("By coordinate", [by_coordinate]),
+        section("Results by coordinate", [by_coordinate]),
     )
     head = Head(mechanism.name or "stage", f"Controllers, {asked.model.value} model", origin, Headline(f"Best: {best}."))
     return page(head, sections, {"stage": data})

@@ -169,7 +169,7 @@ def frequency_section(found: LoopStudy) -> Section | None:
         "margins (phase −180°), and phase and delay margins (gain 1). Every second curve is dashed."
     )
     return section(
-        "Over frequency",
+        "Frequency domain",
         [
             *margin_tables(found),
             Picture(loops, caption, reading=reading(opened, spots)),
@@ -197,10 +197,10 @@ def measured_section(found: LoopStudy) -> Section | None:
         return None
     seen = found.measured.sensitivities
     drawn = measured_figure(seen, found.plant.coordinates.names)
-    picture = to_svg(drawn, "measured-loops", "Sensitivities on the measured responses")
+    picture = to_svg(drawn, "measured-loops", "Sensitivities from measured responses")
     sure = "shaded: 95 % interval" if seen.low is not None else "the test has no data on the uncertainty of its responses"
     caption = f"Sensitivity of every loop along its axis, with hold and delay; {sure}."
-    return section("On the measured responses", [*measured_tables(found), Picture(picture, caption, reading=reading(drawn))])
+    return section("Loop with measured responses", [*measured_tables(found), Picture(picture, caption, reading=reading(drawn))])
 
 
 def margin_spots(found: LoopStudy) -> Iterator[Spot]:
@@ -244,7 +244,7 @@ def time_section(found: LoopStudy) -> Section | None:
     for number_, test in enumerate(test for test in found.runs if test.figures is None):
         pictures += _trajectory_pictures(test, f"trajectory{number_}")
     small = None if found.second_order is None else Prose(found.second_order.text)
-    return section("Over time", [small, *time_tables(found.runs), *pictures])
+    return section("Time domain", [small, *time_tables(found.runs), *pictures])
 
 
 def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
@@ -281,7 +281,7 @@ def _noise_pictures(found: LoopStudy) -> Iterator[Picture]:
     budget = found.noise
     if not np.any(budget.rms > _NOISELESS):
         return
-    drawn = to_svg(noise_share_figure(budget), "noise-shares", "Percentages of the noise by source")
-    yield Picture(drawn, "Noise by source: percentages of the mean square of each coordinate in regulation, and its rms.")
+    drawn = to_svg(noise_share_figure(budget), "noise-shares", "Contributions to the noise by source")
+    yield Picture(drawn, "Contribution of each source to the mean square of each coordinate in regulation, and the rms of the coordinate.")
     drawn = to_svg(noise_spectrum_figure(budget), "noise-spectrum", "Noise over frequency")
     yield Picture(drawn, "Amplitude density of the true motion, and its cumulative rms from the lowest frequency.")

@@ -251,7 +251,7 @@ def noise_table(found: LoopStudy) -> Table:
 
 def _noise_notes(found: LoopStudy) -> tuple[str, ...]:
     budget, still, resting = found.noise, found.still, found.resting
-    notes = ["Rms of the platform's true motion relative to the ground. The mean squares of all sources add up."]
+    notes = ["Values are the rms of the platform's true motion relative to the ground. The mean squares of all sources add up."]
     if resting is not None:
         notes.append(f"The rms is from {resting.count} simulations of {number(resting.seconds, 3)} s, with quantisation and limits.")
     elif still is not None:

@@ -13,7 +13,7 @@ class ControllerKind(Enum):
     PID = "pid"
     """Proportional, integral and filtered derivative control."""
     RESONANT = "resonant"
-    """Integral resonant control: an inner positive feedback damps the modes, inside an integral loop."""
+    """Integral resonant control: an inner positive feedback damps the modes, an outer loop integrates the error."""
     LQG = "lqg"
     """Linear-quadratic regulator with a Kalman filter and integrators."""
     NONE = "none"
@@ -74,9 +74,9 @@ class Following(Enum):
     """Tracking method for a known path."""
 
     INVERSE = "inverse"
-    """Inverse of the model's loop applied to the path."""
+    """Inverse of the modelled loop, applied to the path."""
     LEARNING = "learning"
-    """Iterative learning over passes."""
+    """Iterative learning from previous passes."""
     REPETITIVE = "repetitive"
     """Repetitive control, learning from previous periods during the run."""
     ZV = "zv"
@@ -89,9 +89,9 @@ class StackKind(Enum):
     """Behaviour of hysteretic stacks."""
 
     MODEL = "model"
-    """The same hysteresis model as the inverted model."""
+    """The hysteresis model that is also inverted."""
     BOUC_WEN = "bouc-wen"
-    """Bouc-Wen stacks with the same width of the loop: another model than the inverted model."""
+    """Bouc-Wen stacks with the same loop width, which differ from the inverted model."""
 
 
 class Axis(Enum):
@@ -112,7 +112,7 @@ class Axis(Enum):
 
 
 class Criterion(Enum):
-    """Generic vibration criteria: rms velocity of the floor in every third-octave band."""
+    """Generic vibration criterion: limit of the floor's rms velocity in every third-octave band."""
 
     WORKSHOP = "ISO workshop"
     """800 um/s."""

@@ -1,4 +1,4 @@
-"""Comparison of controllers on one stage: performance, trade-offs, and the best for each quantity."""
+"""Comparison of controllers on one stage: performance, trade-offs, and the best controller for each quantity."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class ComparedController:
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """Criteria by name; smaller is better. Each is the worst of all coordinates; noise is their mean logarithm (absent: no noise)."""
+        """Criteria by name, smaller is better: the worst value of all coordinates; of noise the mean logarithm (absent without noise)."""
         return {
             "rejection": -self.crossover,
             **({"noise": float(np.mean(np.log(self.noise)))} if np.all(self.noise > 0.0) else {}),
@@ -179,9 +179,9 @@ def compare_controllers(
 ) -> Comparison:
     """Tune PI, PID, integral resonant control, LQG and the kinds of `CONTROLLERS` for one set-up, and compare their step responses.
 
-    PI and PID are optimised, unless the set-up prevents it; LQG is optimised for a specified goal. The others are tuned to the highest
-    bandwidth within the same peak of S. `workers` is the number of processes that tune in parallel, with the same results (0: none). Raises
-    `DesignError` if no design succeeds. A kind fails if the set-up contains gains that it does not have.
+    PI and PID are optimised, unless the set-up specifies plain tuning; LQG is optimised for a specified goal. The others are tuned to the
+    highest bandwidth within the same peak of S. `workers` is the number of parallel processes (0: the calling process); the results do not
+    depend on it. Raises `DesignError` if no design succeeds. A kind fails if the set-up contains gains that it does not have.
     """
     asked = replace(setup or LoopSetup(), trajectory=StepMotion())
     rivals = _rivals(mechanism, asked, tested=test is not None)

@@ -35,7 +35,7 @@ from flexstage.control.tuning.tune import tune
 _EXPECTED = 1e-9
 """Density [m/Hz^0.5] of stroke disturbances assumed by an observer without specified amplifier noise."""
 _QUIETEST = 1e-13
-"""Lowest gauge noise density [m/Hz^0.5] assumed by an observer: it would rely entirely on a noiseless gauge."""
+"""Lowest gauge noise density [m/Hz^0.5] that an observer assumes, because it would rely entirely on a noiseless gauge."""
 _FILTER = 1e3
 
 

@@ -60,7 +60,7 @@ class NamedTrajectory:
 
     @property
     def is_step(self) -> bool:
-        """Whether it is a step, evaluated by settling."""
+        """Whether the trajectory is a step, which is evaluated by its settling."""
         return isinstance(self.trajectory, Step)
 
 

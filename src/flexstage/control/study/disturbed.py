@@ -24,7 +24,7 @@ _RINGING, _GONE, _LEAKED = 0.1, 1e-6, 1.5
 def rest_time(closed: Loop, *, ringing: bool = False) -> float:
     """Return the time [s] for initial settling: eight time constants of the slowest pole, between 20 ms and 2 s, rounded up.
 
-    Oscillating poles count only with `ringing`, that is if feedforward excites them. Charge leakage is not included.
+    Oscillating poles are included only with `ringing`, that is if feedforward excites them. Poles of charge leakage are not included.
 
     >>> from flexstage.control.example import integral_loop
     >>> rest_time(integral_loop(gain=300.0))
@@ -42,7 +42,7 @@ def rest_time(closed: Loop, *, ringing: bool = False) -> float:
 
 @dataclass(frozen=True, eq=False)
 class DisturbedLoop:
-    """Loop with noise, which starts `rest` [s] before a simulation, so that it is then stationary.
+    """Loop with noise. The noise starts `rest` [s] before a simulation, to be stationary in it.
 
     Floor vibration fades in.
     """

@@ -97,7 +97,7 @@ def setup_schema() -> dict[str, Any]:
 
 
 def example() -> str:
-    """Return a commented example file; the lines not commented out are the defaults.
+    """Return a commented example file; lines that are not commented out contain the defaults.
 
     >>> example().splitlines()[0]
     'format = "flexstage loop 1"'

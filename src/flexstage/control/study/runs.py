@@ -47,7 +47,7 @@ def _settled(time: float) -> Mark:
 
 @dataclass(frozen=True, eq=False)
 class StepAnswer:
-    """Response to a step of `size` [`unit`] of one coordinate, with its `settling` time [s] (infinite: not settled).
+    """Response of one coordinate to a step of `size` [`unit`], with its `settling` time [s] (infinite: not settled).
 
     `overshoot` is relative to the step. `residual` [`unit`] is the true error at the end. `others` are the largest motions along all other
     platform axes. `largest` (f,) [m, rad] are the largest true errors of all coordinates.
@@ -106,7 +106,7 @@ class CoilHeat:
 
 @dataclass(frozen=True)
 class LegUse:
-    """Amplifier load with force feedback: the largest stroke [m] `added` by it, and the `largest` total stroke of both loops.
+    """Amplifier load: the largest stroke `added` by force feedback, and the `largest` total stroke of both loops [m].
 
     `fastest` [m/s] is the largest rate of the total stroke between samples. `reach` [m] is the amplifier's stroke limit in the direction of
     the largest stroke, `slew` [m/s] its rate limit (infinite: no limit).
@@ -143,7 +143,7 @@ class LegUse:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Simulated trajectory, with the `figures` of a step, and `tracking` errors: rms and peak, measured by the gauges and true.
+    """Simulated trajectory, with the `figures` of a step, and `tracking` errors: rms and peak, true and as measured by the gauges.
 
     `learned` and `repeated` are results of iterative learning and repetitive control, if specified. `heat` is the thermal load of force
     actuators by name, `legs` the amplifier load with force feedback. `commanded` (n, f) is the commanded path if it differs from the

@@ -1,4 +1,4 @@
-"""Set-up of a loop, as in its file: sampling, amplifier, gauges, floor, controller, compensation, trajectory.
+"""Set-up of a loop, with the keys of its file: sampling, amplifier, gauges, floor, controller, compensation, trajectory.
 
 The file reader and the schema are generated from the quantities of the fields.
 """
@@ -55,7 +55,7 @@ _CREEP = Bound(low=-0.2, high=0.2)
 
 @dataclass(frozen=True)
 class KindNode(ChoiceNode):
-    """Kinds of controllers: the members of `ControllerKind`, and the entries of `CONTROLLERS`, to which other packages add."""
+    """Kinds of controllers: the members of `ControllerKind`, and the entries of `CONTROLLERS`, to which other packages add kinds."""
 
     @property
     def words(self) -> dict[str, Any]:
@@ -99,7 +99,7 @@ class GaugeSetup(CheckedFields):
 class VibrationSetup(CheckedFields):
     """Floor vibration along one axis: a named `criterion`, or amplitude densities of `acceleration`, `velocity` or `displacement`.
 
-    A single density is white noise. With `frequencies`, one for each density, the spectrum is interpolated in log-log, and zero outside.
+    A single density is white noise. Densities at several `frequencies`, one for each, are interpolated in log-log, and zero outside.
     """
 
     criterion: Criterion | None = None
@@ -129,7 +129,7 @@ class NotchSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class PrefilterSetup(CheckedFields):
-    """Second-order low-pass prefilter of the reference: `frequency`, `damping`; above a `lead` the gain decreases less steeply."""
+    """Second-order low-pass prefilter of the reference: `frequency`, `damping`; above the corner `lead` the gain falls less steeply."""
 
     frequency: Annotated[float, FREQUENCY, POSITIVE]
     damping: Annotated[float, RATIO, POSITIVE] = 1.0
@@ -140,7 +140,7 @@ class PrefilterSetup(CheckedFields):
 class LoopNumbers(CheckedFields):
     """Parameters of the loops named in `axes`: x, rz ... in platform coordinates, otherwise mode1 ... or names of actuators.
 
-    Missing parameters are those of all loops; `notches` are additional.
+    Missing parameters have the common values of all loops; `notches` are additional to the common ones.
     """
 
     axes: tuple[str, ...]
@@ -181,7 +181,8 @@ class ControllerSetup(CheckedFields):
     `proportional`, `integral` and `derivative`, with the corner `filter` of the derivative, apply to all loops; `loops` override them for
     single loops. `notches` are additional to automatic ones. `prefilter` filters the reference.
 
-    By default, PI and PID are optimised for the `goal` balance, within `sensitivity`. `quick`, a bandwidth, gains or notches disable this.
+    By default, PI and PID are optimised for the `goal` balance, within `sensitivity`. `quick`, a bandwidth, gains or notches disable the
+    optimisation.
     """
 
     kind: Annotated[ControllerKind | OfferedKind, KINDS] | None = None
@@ -207,7 +208,7 @@ class ControllerSetup(CheckedFields):
 
     @property
     def stated(self) -> tuple[str, ...]:
-        """Names of the specified gains, of all loops or single ones. With any of them, the controller is not tuned."""
+        """Names of the gains specified for all loops or for single loops. With any of them, the controller is not tuned."""
         return tuple(name for name in GAINS if any(getattr(each, name) is not None for each in (self, *self.loops)))
 
     @property
@@ -223,9 +224,9 @@ class DampingSetup(CheckedFields):
     `ratio` is the required damping ratio of the modes with the largest residues; `gain` specifies the feedback directly. `corner` is the
     corner of a high-pass filter (default: a tenth of the lowest frequency that these modes have without the stacks' stiffness). A filter of
     `order` 2 preserves the static stiffness; order 1 reduces it to the fraction a / (a + gain), with a = 2 pi `corner`. The tension is
-    measured by a force sensor in each leg, with white `noise`, or by strain `gauges` on links of the legs, with noise and bandwidth of the
-    design. `lag` and `delay` describe analogue electronics. With `rate`, an integer multiple of the loop's sampling rate, a computer runs
-    the feedback, and `delay` has the default of one sample.
+    measured by a force sensor in each leg, with white `noise`, or by strain `gauges` on links of the legs, with their noise and bandwidth
+    in the design. `lag` and `delay` describe analogue electronics. With `rate`, an integer multiple of the loop's sampling rate, a computer
+    runs the feedback; the default `delay` is then one sample of this rate.
     """
 
     ratio: Annotated[float, RATIO, _DAMPED] | None = None
@@ -244,7 +245,7 @@ class FollowSetup(CheckedFields):
     """Tracking method for a trajectory known in advance; the error is relative to the trajectory.
 
     `method` is the inverse of the modelled loop, iterative learning (`passes`, `gain`), or repetitive control with this `gain` for a
-    periodic path (raster or sine). These three act in the frequency band that is robust to relative mode shifts up to `spread`.
+    periodic path (raster or sine). These three act in the frequency band in which relative mode shifts up to `spread` are permissible.
     Alternatively, `method` is an input shaper for a mode of `frequency` and `damping` ratio.
     """
 
@@ -289,7 +290,7 @@ class StepMotion(CheckedFields):
 
 @dataclass(frozen=True)
 class RasterMotion(CheckedFields):
-    """Raster scan: `lines` of a `length`, a `pitch` apart, at constant `speed`; reversals have an `acceleration`.
+    """Raster scan: `lines` of a `length`, a `pitch` apart, at constant `speed`, with reversals at an `acceleration`.
 
     The lines are along the axis `fast`, the pitch along `slow`. For rotations a metre represents a radian: 20 um along rx are 20 urad.
     """
@@ -349,7 +350,7 @@ TrajectorySetup: TypeAlias = StepMotion | RasterMotion | SpiralMotion | SineMoti
 
 @dataclass(frozen=True)
 class LoopSetup(CheckedFields):
-    """Loop set-up: plant `model`, sampling `rate`, output `delay`, and all components.
+    """Loop set-up: plant `model`, sampling `rate`, output `delay`, and the tables of all components.
 
     The default rate is 10 kHz, or ten times the highest platform mode for faster stages; the default delay is one sample. `modes` is the
     number of retained modes, lowest first (default: all significant modes); the static compliance of the others is kept. The simulation

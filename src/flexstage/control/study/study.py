@@ -103,12 +103,12 @@ class LoopStudy(InNotebook):
 
     @property
     def setup(self) -> Annotated[LoopSetup, VIEW]:
-        """Keys of the set-up file with the specified values, SI; null: default from the stage."""
+        """Keys of the set-up file with the specified values in SI units; null: default from the stage."""
         return self.settled.setup
 
     @property
     def model_name(self) -> Annotated[str, VIEW]:
-        """Name of the plant's model: an analytical one, or finite elements with their order."""
+        """Name of the plant's model: an analytical model, or finite elements with their order."""
         return self.settled.model_name
 
     @property
@@ -118,7 +118,7 @@ class LoopStudy(InNotebook):
 
     @property
     def damping(self) -> Annotated[ActiveDamping | None, VIEW]:
-        """Force feedback in the legs, included in the plant; null without any."""
+        """Force feedback in the legs, included in the plant; null without force feedback."""
         return self.settled.damping
 
     @property
@@ -320,6 +320,6 @@ def _warnings(given: ResolvedSetup) -> list[Finding]:
             )
         )
     if given.setup.hysteresis is not None:
-        what = "margins, noise and poles exclude hysteresis and creep of the stacks"
+        what = "margins, noise and poles do not include hysteresis and creep of the stacks"
         found.append(Finding("hysteresis", what, "Use the simulated trajectories to judge these effects"))
     return found

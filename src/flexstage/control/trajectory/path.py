@@ -20,7 +20,7 @@ class Trajectory(Protocol):
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Names of the moving coordinates, of x, y, z, rx, ry, rz."""
+        """Names of the moving coordinates: x, y, z, rx, ry or rz."""
         ...
 
     @property

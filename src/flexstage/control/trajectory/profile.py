@@ -13,7 +13,7 @@ from flexstage.control.trajectory.pieces import Pieces, join
 
 @dataclass(frozen=True)
 class Limits(CheckedFields):
-    """Limits of a move along its path: `speed` [m/s], `acceleration` [m/s^2], `jerk` [m/s^3]; in rad for pure rotations."""
+    """Limits of a move along its path: `speed` [m/s], `acceleration` [m/s^2], `jerk` [m/s^3]; with rad instead of m for pure rotations."""
 
     speed: float
     acceleration: float

@@ -19,7 +19,7 @@ _STEEPEST = 10.0 / 3.0**0.5
 
 @dataclass(frozen=True, eq=False)
 class Raster(CheckedFields):
-    """Raster of `lines` parallel lines of a `length`, `pitch` apart [m], centred at zero, at constant `speed` [m/s].
+    """Raster of `lines` parallel lines of a `length`, a `pitch` apart [m], centred at zero, at constant `speed` [m/s].
 
     Reversals are outside the lines: the fast coordinate decelerates uniformly to the opposite speed, while the slow coordinate moves
     smoothly by the pitch. No acceleration exceeds `acceleration` [m/s^2]; a reversal lasts at least as long as the slow move. The approach
@@ -65,7 +65,7 @@ class Raster(CheckedFields):
 
     @property
     def repeats(self) -> tuple[float, float]:
-        """Start and end of the periodic part [s]: from the start of the first line to the end of the last."""
+        """Start and end of the periodic section [s]: from the start of the first line to the end of the last."""
         starts = self.line_starts
         return float(starts[0]), float(starts[-1]) + self.length / self.speed
 

@@ -70,7 +70,7 @@ def _findings(table: Table) -> list[Finding]:
 
 
 def from_file(path: str | os.PathLike[str]) -> Table:
-    r"""Read a CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; uneven times are allowed.
+    r"""Read a CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; the times may be unevenly spaced.
 
     Raises `DesignError` for an unreadable file, and for missing times or coordinates.
 

@@ -217,7 +217,7 @@ def plain_ticks(*axes: Any, steps: tuple[float, ...] = (1.0,)) -> None:
 
 
 def legend_of_lines(figure: Any, panels: Iterable[Any], columns: int = 8) -> None:
-    """Add one legend above all panels, for the named lines in them."""
+    """Add one legend above all panels, for all lines with a label."""
     handles = [line for axes in panels for line in axes.get_lines() if not line.get_label().startswith("_")]
     figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=columns, handlelength=1.4, borderaxespad=0.2)
 

@@ -43,7 +43,7 @@ class AmplifierForm(CheckedFields):
 
 @dataclass(frozen=True)
 class AmplifierSetup(AmplifierForm):
-    """Amplifiers with a converter and a first-order lag; ideal by default.
+    """Amplifiers with a digital-to-analogue converter and a first-order lag; ideal by default.
 
     The corner of the lag is `bandwidth`, or 1/(2 pi R C) with the output `resistance` R and the stack's capacitance C. `current` is the
     maximum output current and `slew` the maximum voltage rate; both limit the stroke rate. `noise` is white at the output. `bits` is the
