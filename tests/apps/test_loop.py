@@ -63,7 +63,7 @@ def test_the_loop_of_the_shipped_stage_is_closed_judged_and_told(flexstage: Comm
         "Sensitivity",
         "Poles of the closed loop",
         "Steps",
-        "Shares of the noise",
+        "Contributions to the noise",
         "Noise over frequency",
     )
     assert [name for name in curves if f'aria-label="{name}' not in page] == []
