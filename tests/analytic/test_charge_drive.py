@@ -149,8 +149,8 @@ def test_creep_is_left_above_the_corner_and_whole_below():
 
 
 BAD = {
-    "its corner and its leakage are both missing": ("parallelogram", LoopSetup(amplifier=ChargeSetup(coupling=0.5))),
-    "both given": ("parallelogram", LoopSetup(amplifier=ChargeSetup(coupling=0.5, corner=1.0, leakage=1e6))),
+    "corner and leakage are both missing": ("parallelogram", LoopSetup(amplifier=ChargeSetup(coupling=0.5))),
+    "corner and leakage are both specified": ("parallelogram", LoopSetup(amplifier=ChargeSetup(coupling=0.5, corner=1.0, leakage=1e6))),
     "needs the electromechanical coupling": ("parallelogram", LoopSetup(amplifier=ChargeSetup(corner=1.0))),
     "at least 0 and less than 1": ("parallelogram", LoopSetup(amplifier=ChargeSetup(coupling=1.0, corner=1.0))),
     "forces drive the stage": ("voice-coil-stage", LoopSetup(amplifier=HELD)),

@@ -172,5 +172,5 @@ def test_what_does_not_fit_is_said():
     with pytest.raises(DesignError, match=r"deflection: not a twist \(got shape \(3,\)"):
         lost_motion_compensation(lost, kinematics, np.zeros(3))
     foreign = lost_motion(ideal(other), lumped(other))
-    with pytest.raises(DesignError, match="plant: other actuators than the gains"):
+    with pytest.raises(DesignError, match="plant: wrong actuators"):
         static_error(ideal_compensation(kinematics), kinematics, foreign.gain)

@@ -163,7 +163,7 @@ def test_what_the_strokes_do_not_reach_is_refused_with_numbers():
     times = np.linspace(0.0, 1.0, 1001)
     asked = reference(Sine({"x": 2e-6}, 1.0), ("x", "rz"), times)
     (found,) = reach_findings(asked, times, room)
-    assert re.search(r"from 0\.084 s; at 0\.25 s x = 2 um takes 2 of the stroke\. Scale the trajectory to 0\.5 ", str(found))
+    assert re.search(r"from 0\.084 s on; at 0\.25 s, x = 2 um needs 2 times the stroke\. Multiply the trajectory by 0\.5,", str(found))
     assert not reach_findings(0.5 * asked, times, room)
 
 
@@ -176,19 +176,19 @@ def test_speed_is_compared_with_the_amplifiers():
     found = speed_findings(asked, times, lever, np.array([0.5 * most]))
     assert found[0].where == "B1"
     assert "62.83 um/s" in found[0].what
-    assert "Reduce its speed to 0.5" in found[0].advice
+    assert "Multiply the speed by 0.5" in found[0].advice
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("time [s], x\n0, 0\n1, 2\n", 'x: its unit is ""'),
-        ("time [s], x [V]\n0, 0\n1, 2\n", 'x: its unit is "V"'),
-        ("time [V], x [um]\n0, 0\n1, 2\n", 'time: its unit is "V"'),
+        ("time [s], x\n0, 0\n1, 2\n", 'x: wrong unit (got "", expected m)'),
+        ("time [s], x [V]\n0, 0\n1, 2\n", 'x: wrong unit (got "V", expected m)'),
+        ("time [V], x [um]\n0, 0\n1, 2\n", 'time: wrong unit (got "V", expected s)'),
         ("time [s], speed [um]\n0, 0\n1, 2\n", "no column is a coordinate"),
         ("x [um], y [um]\n0, 0\n1, 2\n", 'wrong first column (got "x"'),
         ("time [s], x [um]\n0, 0\n1, 2\n1, 3\n", "times must increase (got 1 s in row 3 after 1 s). Sort the rows"),
-        ("time [s], x [um]\n0, 0\n1, \n2, 3\n", "x: row 2 is not finite"),
+        ("time [s], x [um]\n0, 0\n1, \n2, 3\n", "x: the value in row 2 is not finite"),
     ],
 )
 def test_bad_tables_are_named(tmp_path, text, message):

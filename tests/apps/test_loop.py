@@ -63,7 +63,7 @@ def test_the_loop_of_the_shipped_stage_is_closed_judged_and_told(flexstage: Comm
         "Sensitivity",
         "Poles of the closed loop",
         "Steps",
-        "Shares of the noise",
+        "Contributions to the noise",
         "Noise over frequency",
     )
     assert [name for name in curves if f'aria-label="{name}' not in page] == []
@@ -263,7 +263,7 @@ def test_names_reach_exports_escaped(flexstage: Command, tmp_path: Path) -> None
     words = (word for name in names for word in ("--export", name))
     ended = flexstage("loop", "stage.toml", *SMALL, *words, "--report", "loop.html", "--json", "loop.json")
     assert ended.code == 0, ended.err
-    assert "Within model.fmu the model is named stage_model" in ended.err
+    assert "The model in model.fmu is named stage_model" in ended.err
     unit = zipfile.ZipFile(tmp_path / "model.fmu")
     ElementTree.fromstring(unit.read("modelDescription.xml"))  # noqa: S314 made by ourselves
     texts = [(tmp_path / name).read_bytes() for name in ("guide.c", "guide.h", "loop.html")]
@@ -294,11 +294,11 @@ def test_noise_is_that_of_its_simulation(guide: Command) -> None:
 
 
 BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
-    (("--rate", "300 Hz"), ("rate: sampling at 300 Hz", "875.4 Hz", "Sample at")),
+    (("--rate", "300 Hz"), ("rate: sampling at 300 Hz", "875.4 Hz", "Use at least")),
     (("--rate", "5"), ("--rate", "unit missing")),
     (("--bandwidth", "3 kHz"), ("bandwidth: at 3000 Hz", "the highest found with PI", "Ask for")),
     (("--bandwidth", "6 kHz"), ("half the sampling rate",)),
-    (("--amplitude", "x=1mm"), ("trajectory x", "beyond the strokes from", "Scale the trajectory")),
+    (("--amplitude", "x=1mm"), ("trajectory x", "beyond the strokes from", "Multiply the trajectory")),
     (("--amplitude", "z=1um"), ("trajectory z: the stage has no motion z", "x")),
     (("--amplitude", "q=1um"), ("--amplitude q=1um: must be a motion and a value", "Use x, y, z, rx, ry or rz, e.g. z=150um.")),
     (("--trajectory", "raster"), ("the stage has no motion y",)),
@@ -306,7 +306,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--trajectory", "nowhere.csv"), ("nowhere.csv", "file not found")),
     (("--floor", "VC-Z"), ("--floor VC-Z", "VC-A")),
     (("--feedforward", "everything"), ("--feedforward everything", "lost-motion, load, reference, hysteresis")),
-    (("--feedforward", "hysteresis"), ("compensate", "the stacks have none")),
+    (("--feedforward", "hysteresis"), ("compensate", "the inverse needs a hysteresis")),
     (("--hysteresis", "nowhere.toml"), ("nowhere.toml", "file not found")),
     (("--hysteresis", "80 %"), ("--hysteresis", "at most 0.5")),
     (("--model", "ideal"), ("rigid bodies have no stiffness",)),
@@ -314,17 +314,17 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
         ("--fea", "--at", "platform.x=1 mm", "--model", "mapped"),
         ("--fea: finite elements need the nominal stage", "--fea: contradicts --model mapped"),
     ),
-    (("--controller", "none", "--bandwidth", "5 Hz"), ("there is no loop to be tuned",)),
+    (("--controller", "none", "--bandwidth", "5 Hz"), ("an open loop (kind none) is not tuned",)),
     (("--controller", "pidd"), ("--controller", 'unknown value (got "pidd"). Use pid or pi.')),
     (("--controller", "fuzzy"), ("--controller", "Use pi, pid, resonant, lqg, none, ppf or pvf")),
     (("--max-sensitivity", "0.9"), ("--max-sensitivity", "greater than 1")),
     (("--seconds", "-1"), ("seconds", "greater than 0")),
     (("--seconds", "1e9"), ("seconds", "samples")),
     (("--export", "loop.xyz"), ("--export loop.xyz", ".mat", ".fmu")),
-    (("--export", "path.csv"), ("--export path.csv", "the command equals the trajectory")),
+    (("--export", "path.csv"), ("--export path.csv", "the commanded path equals the trajectory")),
     (
         ("--export", "path.csv", "--tracking", "inverse"),
-        ("--export path.csv", "steps of several motions are not one path", "--amplitude x=1um"),
+        ("--export path.csv", "steps of several coordinates are not one path", "--amplitude x=1um"),
     ),
     (("--setup", "nowhere.toml"), ("nowhere.toml", "file not found")),
     (("--json", "nowhere/loop.json"), ("nowhere/loop.json cannot be written",)),

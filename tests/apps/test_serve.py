@@ -458,7 +458,7 @@ def test_the_command_serves_until_it_is_interrupted(tmp_path):
         finally:
             running.kill()
     assert running.returncode == 0
-    assert "ms late" in last
+    assert "ms behind real time" in last
     assert "Traceback" not in last
 
 

@@ -172,7 +172,7 @@ REPORTED = {
     "stroke stage.toml --drive platform.y --steps 2": "got 122 mm, expected 1 mm or less",
     "buckle stage.toml --scale-load platform.fx=-1kN": "got 122 mm, expected 1 mm or less",
     "misalign stage.toml": "got 122 mm, expected 1 mm or less",
-    "loop stage.toml --bandwidth 100Hz --hysteresis 15%": "margins, noise and poles exclude hysteresis",
+    "loop stage.toml --bandwidth 100Hz --hysteresis 15%": "margins, noise and poles do not include hysteresis",
 }
 
 AT_LENGTH = {"sweep", "misalign", "optimise", "loop"}

@@ -100,7 +100,7 @@ def test_a_loop_on_a_coil_is_closed_far_above_the_resonance_of_its_springs(study
     assert study.setup.controller.kind is ControllerKind.PID
     assert study.controller.bandwidth > 5.0 * study.plant.frequencies[0]
     assert study.static_errors is None
-    assert "force-driven stage: no lost motion" in study.reasons["static_errors"]
+    assert "force-driven stage has no lost motion" in study.reasons["static_errors"]
     run = study.runs[0].simulated
     assert abs(run.error[-1, 0]) < 1e-3 * run.reference[-1, 0]
 

@@ -144,7 +144,7 @@ def test_fast_samples_are_a_continuous_loop():
     driven = np.abs(disturbance_response(continuous, ("B",), OUTPUTS, nodes)[:, :, 0]) ** 2
     density = continuous.plant.hardware.amplifiers["B"].noise_density
     assert np.allclose(_square(None, Kind.AMPLIFIER, "B", fast), weights @ driven * density**2, atol=0.0, rtol=2e-3)
-    with pytest.raises(DesignError, match="it is continuous"):
+    with pytest.raises(DesignError, match="the loop is continuous"):
         noise_budget(continuous, {}, (1.0, 400.0), OUTPUTS)
 
 
@@ -271,7 +271,7 @@ def test_what_is_not_stated_is_said():
     assert not any("half a step" in note for note in found.notes)  # the amplifier's noise moves the reading
     silent = replace(bare, amplifiers=Table({}))
     still = noise_budget(replace(closed, plant=replace(closed.plant, hardware=silent)), {}, (1.0, 100.0))
-    assert any("a reading at rest may stay off by half a step, 0.25 nm" in note for note in still.notes)
+    assert any("A reading at rest may be wrong by half a step (0.25 nm)" in note for note in still.notes)
     assert still.slowly_rounding == ("S",)
     assert not any("half a step" in note for note in noise_budget(closed, {}, (1.0, 100.0)).notes)
     assert Kind.GAUGE not in found.kinds

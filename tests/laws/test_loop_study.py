@@ -135,8 +135,8 @@ def test_a_trajectory_is_played_with_its_error_as_many_times_too_large_as_its_na
     found = loop_study(stage, LoopSetup(controller=CALM, gauges=GaugeSetup(resolution=0.0), trajectory=SineMotion(1.0, 1.0)))
     (motion,) = response_motions(found, stage_data(stage))
     assert motion.response is not None
-    factor = float(motion.label.rpartition("error ")[2].removesuffix(" times"))
-    wanted, error = (next(each for each in motion.response.curves if each.name == name) for name in ("x wanted", "error of x"))
+    factor = float(motion.label.rpartition("error magnified ")[2].removesuffix(" times"))
+    wanted, error = (next(each for each in motion.response.curves if each.name == name) for name in ("reference of x", "error of x"))
     scales = {"m": 1.0, "um": 1e-6, "µm": 1e-6, "nm": 1e-9, "pm": 1e-12}
     played = wanted.values * scales[wanted.unit] - factor * error.values * scales[error.unit]
     np.testing.assert_allclose(motion.response.weights[:, 0], played, rtol=0.0, atol=1e-15)
@@ -282,7 +282,7 @@ def test_slow_rounding_is_told_and_its_rms_simulated() -> None:
         "gauge noise",
         "gauge rounding",
     ]
-    assert any("counted as white noise, and is none" in note for note in table.notes)
+    assert any("counted as white noise, but it is not white" in note for note in table.notes)
     document = plain(found)
     assert document["noise"]["rounding_is_white"] is False
     assert document["simulated_interval"] == [found.resting.low.tolist(), found.resting.high.tolist()]

@@ -96,9 +96,9 @@ def test_a_raster_is_repeated_better_and_better():
 def test_what_cannot_be_is_said(guide):
     _, control, closed = guide
     told = [str(each) for each in setup_findings(LoopSetup(trajectory=StepMotion(), follow=FOLLOW))]
-    assert ["a step is not periodic" in each for each in told] == [True]
+    assert ["needs a periodic trajectory (got step" in each for each in told] == [True]
     with pytest.raises(DesignError, match="first harmonic"):
         repeater(closed, control.system, 6e-4, 0.6, 0.02)
     few = RasterMotion(length=5e-6, pitch=0.5e-6, lines=2, speed=1e-3, acceleration=0.5)
-    with pytest.raises(DesignError, match="learning acts one period later"):
+    with pytest.raises(DesignError, match="repetitive control needs at least 2"):
         runs(*closed_of("xy-stage", trajectory=few, follow=FOLLOW))

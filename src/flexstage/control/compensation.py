@@ -19,7 +19,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 class Compensation:
     """Open-loop compensation of a commanded pose: strokes a = `gains` xi + `offset`.
 
-    `gains` (n, f) are strokes per coordinate: R_a, or gains that correct lost motion. `offset` (n,) [m] are the strokes that balance the
+    `gains` (n, f) map coordinates to strokes: R_a, or gains that correct lost motion. `offset` (n,) [m] are the strokes that balance the
     loads. `provenance` names the model.
     """
 
@@ -46,9 +46,10 @@ def ideal_compensation(kinematics: Kinematics) -> Compensation:
 def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflection: Array | None = None) -> Compensation:
     """Compute gains that correct lost motion, and strokes that cancel the platform's `deflection` (6,) under loads.
 
-    a = (R_a V^+ T)^-1 R_a (xi - V^+ C w): Eq. 11 of Shin & Moon solved for the strokes, with its load term. C w is the twist of the
-    platform's reference point with all strokes zero (`analysis.deflection`, or a static compliance times a wrench). Strokes cannot cancel
-    load motions outside the ideal ones. Linear. Raises `DesignError` for a deflection that is not a twist.
+    a = (R_a V^+ T)^-1 R_a (xi - V^+ C w): Eq. 11 of Shin & Moon solved for the strokes, with its load term. C w is the `deflection`: the
+    twist of the platform's reference point with all strokes zero (`analysis.deflection`, or a static compliance times a wrench). Strokes
+    cannot cancel deflections outside the ideal motions. The computation is linear. Raises `DesignError` for a deflection that is not a
+    twist.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -73,11 +74,11 @@ def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflectio
 
 @dataclass(frozen=True, eq=False)
 class StaticError(InNotebook):
-    """Static error in open loop: `error` (f, f) is the commanded minus the reached pose, per unit of commanded pose.
+    """Static error in open loop: `error` (f, f) is the commanded minus the reached pose, per unit of the commanded pose.
 
     Rows of `error` are the reached coordinates, columns the commanded ones. The diagonal is the error of each axis, the other elements are
-    crosstalk. `parasitic` (6, f) is the motion outside the ideal motions. `offset` (6,) is the twist caused by loads at zero command.
-    `largest` is the largest error per unit of command, with rotations converted to lengths.
+    crosstalk. `parasitic` (6, f) is the motion outside the ideal motions, per unit of the commanded pose. `offset` (6,) is the twist caused
+    by loads at zero command. `largest` is the largest error per unit of command, with rotations converted to lengths.
     """
 
     error: Matrix
@@ -87,16 +88,16 @@ class StaticError(InNotebook):
     provenance: str
 
     def of(self, command: Array) -> Array:
-        """Compute the error (..., f) [m, rad] of commanded poses (..., f), without loads."""
+        """Compute the error (..., f) [m, rad] for commanded poses (..., f), without loads."""
         return np.asarray(command) @ self.error.values.T
 
 
 def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, deflection: Array | None = None) -> StaticError:
     """Compute the static error of a compensation on a plant of any model.
 
-    E = I - V^+ T G. The parameter `plant` is T (6, n), the platform's twist per stroke (`lost_motion(...).gain`, or `static_gain` of any
-    model). With G = R_a this is R_a^+ Lambda R_a, the result of the lost-motion analysis. `deflection` (6,) is the plant's deflection under
-    the loads, strokes fixed. Raises `DesignError` if the plant has other actuators than the compensation.
+    E = I - V^+ T G, with the gains G. `plant` is T (6, n), the platform's twist per stroke (`lost_motion(...).gain`, or `static_gain` of
+    any model). With G = R_a, E is R_a^+ Lambda R_a, the result of the lost-motion analysis. `deflection` (6,) is the plant's deflection
+    under the loads with fixed strokes. Raises `DesignError` if the plant has other actuators than the compensation.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -110,8 +111,8 @@ def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, def
     True
     """
     if plant.columns != given.gains.rows or len(plant.rows) != len(COMPONENTS):
-        what = f"other actuators than the gains (got {', '.join(plant.columns)}, expected {', '.join(given.gains.rows)})"
-        raise refuse("plant", what, "Use the platform's twist by these actuators")
+        what = f"wrong actuators (got {', '.join(plant.columns)}, expected {', '.join(given.gains.rows)})"
+        raise refuse("plant", what, "Use the platform's twist per stroke of these actuators")
     names, length = kinematics.coordinates, kinematics.first_length
     reached = plant.values @ given.gains.values
     error = np.eye(len(names)) - kinematics.projection @ reached

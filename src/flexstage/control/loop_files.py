@@ -1,4 +1,4 @@
-"""Output files of the command `loop`: plants, controllers, whole loops and paths, with their checks."""
+"""Output files of the command `loop`: plants, controllers, whole loops and paths, and checks of these files."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from flexstage.show.command.output import announce, write
 
 
 def written_files(exports: Sequence[Path], hardware: Path | None) -> Iterator[tuple[str, Path]]:
-    """List each file of `--export` and `--hardware` with its option; for C, source and header."""
+    """List the files of `--export` and `--hardware`, each with its option; for C code, source and header."""
     for target in exports:
         yield from (("--export", each) for each in ((target, target.with_suffix(".h")) if target.suffix == ".c" else (target,)))
     if hardware is not None:
@@ -50,28 +50,32 @@ def require_names(exports: Sequence[Path], hardware: Path | None) -> None:
 
 
 def write_export(found: LoopStudy, target: Path) -> None:
-    """Write one `--export`, according to the ending of its name."""
+    """Write one file of `--export`, according to its extension."""
     for path, content in _contents(found, target).items():
         write(path, content, "--export")
         announce(f"Wrote {path}")
     if target.suffix == ".fmu" and (name := identifier(target.stem)) != target.stem:
-        announce(f"Within {target} the model is named {name}: its own name is reserved in C.")
+        announce(f"The model in {target} is named {name}: C code cannot use the name {target.stem}.")
 
 
 def file_findings(asked: forms.LoopSetup, exports: Sequence[Path], hardware: Path | None) -> Iterator[Finding]:
-    """Check exports for controllers without a form for embedded processors, and for paths that are not commanded as specified."""
+    """Check that the code can run on an embedded processor, and that a CSV export is one path that differs from the trajectory."""
     if hardware is not None and Compensation.HYSTERESIS in asked.compensate:
         yield Finding("--hardware", *NO_INVERSE)
     for target in (each for each in exports if each.suffix == ".csv"):
         if asked.follow is None:
             advice = f"Add --tracking: {', '.join(each.value for each in Following)}"
-            yield Finding(f"--export {target}", "the command equals the trajectory", advice)
+            yield Finding(f"--export {target}", "without tracking, the commanded path equals the trajectory", advice)
         elif isinstance(asked.trajectory, forms.StepMotion) and len(stated_motions(asked.trajectory.amplitude)) != 1:
-            yield Finding(f"--export {target}", "steps of several motions are not one path", "Step along one of them: --amplitude x=1um")
+            yield Finding(
+                f"--export {target}",
+                "steps of several coordinates are not one path",
+                "Specify a step of one coordinate, e.g. --amplitude x=1um",
+            )
 
 
 def write_hardware(found: LoopStudy, target: Path, precision: Precision) -> None:
-    """Write the controller for an embedded processor: source, header and test."""
+    """Write the controller for an embedded processor: source, header and test program."""
     machine, made_of = driven_machine(found.settled, found.controller, found.stacks), found.controller.made_of
     law = made_of if isinstance(made_of, Decentralised) else None
     files = hardware_files(
@@ -113,5 +117,5 @@ def _about(found: LoopStudy) -> str:
     gains = ", ".join(f"{each.actuator} {each.stiffness:.6g} N/m" for each in sensed)
     form = "g/(s + a)" if law.order == 1 else "g s/(s + a)^2"
     numbers = f"g = {law.gain:.6g} 1/s, a = {2.0 * math.pi * law.corner:.6g} 1/s"
-    where = "With" if found.damping.rate is not None else "Not included, analogue and around it:"
-    return f"{said}. {where} force feedback, stroke = {form} tension / k, {numbers}, k: {gains}."
+    where = "Includes" if found.damping.rate is not None else "Does not include the analogue"
+    return f"{said}. {where} force feedback in the legs: stroke = {form} tension / k, {numbers}, k: {gains}."

@@ -47,7 +47,7 @@ _ADDRESSES = {
     "gauge_noise": "gauges.noise",
     "resolution": "gauges.resolution",
 }
-"""Options whose text is the value at an address of the set-up file."""
+"""Options whose text is the value of a key of the set-up file."""
 _UNITS = {"bandwidth": "Hz", "resistance": "ohm", "current": "A"}
 
 
@@ -61,7 +61,7 @@ class LoopOptions:
         text_option(
             "--controller",
             "KIND",
-            "Kind of controller: pi, pid, resonant, ppf, pvf or lqg; none for an open loop. Default: pi, with force actuators pid.",
+            "Kind of controller: pi, pid, resonant, ppf, pvf or lqg; none for an open loop. Default: pi; for force actuators pid.",
         ),
     ] = None
     coordinates: Annotated[
@@ -73,7 +73,9 @@ class LoopOptions:
         TuningObjective | None,
         word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: balance.", show_default=False),
     ] = None
-    quick: Annotated[bool, typer.Option("--quick", help="Plain tuning: maximum bandwidth at the margin, without optimisation.")] = False
+    quick: Annotated[bool, typer.Option("--quick", help="Plain tuning: the highest bandwidth that Ms allows, without optimisation.")] = (
+        False
+    )
     max_sensitivity: Annotated[
         str | None, text_option("--max-sensitivity", "NUMBER", "Maximum peak sensitivity Ms of a tuned loop. Default: 2.")
     ] = None
@@ -84,7 +86,7 @@ class LoopOptions:
     tracking: Annotated[
         Following | None,
         word_option(
-            "--tracking", Following, "Tracking method of a known path; zv and zvd need a set-up file. Default: none.", show_default=False
+            "--tracking", Following, "Tracking method for a known path; zv and zvd need a set-up file. Default: none.", show_default=False
         ),
     ] = None
     rate: Annotated[str | None, rate_option("10 kHz, or 10 times the highest platform mode")] = None
@@ -95,7 +97,11 @@ class LoopOptions:
     ] = None
     amplitude: Annotated[
         list[str] | None,
-        text_option("--amplitude", "AXIS=VALUE", "Amplitude of a step or sine, e.g. x=1um. Default: 1 um, 10 urad, all axes. Repeatable."),
+        text_option(
+            "--amplitude",
+            "AXIS=VALUE",
+            "Amplitude of a step or sine, e.g. x=1um. Default: 1 um or 10 urad (sine: first axis only). Repeatable.",
+        ),
     ] = None
     seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until settled.")] = None
     feedforward: Annotated[
@@ -108,7 +114,7 @@ class LoopOptions:
     ] = None
     hysteresis: Annotated[
         str | None,
-        text_option("--hysteresis", "FILE|SHARE", "Hysteresis of the stacks: file of a model, or width, e.g. 15%. Default: none."),
+        text_option("--hysteresis", "FILE|SHARE", "Hysteresis of the stacks: model file, or width of the loop, e.g. 15%. Default: none."),
     ] = None
     floor: Annotated[
         list[str] | None,
@@ -158,7 +164,11 @@ class LoopOptions:
         for text in self.floor or ():
             axis, sign, value = (part.strip() for part in text.rpartition("="))
             if sign and axis not in _AXES:
-                raise refuse(f"--floor {text}", f'"{axis}" is no axis of the floor', "Use x, y or z, or no axis for all three")
+                raise refuse(
+                    f"--floor {text}",
+                    f'unknown axis of the floor "{axis}"',
+                    "Use x, y or z. Without an axis, the value applies to all three",
+                )
             shaking = _shaking(text, value)
             yield from ((f"floor.{each}", SetupChange(f"--floor {text}", shaking)) for each in _AXES if not sign or each == axis)
 
@@ -188,6 +198,6 @@ def _shaking(text: str, value: str) -> dict[str, Any]:
         return {"criterion": value}
     fit = first_that_parses(value, {"acceleration": ACCELERATION_NOISE, "velocity": VELOCITY_NOISE, "displacement": NOISE_DENSITY})
     if fit is None:
-        advice = f'Write one of {", ".join(known)}, or an amplitude density, for example "3 um/s^2/Hz^0.5"'
+        advice = f'Use {", ".join(known)}, or an amplitude density, e.g. "3 um/s^2/Hz^0.5"'
         raise refuse(f"--floor {text}", f'unknown criterion or amplitude density "{value}"', advice)
     return {fit[0]: [value]}

@@ -33,12 +33,12 @@ _HALF = 0.5
 
 @dataclass(frozen=True, eq=False)
 class NoiseBudget(InNotebook):
-    """Noise budget: mean squares of outputs by uncorrelated sources, which add up; for a sampled loop, at the samples.
+    """Noise budget: mean squares of outputs, at the samples. The contributions of the uncorrelated sources add up.
 
-    `squares` (p, k) [unit^2] by `outputs` and `sources`. `density` (f, p, k) is one-sided [unit^2/Hz] over `frequencies` (f,) [Hz]: the
-    floor at its own frequencies, white sources up to half the sampling rate, with aliasing. `changes` (g,) is the rms change of each of the
-    `gauges` between samples, in its resolution steps, without rounding (NaN: no rounding). `notes` list the assumptions and missing data of
-    each kind.
+    `squares` (p, k) [unit^2] has a row for each of `outputs` and a column for each of `sources`. `density` (f, p, k) is one-sided
+    [unit^2/Hz] over `frequencies` (f,) [Hz]: floor vibration at its true frequencies, white sources up to half the sampling rate, with
+    aliasing. `changes` (g,) is the rms change of each of the `gauges` from sample to sample, in its resolution steps, without rounding
+    (NaN: no rounding). `notes` list the assumptions and missing data of each kind of source.
     """
 
     outputs: Annotated[tuple[Channel, ...], INNER]
@@ -53,10 +53,10 @@ class NoiseBudget(InNotebook):
 
     @property
     def slowly_rounding(self) -> tuple[str, ...]:
-        """Gauges whose rounding is significant and not white: their readings change by less than half a step per sample.
+        """Gauges whose rounding has an effect and is not white: their readings change by less than half a step per sample.
 
-        Rounding errors of successive samples of a Gaussian series with changes of s steps correlate by about exp(-2 pi^2 s^2), 0.7 % for s
-        = 1/2 (Widrow & Kollar, Quantization Noise, 2008).
+        In a Gaussian series with rms changes of s steps, the rounding errors of successive samples have a correlation of about exp(-2 pi^2
+        s^2), 0.7 % for s = 1/2 (Widrow & Kollar, Quantization Noise, 2008).
         """
         counts = np.any(self.squares > 0.0, axis=0)
         felt = {each.channel for each, some in zip(self.sources, counts, strict=True) if some and each.kind is Kind.ROUNDING}
@@ -64,7 +64,7 @@ class NoiseBudget(InNotebook):
 
     @property
     def rms(self) -> Annotated[Array, Axes("output_names")]:
-        """Rms value (p,) of each output, all sources together."""
+        """Rms (p,) of each output, with all sources."""
         return np.sqrt(np.sum(self.squares, axis=1))
 
     @property
@@ -87,12 +87,12 @@ class NoiseBudget(InNotebook):
 
     @property
     def units(self) -> Annotated[tuple[str, ...], Axes("output_names")]:
-        """Units of the motions; mean squares are in these squared."""
+        """Units of the motions; mean squares have the squares of these units."""
         return tuple(channel.unit for channel in self.outputs)
 
     @property
     def steps_per_sample(self) -> Annotated[Mapping[str, float], VIEW]:
-        """Rms change of each rounding gauge between samples, in its steps."""
+        """Rms change of each rounding gauge from sample to sample, in its steps."""
         return {name: float(each) for name, each in zip(self.gauges, self.changes, strict=True) if not np.isnan(each)}
 
     @property
@@ -107,12 +107,13 @@ def noise_budget(
 ) -> NoiseBudget:
     """Compute the noise budget of a loop: mean squares of `outputs` by floor, gauges, converters and amplifiers.
 
-    Default outputs: the platform's six motions relative to the ground. `floor` contains one-sided densities by ground motion, `ground.x`
-    ..., counted within `band` (low, high) [Hz]. White sources use Lyapunov's equation over all frequencies (`white_system`); the floor uses
-    Gauss quadrature over the band. Between gauges and hold a ground motion e^{j omega t} is sampled as e^{j omega k T}. With S_y the noise
-    response of the sampled loop and G the stage's responses, y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w at the samples:
-    aliasing is exact, also above half the sampling rate. Amplifier noise without lag is integrated in the same way over the band. Raises
-    `DesignError` for an unstable loop, with its growth rate.
+    The default outputs are the platform's six motions relative to the ground. `floor` contains one-sided densities by ground motion,
+    `ground.x` ..., which are integrated over `band` (low, high) [Hz]. White sources are computed by Lyapunov's equation, over all
+    frequencies (`white_system`); floor vibration by Gauss quadrature over the band. Between gauges and hold a ground motion e^{j omega t}
+    is sampled as e^{j omega k T}. With S_y the noise response of the sampled loop and G the stage's responses, y = [G_y(j omega) + S_y(e^{j
+    omega T}) G_gap(j omega)] w at the samples. Aliasing is therefore exact, also above half the sampling rate. Noise of amplifiers without
+    lag is integrated in the same way over the band. Raises `DesignError` for an unstable loop, with its growth rate, and for a continuous
+    loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = noise_budget(integral_loop(), {"ground.x": Spectrum(1e-18)}, (0.1, 1000.0), ("relative.x",))
@@ -121,7 +122,7 @@ def noise_budget(
     """
     require_stable(closed, "rms values")
     if closed.step is None:
-        raise refuse("loop", "it is continuous, and its noise is that of samples", "Specify the sampling rate")
+        raise refuse("loop", "a noise budget needs a sampled loop, but the loop is continuous", "Specify the sampling rate")
     require([*spectrum_findings(floor, band), *_findings(floor)] if floor else _findings(floor))
     outputs = tuple(f"relative.{name}" for name in COMPONENTS) if outputs is None else outputs
     gauges = closed.plant.gauges
@@ -183,7 +184,7 @@ def _white_density(white: System, sources: tuple[Source, ...], frequencies: Arra
 
 
 def band_spectra(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str, ...]) -> dict[str, Spectrum]:
-    """Collect the spectra integrated over a band, by plant input: of the floor, and of amplifiers without bandwidth.
+    """Collect the spectra integrated over a band, by plant input: of the floor, of amplifiers without lag, and of leg sensors.
 
     >>> from flexstage.control.example import integral_loop
     >>> list(band_spectra(integral_loop(), {"ground.x": Spectrum(1e-18)}, ("relative.x",)))
@@ -204,9 +205,9 @@ def _source(name: str) -> Source:
 
 
 def disturbance_response(closed: Loop, inputs: tuple[str, ...], outputs: tuple[str, ...], frequencies: Array) -> Array:
-    """Compute the response (f, p, m) of a loop to disturbances of its stage between the samples: `ground.x` ... or an actuator's stroke.
+    """Compute the response (f, p, m) of a loop to continuous disturbances of its stage: `ground.x` ... or an actuator's stroke.
 
-    At the samples y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w, at `frequencies` (f,) in Hz, also above half the sampling rate.
+    At the samples, y = [G_y(j omega) + S_y(e^{j omega T}) G_gap(j omega)] w. `frequencies` (f,) [Hz] may exceed half the sampling rate.
     """
     given = closed.plant
     own = [name for name in outputs if name in given.system.output_names]
@@ -247,7 +248,7 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
         end = f"half the sampling rate, {0.5 / (closed.step or np.nan):g} Hz"
         yield f"{', '.join(bare)}: no specified bandwidth or filter; noise is limited to {end}"
     if len(bare) < len(sensors) - len(silent):
-        yield "gauge noise is white before the gauge's lag and filter; its remainder above half the sampling rate is aliased, exactly"
+        yield "gauge noise is white before the gauge's lag and filter; aliasing from above half the sampling rate is exact"
     if budget.slowly_rounding:
         units = {channel.name: channel.unit for channel in given.coordinates.readings()}
         half = ", ".join(
@@ -256,22 +257,22 @@ def _notes(closed: Loop, outputs: tuple[str, ...], budget: NoiseBudget) -> Itera
         )
         most = max(change for name, change in zip(budget.gauges, budget.changes, strict=True) if name in budget.slowly_rounding)
         yield (
-            "rounding is counted as white noise, and is none: from sample to sample the readings of "
-            f"{', '.join(budget.slowly_rounding)} move by "
-            f"{most:.2g} steps rms at most, where half a step is needed; it is slow and correlated, and a reading at rest may stay off "
-            f"by half a step, {half}, which no loop sees"
+            "rounding is counted as white noise, but it is not white: the readings of "
+            f"{', '.join(budget.slowly_rounding)} change by at most {most:.2g} steps rms from sample to sample, and white rounding needs "
+            f"half a step. A reading at rest may be wrong by half a step ({half}), which the loop cannot correct"
         )
     quiet = [name for name in given.actuators if given.hardware.amplifiers.get(name, Amplifier()).noise_density is None]
     if quiet:
         yield f"no specified amplifier noise for {', '.join(quiet)}: counted as zero"
     unbounded = list(band_spectra(closed, {}, outputs))
     heard = [name for name in unbounded if name.startswith(f"{SENSED}.")]
+    only = f"integrated from {budget.band[0]:g} to {budget.band[1]:g} Hz only"
     driven = [name for name in unbounded if name not in heard]
     if driven:
-        yield f"the amplifiers of {', '.join(driven)} have no lag: their noise is counted over the band only"
+        yield f"the amplifiers of {', '.join(driven)} have no lag: their noise is {only}"
     if heard:
         legs = ", ".join(name.removeprefix(f"{SENSED}.") for name in heard)
-        yield f"sensor noise of the legs of {legs} is counted over the band only"
+        yield f"sensor noise of the legs of {legs} is {only}"
 
 
 def _half_step(sensors: list[Sensor], unit: str) -> str:

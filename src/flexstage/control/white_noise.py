@@ -1,4 +1,4 @@
-"""White noise sources of a loop as inputs of one linear system, and mean squares by Lyapunov's equation."""
+"""White noise sources of a loop as inputs of one linear system, and mean squares from Lyapunov's equation."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ class Source:
 
 
 def mean_squares(system: System) -> Array:
-    """Compute mean squares (p, m) of each output for each unit white input.
+    """Compute the mean square (p, m) of each output for each unit white input.
 
-    Sampled: variances 1, e^2 = b^T X b + d^2 with X = A^T X A + c^T c. Continuous: two-sided densities 1, A^T X + X A + c^T c = 0; infinite
-    where d is not zero. The system must be stable.
+    A sampled system has inputs of variance 1: e^2 = b^T X b + d^2 with X = A^T X A + c^T c. A continuous system has inputs of two-sided
+    density 1: e^2 = b^T X b with A^T X + X A + c^T c = 0, infinite where d is not zero. The system must be stable.
 
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
     >>> lag = System(-np.eye(1), np.eye(1), np.eye(1), np.zeros((1, 1)), *metre)
@@ -60,9 +60,10 @@ def mean_squares(system: System) -> Array:
 
 
 def held_noise(A: Array, B: Array, step: float) -> Array:
-    """Compute a factor L (n, k) of the covariance L L^T = int_0^T e^{As} B B^T e^{A^T s} ds by white noise (density 1) over a step.
+    """Compute a factor L (n, k) of the covariance L L^T = int_0^T e^{As} B B^T e^{A^T s} ds, from white noise (density 1) over a step.
 
-    Taylor series over a small part of the step, then doubling, Q(2t) = Q(t) + e^{At} Q(t) e^{A^T t}, without growing exponentials.
+    A Taylor series over a small fraction of the step is doubled repeatedly, Q(2t) = Q(t) + e^{At} Q(t) e^{A^T t}, which avoids growing
+    exponentials.
 
     >>> factor = held_noise(-np.eye(1), np.eye(1), 0.5)
     >>> round(float(factor[0, 0] ** 2), 12), round(float(0.5 * (1.0 - np.exp(-1.0))), 12)
@@ -88,9 +89,9 @@ def held_noise(A: Array, B: Array, step: float) -> Array:
 def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
     """Return the closed loop driven by unit white inputs, and the source of each input.
 
-    Gauge noise is white before lag and filter, and sampled after them with exact aliasing; without both it is limited to half the sampling
-    rate. Rounding is white with step^2/12. Amplifier noise also drives the stage between the samples; it is omitted here for an amplifier
-    without lag.
+    Gauge noise is white before lag and filter, and sampled after them with exact aliasing; without lag and filter it is limited to half the
+    sampling rate. Rounding is white with variance step^2/12. Amplifier noise also drives the stage between the samples; noise of an
+    amplifier without lag is omitted here.
 
     >>> from flexstage.control.example import integral_loop
     >>> system, sources = white_system(integral_loop(), ("relative.x",))
@@ -120,7 +121,7 @@ def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[
 
 
 def gauge_noise(given: Plant, gauge: str, density: float) -> System:
-    """Generate the samples of a gauge's white noise of a `density` after its lag and filter, from unit white inputs (sampled loops).
+    """Return a system from unit white inputs to samples of a gauge's noise: white of a `density`, after lag and filter (sampled loops).
 
     >>> from flexstage.control.example import integral_loop
     >>> found = gauge_noise(integral_loop().plant, "S", 1e-12)
@@ -154,7 +155,7 @@ def _with_amplifiers(
 
 
 def bounded_amplifiers(closed: Loop, outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """Find actuators whose amplifier noise has no direct effect on gauges and outputs: a lag limits it to a finite mean square.
+    """Find actuators whose amplifier noise acts on gauges and outputs only through a lag, so that its mean square is finite.
 
     >>> from flexstage.control.example import integral_loop
     >>> bounded_amplifiers(integral_loop(), ("relative.x",))  # no noise is stated

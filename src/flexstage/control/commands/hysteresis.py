@@ -30,7 +30,9 @@ def hysteresis(  # noqa: PLR0913 (its options)
     ],
     *,
     volts: Annotated[str | None, text_option("--volts", "NAME", "Channel of the voltage. Default: the channel in V.")] = None,
-    stroke: Annotated[str | None, text_option("--stroke", "NAME", "Channel of the stroke. Default: the channel of a length.")] = None,
+    stroke: Annotated[
+        str | None, text_option("--stroke", "NAME", "Channel of the stroke. Default: the channel with a unit of length.")
+    ] = None,
     step: Annotated[Path | None, text_option("--step", "RECORD", "Record of a voltage step, for creep.")] = None,
     limits: Annotated[
         tuple[str, str] | None, text_option("--limits", "LOW HIGH", 'Voltage range of the stack, e.g. "0 V" "1000 V".')
@@ -42,9 +44,9 @@ def hysteresis(  # noqa: PLR0913 (its options)
 ) -> CommandResult:
     """Identify the hysteresis of a stack.
 
-    Fits an invertible Prandtl-Ishlinskii model to a record of voltage and stroke. Other parts of the record test it.
+    Fits an invertible Prandtl-Ishlinskii model to a record of voltage and stroke. Other sections of the record validate the model.
 
-    A step record adds creep.
+    With a step record, the command also fits the creep.
     """
     records = [record] if step is None else [record, step]
     between = None if limits is None else _volts(limits)

@@ -69,7 +69,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     ] = None,
     hardware: Annotated[Path | None, text_option("--hardware", "FILE.c", "C code of the controller: FILE.c, FILE.h, FILE_test.c.")] = None,
     full: Full = False,
-    float32: Annotated[bool, typer.Option("--float32", help="32-bit numbers in the code of --hardware.")] = False,
+    float32: Annotated[bool, typer.Option("--float32", help="32-bit floating-point numbers in the code of --hardware.")] = False,
     example: Annotated[Path | None, text_option("--example", "LOOP.TOML", "Commented set-up file to write, without a computation.")] = None,
 ) -> CommandResult | None:
     """Close the control loop of a stage.
@@ -77,13 +77,14 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
     Tunes a controller, and prints bandwidth, stability margins, settling and positioning noise by source.
 
     Default plant: the lumped model, 10 kHz sampling, one sample of delay. Default controller: PI with notch filters, or PID for
-    force-driven stages. The tuning is optimised within a margin of 6 dB; --quick omits the optimisation.
+    force-driven stages. The tuning is optimised for a peak sensitivity of 6 dB at most; --quick omits the optimisation.
 
-    With --at, --load, --fixed or --temperature: about that operating point.
+    With --at, --load, --fixed or --temperature, the plant is linearised at that operating point.
 
-    With --record, the plant is the identified model of the test. With --fea, it is finite elements of the nominal stage to 1 %.
+    With --record, the plant is the identified model of the test. With --fea, it is a finite-element model of the nominal stage, with
+    frequencies accurate to 1 %.
 
-    Comparison: flexstage loop stage.toml --floor VC-D --tune-for balance --compare --report loops.html
+    Example of a comparison: flexstage loop stage.toml --floor VC-D --tune-for balance --compare --report loops.html
     """
     if example is not None:
         return _write_example(context.params["design"], example)
@@ -153,9 +154,9 @@ def _closed(found: LoopStudy, stands: CommandStage, model: Model | None, *, full
 def _fea_findings(where: OperatingPointOptions, model: Model | None) -> Iterator[Finding]:
     """Options that contradict a finite-element plant of the nominal stage."""
     if where:
-        yield Finding("--fea", f"finite elements need the nominal stage (got {where.options})", "Omit one of them")
+        yield Finding("--fea", f"finite elements need the nominal stage (got {where.options})", "Remove --fea, or these options")
     if model is not None:
-        yield Finding("--fea", f"contradicts --model {model.value}, another plant model", "Omit one of them")
+        yield Finding("--fea", f"contradicts --model {model.value}, another plant model", "Remove --fea or --model")
 
 
 def _require_comparable(asked: forms.LoopSetup, written: Mapping[str, bool]) -> None:
@@ -166,8 +167,8 @@ def _require_comparable(asked: forms.LoopSetup, written: Mapping[str, bool]) -> 
         **{f"controller.{name}": True for name in asked.controller.stated if getattr(asked.controller, name) is not None},
         "controller.loops": bool(asked.controller.loops),
     }
-    advice = "Omit it: a comparison tunes each kind itself"
-    require(Finding(name, "belongs to one controller, but --compare uses several", advice) for name, is_said in said.items() if is_said)
+    what = "belongs to one controller, but --compare tunes several kinds"
+    require(Finding(name, what, f"Remove {name}") for name, is_said in said.items() if is_said)
 
 
 def _write_example(design: Path, example: Path) -> None:

@@ -22,12 +22,13 @@ def serve(
     *,
     setup: Setup = None,
     port: Port = PORT,
-    realtime: Annotated[bool, typer.Option("--realtime/--no-realtime", help="Real time, or as fast as possible.")] = True,
+    realtime: Annotated[bool, typer.Option("--realtime/--no-realtime", help="Simulation in real time, or as fast as possible.")] = True,
     changes: Changes = None,
 ) -> None:
     """Run a virtual controller of a stage over TCP.
 
-    Simulates the loop of flexstage loop. Programs on this computer use a part of the General Command Set 2.0. Ctrl+C ends the command.
+    Simulates the same loop as flexstage loop. Programs on this computer control it with commands of the General Command Set 2.0. Ctrl+C
+    ends the command.
     """
     asked = LoopSetup() if setup is None else load_setup(setup)
     stage = StageController(open_design(design, changes), asked)
@@ -37,5 +38,5 @@ def serve(
 
     began = stage.seconds
     pace = asyncio.run(run(stage, port, started, paced=realtime))
-    told = "" if pace is None else f"; at most {1e3 * pace.most:.3g} ms late, {pace.lost:.3g} s given up"
+    told = "" if pace is None else f"; at most {1e3 * pace.most:.3g} ms behind real time, {pace.lost:.3g} s skipped"
     print_note(f"The stage ran for {stage.seconds - began:.3g} s{told}.")

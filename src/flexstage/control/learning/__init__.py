@@ -1,1 +1,1 @@
-"""Feedforward for a known path: inverse of the loop, input shaping, iterative learning control."""
+"""Feedforward for a known path: inverse of the loop, input shaping, iterative learning and repetitive control."""

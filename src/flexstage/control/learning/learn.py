@@ -17,7 +17,7 @@ from flexstage.control.systems.closed import Loop
 from flexstage.control.systems.system import System
 
 _CONTRACTS = 0.8
-"""Largest contraction factor of the error per pass, over all modal frequencies."""
+"""Largest contraction factor of the error per pass, for all mode shifts."""
 _MOST_INVERTED = 100.0
 """Largest gain of the loop's inverse: beyond it noise would saturate the strokes."""
 _OFFSETS, _LINES, _AROUND = 5, 600, 15
@@ -25,13 +25,13 @@ _REPEATS = 4
 """Runs with the learned input, which separate repeating from non-repeating errors."""
 
 
-IN_BAND = "Rms errors measured by the gauges, within the band but for the last column: errors beyond the band are not learned."
+IN_BAND = "All errors are rms values, measured by the gauges. The last column is the error beyond the band, which is not learned."
 BEYOND = Heading("beyond the band", digits=3)
 
 
 @dataclass(frozen=True, eq=False)
 class RobustBand:
-    """Robust learning band: `band`, and `contraction`, the largest ||Q (I - gain P P^^-1)|| over the band's frequencies."""
+    """Robust learning band, with its `contraction`: the largest ||Q (I - gain P P^^-1)|| over its frequencies (see `robust_band`)."""
 
     band: Band
     contraction: float
@@ -39,12 +39,12 @@ class RobustBand:
 
 @dataclass(frozen=True, eq=False)
 class LearningResult:
-    """Result of passes over the same path, by the loop's `coordinates` in their `units`.
+    """Result of iterative learning in passes along the same path, for the loop's `coordinates` in their `units`.
 
-    `rms` (passes, f) is the measured error in the band up to `band` [Hz]: first without learning, then after each learned pass. The last
-    row of `rms` is the rms of four runs with the learned input. `noise` (f,) is the non-repeating part of these four runs. `beyond` (f,) is
-    the rms error outside the band, which is not learned. `contraction` is the largest contraction factor per pass for mode shifts up to
-    `spread`; `gain` is the learning gain.
+    `rms` (passes, f) is the measured rms error in the band up to `band` [Hz]: first without learning, then after each learned pass. Its
+    last row is the rms of four runs with the learned input; `noise` (f,) is the non-repeating component of these runs. `beyond` (f,) is the
+    rms error outside the band, which is not learned. `contraction` is the largest contraction factor per pass for relative mode shifts up
+    to `spread`; `gain` is the learning gain.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -53,8 +53,8 @@ class LearningResult:
         head="path, coordinate",
         notes=(
             (
-                "{self.rms.shape[0]} passes, the first without learning; gain {self.gain:g}, band up to {self.band:.4g} Hz. A pass leaves "
-                "at most {self.contraction:.3g} of the repetitive error, mode frequencies within {self.spread:g} of themselves."
+                "{self.rms.shape[0]} passes, the first without learning, with gain {self.gain:g} in the band up to {self.band:.4g} Hz. "
+                "Each pass multiplies the repeating error by at most {self.contraction:.3g}, for mode shifts up to {self.spread:g}."
             ),
             IN_BAND,
         ),
@@ -67,32 +67,32 @@ class LearningResult:
     gain: float
     spread: float
     rms: Annotated[Array, Axes("passes", "coordinates")]
-    noise: Annotated[Array, Along("coordinates"), UnitIn("units"), Heading("not repetitive", digits=3)]
+    noise: Annotated[Array, Along("coordinates"), UnitIn("units"), Heading("non-repeating", digits=3)]
     beyond: Annotated[Array, Along("coordinates"), UnitIn("units"), BEYOND]
     commanded: Annotated[Array, INNER]
 
     @property
     def before(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("without learning", digits=3)]:
-        """First error in the band (f,)."""
+        """Error in the band (f,) without learning."""
         return self.rms[0]
 
     @property
     def learned(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("last pass", digits=3)]:
-        """Last error in the band (f,)."""
+        """Error in the band (f,) after the last pass."""
         return self.rms[-1]
 
     @property
     def above_noise(self) -> Annotated[Array, VIEW, Along("coordinates")]:
-        """Ratio of the last error in the band to its non-repeating part (f,)."""
+        """Ratio (f,) of the error in the band after the last pass to its non-repeating component."""
         return self.rms[-1] / self.noise
 
 
 def robust_band(closed: Loop, control: System, gain: float, spread: float) -> RobustBand:
-    """Find the band of contraction, ||Q (I - gain P P^^-1)|| < 0.8 in lengths, for relative mode shifts up to `spread`.
+    """Find the frequency band in which ||I - gain P P^^-1|| is at most 0.8, for relative mode shifts up to `spread`.
 
-    P are the loop's responses with shifted modes, P^ the model's responses (Norrloef & Gunnarsson, Int. J. Control 75 (2002) 1114: a norm
-    below 1 at all frequencies makes the error decrease from pass to pass). The band also ends where P^^-1 exceeds 100. Raises `DesignError`
-    if static responses differ too much.
+    P are the loop's responses with shifted modes, P^ the model's responses, both scaled to lengths. With a norm below 1 at all frequencies,
+    the error decreases from pass to pass (Norrloef & Gunnarsson, Int. J. Control 75 (2002) 1114). The band also ends where ||P^^-1||
+    exceeds 100. Raises `DesignError` if this leaves no band.
     """
     plant, step = closed.plant, closed.step or 1.0
     lines = line_grid(closed, spread)
@@ -105,8 +105,8 @@ def robust_band(closed: Loop, control: System, gain: float, spread: float) -> Ro
     asked = scaled_norms(back, scale)
     beyond = np.flatnonzero((worst > _CONTRACTS) | (asked > _MOST_INVERTED))
     if len(beyond) and beyond[0] == 0:
-        what = f"with all modes up to {100.0 * spread:g} % off, a pass would leave {worst[0]:.3g} times the error at {lines[0]:.3g} Hz"
-        raise refuse("follow", what, "Take a smaller gain or spread")
+        what = f"for mode shifts up to {100.0 * spread:g} %, a pass multiplies the error at {lines[0]:.3g} Hz by {worst[0]:.3g}"
+        raise refuse("follow", f"{what} (expected {_CONTRACTS:g} or less)", "Use a smaller gain or spread")
     end = float(lines[beyond[0] - 1]) if len(beyond) else 0.45 / step
     band = Band(end)
     return RobustBand(band, float(np.max(worst[lines <= end] * band.gains(lines[lines <= end]))))
@@ -125,7 +125,7 @@ def line_grid(closed: Loop, spread: float) -> Array:
 
 
 def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) -> Array:
-    """Compute the gauge readings (n, k) of a true path (n, k) from the model's lags, up to four times the frequency `end` [Hz]."""
+    """Compute the pose (n, k) that the gauges measure along a true path (n, k), with the model's lags up to four times `end` [Hz]."""
     step = closed.step or 1.0
     frequencies = frequencies_of(wanted, step)
     band = Band(min(4.0 * end, 0.45 / step))
@@ -135,7 +135,7 @@ def wanted_readings(closed: Loop, control: System, wanted: Array, end: float) ->
 
 @dataclass(frozen=True, eq=False)
 class LearningSettings:
-    """Learning parameters: `passes`, `gain`, relative mode `spread`; the error is evaluated within the samples of `window`."""
+    """Learning parameters: `passes`, `gain`, relative mode `spread`. Errors are evaluated within the samples of `window`."""
 
     passes: int
     gain: float
@@ -146,7 +146,8 @@ class LearningSettings:
 def learn(run: Callable[[Array, int], Array], closed: Loop, control: System, wanted: Array, lesson: LearningSettings) -> LearningResult:
     """Learn the command for a true path (n, f), at rest at both ends: command = path + d, d <- Q (d + gain P^^-1 e) after each pass.
 
-    `run` returns the readings (n, f) of a commanded path in a numbered pass. Raises `DesignError` as `robust_band` does.
+    `run(path, number)` simulates pass `number` along a commanded path, and returns the measured poses (n, f). Raises `DesignError` as
+    `robust_band` does.
     """
     robust = robust_band(closed, control, lesson.gain, lesson.spread)
     frequencies = frequencies_of(wanted, closed.step or 1.0)
@@ -190,7 +191,7 @@ def fade_ends(count: int, window: slice) -> Array:
 
 
 def filter_path(gains: Array, path: Array) -> Array:
-    """Filter a path (n, f) by real gains, without phase."""
+    """Filter a path (n, f) by real gains, without phase shift."""
     return through(gains[:, None, None] * np.eye(path.shape[1]), path)
 
 
@@ -199,7 +200,7 @@ def _rms(values: Array) -> Array:
 
 
 def inverse_path(closed: Loop, control: System, wanted: Array, spread: float) -> Array:
-    """Compute the command (n, f) by the model's inverse for a path (n, f), at rest at both ends, in the robust band."""
+    """Compute the command (n, f) for a true path (n, f), at rest at both ends, by the inverse of the model in the robust band."""
     band = robust_band(closed, control, 1.0, spread).band
     frequencies = frequencies_of(wanted, closed.step or 1.0)
     return through(band.blend(frequencies, lambda lines: np.linalg.inv(motions(closed, lines))), wanted)

@@ -19,7 +19,7 @@ from flexstage.control.systems.closed import Loop
 from flexstage.control.systems.system import System
 
 _MEMORY = 6.0
-"""Length of the filters to each side, in periods of the band's end frequency."""
+"""Length of the filters on each side, in periods of the band's end frequency."""
 _MOST_OF_PERIOD = 0.45
 _CONTRACTS, _LOWER, _WHOLE = 0.9, 0.85, 0.75
 _OFFSETS, _PHASES, _FINEST = 5, 16, 8
@@ -29,11 +29,11 @@ _OFFSETS, _PHASES, _FINEST = 5, 16, 8
 class Repeater:
     """Repetitive controller d = z^-P (W d + L e) of the error e: taps `keep` (2m+1,) of W and `teach` (2m+1, f, f) of L.
 
-    Both filters are noncausal by m samples, and contain the fractional part of the `period` P [samples]. `band` is the band in which W = 1.
-    `contraction` is the largest ||W - G L|| of these filters over all frequencies, in lengths; G are the loop's responses with shifted
-    modes. Below 1 the loop is stable and repeating errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao & Chew, J.
-    Dyn. Syst. Meas. Control 111 (1989) 353). `amplifies` is the largest ||(I + W z) (I + (W - G L) z)^-1|| over |z| = 1: amplification
-    between the harmonics.
+    Both filters are noncausal by m samples, and include the fraction of a sample in the `period` P [samples]. W is the low-pass filter of
+    the `band`. `contraction` is the largest ||W - G L|| over all frequencies, in lengths; G are the loop's responses with shifted modes.
+    With a contraction below 1 the loop is stable and repeating errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao
+    & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353). `amplifies` is the largest ||(I + W z) (I + (W - G L) z)^-1|| over |z| = 1:
+    amplification between the harmonics.
     """
 
     period: float
@@ -45,7 +45,7 @@ class Repeater:
 
     @property
     def reach(self) -> int:
-        """Length m of the filters to each side, in samples."""
+        """Length m of the filters on each side, in samples."""
         return len(self.keep) // 2
 
     def at(self, frequencies: Array, step: float) -> tuple[Array, Array]:
@@ -56,11 +56,10 @@ class Repeater:
 
 
 def repeater(closed: Loop, control: System, period: float, gain: float, spread: float) -> Repeater:
-    """Design the filters for a `period` [s] in the widest contracting band, for relative mode shifts up to `spread`.
+    """Design the filters for a `period` [s] in the widest band in which errors decrease, for relative mode shifts up to `spread`.
 
-    `gain` is the gain of the loop's inverse. Finite filters also act beyond their band. This band is therefore narrower than the
-    contraction band of iterative learning. Raises `DesignError` as `robust_band` does, and for a period too short for filters whose band
-    contains a harmonic.
+    `gain` is the gain of the loop's inverse. Finite filters also act beyond their band; therefore the band is narrower than for iterative
+    learning. Raises `DesignError` as `robust_band` does, and for a period too short for filters whose band contains a harmonic.
     """
     step, end = closed.step or 1.0, robust_band(closed, control, gain, spread).band.end
     lines = np.append(line_grid(closed, spread), 0.5 / step * (1.0 - 1e-9))
@@ -74,10 +73,10 @@ def repeater(closed: Loop, control: System, period: float, gain: float, spread: 
             worse = _amplification(own, own - moved[_OFFSETS // 2] @ taught, closed.plant.coordinates.scale)
             return replace(found, contraction=contraction, amplifies=worse)
         end *= _LOWER
-    said = f"no filters for a period of {period:.4g} s, first harmonic {1.0 / period:.4g} Hz"
+    said = f"no filters reduce an error with a period of {period:.4g} s (first harmonic {1.0 / period:.4g} Hz)"
     raise refuse(
         "follow",
-        f"{said}, reduce it below {_CONTRACTS:g} times",
+        f"{said} to less than {_CONTRACTS:g} times per period",
         "Use a longer period (a slower scan), a smaller gain or spread, or iterative learning",
     )
 
@@ -117,11 +116,11 @@ def _filters(closed: Loop, control: System, band: Band, gain: float, *, reach: i
 
 @dataclass(frozen=True, eq=False)
 class RepetitiveResult:
-    """Result of repetitive control along a path, by the loop's `coordinates` in their `units`.
+    """Result of repetitive control along a path, for the loop's `coordinates` in their `units`.
 
-    `rms` (periods, f) is the measured error of each `period` in the band up to `band` [Hz], the first without correction. `beyond` (f,) is
-    the error outside the band over the last period, which remains. `contraction` is the largest contraction factor per period for mode
-    shifts up to `spread`. `amplifies` is the largest amplification of non-repeating errors, between harmonics.
+    `rms` (periods, f) is the measured rms error of each `period` in the band up to `band` [Hz]; the first period has no correction.
+    `beyond` (f,) is the rms error of the last period outside the band. `contraction` is the largest contraction factor per period for
+    relative mode shifts up to `spread`. `amplifies` is the largest amplification of non-repeating errors, between the harmonics.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -130,8 +129,8 @@ class RepetitiveResult:
         head="path, coordinate",
         notes=(
             (
-                "{self.rms.shape[0]} periods of {self.period:.4g} s, gain {self.gain:g}, band up to {self.band:.4g} Hz. A period leaves "
-                "at most {self.contraction:.3g} of the repetitive error, mode frequencies within {self.spread:g} of themselves."
+                "{self.rms.shape[0]} periods of {self.period:.4g} s, with gain {self.gain:g} in the band up to {self.band:.4g} Hz. Each "
+                "period multiplies the repeating error by at most {self.contraction:.3g}, for mode shifts up to {self.spread:g}."
             ),
             "Errors between the harmonics of {self.period:.4g} s are amplified by at most {self.amplifies:.3g}.",
             IN_BAND,
@@ -152,17 +151,17 @@ class RepetitiveResult:
 
     @property
     def first(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("first period", digits=3)]:
-        """Error of the first period (f,)."""
+        """Rms error (f,) of the first period."""
         return self.rms[0]
 
     @property
     def halfway(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("middle period", digits=3)]:
-        """Error of the middle period (f,)."""
+        """Rms error (f,) of the middle period."""
         return self.rms[len(self.rms) // 2]
 
     @property
     def last(self) -> Annotated[Array, INNER, Along("coordinates"), UnitIn("units"), Heading("last period", digits=3)]:
-        """Error of the last period (f,)."""
+        """Rms error (f,) of the last period."""
         return self.rms[-1]
 
 
@@ -184,10 +183,10 @@ def repeat(
     gain: float = 0.6,
     spread: float = 0.02,
 ) -> RepetitiveResult:
-    """Run along a true path (n, f) with the correction from previous periods.
+    """Simulate a run along a true path (n, f), with corrections from the errors of previous periods.
 
-    `advance` continues the run with further commanded poses and returns the measured poses. Only errors within the window are used; after
-    the window the correction fades out. Raises `DesignError` as `repeater` does.
+    `advance` continues the run with further commanded poses, and returns the measured poses. Only errors within the window of `asked` are
+    used; after the window the correction fades out. Raises `DesignError` as `repeater` does.
     """
     found = repeater(closed, control, asked.period, gain, spread)
     target = wanted_readings(closed, control, wanted, found.band.end)

@@ -1,4 +1,4 @@
-"""Responses of a closed loop to its reference for shifted modes, and their inverse over a known path."""
+"""Responses of a closed loop to its reference, with shifted modes, and filters for known paths."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _TAPER = 0.75
 
 
 def readings(plant: Plant, control: System, frequencies: Array, offset: float = 0.0) -> Array:
-    """Compute responses (f, k, k) from reference to measured pose, with all modes higher by a relative `offset`.
+    """Compute responses (f, k, k) from reference to measured pose, with all mode frequencies higher by a relative `offset`.
 
-    y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r of the sampled plant P and the controller's K from error, pose and reference. The
-    modes are raised by scaling time: lags become shorter too. Hold and delay of a sampled plant are unchanged.
+    y = (I + P (K_e - K_y))^-1 P (K_e + K_r) r, for the sampled plant P and the controller's responses K from error, pose and reference. The
+    mode frequencies are raised by scaling time, so that lags also become shorter. Hold and delay of a sampled plant are unchanged.
     """
     P = pose_plant(plant, offset).sweep(frequencies)
     back, forward = np.split(pose_controller(control, plant.coordinates).sweep(frequencies), 2, axis=2)
@@ -38,7 +38,7 @@ def motions(closed: Loop, frequencies: Array) -> Array:
 
 @dataclass(frozen=True)
 class Band:
-    """Zero-phase low-pass filter up to `end` [Hz]: 1 up to three quarters of it, then a cosine fade-out."""
+    """Zero-phase low-pass filter: gain 1 up to three quarters of `end` [Hz], then a cosine fade-out to zero at `end`."""
 
     end: float
 
@@ -48,7 +48,7 @@ class Band:
         return 0.5 * (1.0 + np.cos(np.pi * share))
 
     def blend(self, frequencies: Array, respond: Callable[[Array], Array], beyond: float = 1.0) -> Array:
-        """Blend responses R with a constant outside the band: Q R + (1 - Q) I `beyond`, (f, k, k); `beyond` is 1 (unchanged) or 0."""
+        """Blend responses R with a constant `beyond` the band: Q R + (1 - Q) I `beyond` (f, k, k), with the gains Q."""
         share = self.gains(frequencies)
         inside = share > 0.0
         responses, share = respond(frequencies[inside]), share[inside, None, None]
@@ -73,9 +73,9 @@ def frequencies_of(path: Array, step: float) -> Array:
 def through(responses: Array, path: Array) -> Array:
     """Filter a path (n, k) by responses (n/2+1, k, k) at the frequencies of its transform. The path starts at zero and ends at rest.
 
-    The transform is of the path's differences, which end at zero. An inverse may have poles outside the unit circle. Its response on the
-    circle is then the sum of the stable part forward in time and the antistable part backward in time (Devasia, Chen & Paden, IEEE Trans.
-    Autom. Control 41 (1996) 930): the result starts before the path.
+    The differences of the path are transformed, because they end at zero. An inverse may have poles outside the unit circle. Its response
+    on the circle is then the sum of a stable component forward in time and an antistable component backward in time (Devasia, Chen & Paden,
+    IEEE Trans. Autom. Control 41 (1996) 930). The result therefore starts before the path.
     """
     spectrum = np.fft.rfft(np.diff(path, axis=0, prepend=0.0), axis=0)
     return np.cumsum(np.fft.irfft(np.einsum("fij,fj->fi", responses, spectrum), n=len(path), axis=0), axis=0)

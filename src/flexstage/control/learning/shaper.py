@@ -12,13 +12,13 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Shaper:
-    """Input shaper: a step becomes steps of `amplitudes` (k,), with sum 1, at `times` (k,) [s]."""
+    """Input shaper: a unit step becomes steps of `amplitudes` (k,), with sum 1, at `times` (k,) [s]."""
 
     times: Array
     amplitudes: Array
 
     def shape(self, poses: Array, step: float) -> Array:
-        """Shape a path (n, f), at rest before its start, sampled every `step` [s]; impulses between samples are split between both.
+        """Shape a path (n, f), at rest before its start, sampled every `step` [s]; an impulse between two samples is split between them.
 
         >>> half = Shaper(np.array([0.0, 0.2]), np.array([0.5, 0.5]))
         >>> half.shape(np.ones((4, 1)), 0.1).ravel().tolist()
@@ -35,10 +35,10 @@ class Shaper:
 
 
 def zv(frequency: float, damping: float) -> Shaper:
-    """Construct a zero-vibration (ZV) shaper for a mode of `frequency` [Hz], undamped, and `damping` ratio zeta.
+    """Construct a zero-vibration (ZV) shaper for a mode of undamped `frequency` [Hz] and `damping` ratio zeta.
 
-    Impulses 1/(1+K) and K/(1+K) half a damped period apart, K = exp(-zeta pi / (1 - zeta^2)^(1/2)) (Singer & Seering, J. Dyn. Syst. Meas.
-    Control 112 (1990) 76). Raises `DesignError` for invalid numbers.
+    The impulses 1/(1+K) and K/(1+K) are half a damped period apart, with K = exp(-zeta pi / (1 - zeta^2)^(1/2)) (Singer & Seering, J. Dyn.
+    Syst. Meas. Control 112 (1990) 76). Raises `DesignError` for invalid numbers.
 
     >>> zv(50.0, 0.0).times.tolist(), zv(50.0, 0.0).amplitudes.tolist()
     ([0.0, 0.01], [0.5, 0.5])
@@ -60,9 +60,15 @@ def zvd(frequency: float, damping: float) -> Shaper:
 
 
 def _factor(frequency: float, damping: float) -> tuple[float, float]:
-    found = [] if frequency > 0.0 else [Finding("shaper", f"its frequency is {frequency:g} Hz", "Give a positive one")]
+    found = [] if frequency > 0.0 else [Finding("shaper", f"frequency must be positive (got {frequency:g} Hz)", "Use e.g. 100 Hz")]
     if not 0.0 <= damping < 1.0:
-        found.append(Finding("shaper", f"its damping is {damping:g}", "Use a ratio from 0 to below 1: an overdamped mode needs no shaper"))
+        found.append(
+            Finding(
+                "shaper",
+                f"damping out of range (got {damping:g}, expected 0 or more and less than 1)",
+                "Use a ratio below 1: an overdamped mode needs no shaper",
+            )
+        )
     require(found)
     root = float(np.sqrt(1.0 - damping**2))
     return float(np.exp(-damping * np.pi / root)), 0.5 / (frequency * root)

@@ -1,4 +1,4 @@
-"""Controller of a stage's running loop: targets, velocities, wave generators, recorder; independent of any protocol."""
+"""Controller of a stage's running loop, without a protocol: targets, velocities, wave generators, recorder."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _NOISE = 65_536
 _CROSSING = 10.0
 """Travel ranges per second of an axis at its initial velocity."""
 _TOLERANCE, _WINDOW = 1e-4, 0.01
-"""On-target tolerance: share of the travel, or two steps of the gauges; and its time window [s]."""
+"""On-target tolerance: fraction of the travel, at least two steps of the gauges; and its time window [s]."""
 _LARGEST = 1e300
 _UNLIMITED = 1e-3
 """Travel [m, rad] of an axis whose actuators have no limit."""
@@ -37,7 +37,7 @@ _UNLIMITED = 1e-3
 
 @dataclass
 class Generator:
-    """Wave generator: its `table` (0: none), `cycles` (0: endless), samples per point, offset, and position."""
+    """Wave generator: its `table` (0: none), `cycles` (0: endless), samples per point `rate`, `offset`, and position `at`."""
 
     table: int = 0
     cycles: int = 0
@@ -48,9 +48,9 @@ class Generator:
 
 
 class StageController:
-    """Closed-loop stage in micrometres and microradians; `advance` simulates it.
+    """Closed-loop stage, in micrometres and microradians; `advance` simulates it.
 
-    Raises `DesignError` as `resolve` and `control_and_modes`, and for an unstable loop.
+    Raises `DesignError` as `resolve` and `control_and_modes` do, and for an unstable loop.
     """
 
     def __init__(self, mechanism: Mechanism, setup: LoopSetup | None = None) -> None:
@@ -58,7 +58,7 @@ class StageController:
         gains = pose_gains(given, None if given.kinematics.thrusts else lost_motion(given.kinematics, given.model))
         given, control, _ = control_and_modes(given, gains)
         closed = loop(given.plant, control.system)
-        require_stable(closed, "a running loop")
+        require_stable(closed, "simulation")
         stacks = None if given.setup.hysteresis is None else stacks_of(mechanism, given.setup.hysteresis)
         self.name = mechanism.name or "stage"
         self.running = RunningLoop(driven_machine(given, control, stacks), noise_series(given.plant, given.floor, _NOISE, given.setup.seed))
@@ -83,7 +83,7 @@ class StageController:
         self.volts = np.zeros(len(machine.actuators))
         self.readings = np.zeros(len(machine.gauges))
         self.is_lost = False
-        """Whether numbers exceeded their bounds since the last query."""
+        """Whether the simulation has diverged since the last query."""
         self.advance(int(rest_time(closed) / self.step))
 
     @property
@@ -93,18 +93,18 @@ class StageController:
 
     @property
     def moving(self) -> Array:
-        """Axes (f,) in motion: their commanded motion has not ended."""
+        """Whether the commanded motion of each axis (f,) is still in progress."""
         return np.array([each.at is not None for each in self.generators]) | (self.held & (self._wanted != self.target))
 
     @property
     def on_target(self) -> Array:
-        """Axes (f,) within `tolerance` of their target for a hundredth of a second."""
+        """Whether each axis (f,) has been within `tolerance` of its target for a hundredth of a second."""
         return self.held & ~self.moving & (self._off_target * self.step >= _WINDOW)
 
     # --- commands ---
 
     def hold(self, axis: int, *, on: bool) -> None:
-        """Switch the servo of an axis on at its present position, or off."""
+        """Switch the servo of an axis off, or on with its present position as the target."""
         if on and not self.held[axis]:
             self.target[axis] = self._wanted[axis] = self.position[axis]
         if not on:
@@ -130,7 +130,7 @@ class StageController:
         self.recorder.start()
 
     def stop(self) -> None:
-        """Stop all axes at their commanded positions."""
+        """Stop all axes and wave generators, at the present commanded positions."""
         for each in self.generators:
             each.at = None
         self.target = self._wanted.copy()
@@ -215,7 +215,7 @@ class StageController:
         return np.asarray(course)
 
     def output_is_known(self, option: int) -> bool:
-        """Whether a recorder option has data: stacks without specified voltage have none."""
+        """Whether a recorder option has data: without voltage data of the stacks, voltages are unknown."""
         return option != VOLTAGE or bool(np.all(np.isfinite(self.running.machine.amplifiers.gain)))
 
 

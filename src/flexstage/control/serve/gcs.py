@@ -1,7 +1,7 @@
 """Commands of the General Command Set, syntax version 2.0, supported by the virtual controller.
 
 References: two manuals of Physik Instrumente, "E-727 user manual", E727T0005, 2019-06-28 (syntax, wave generator, data recorder), and
-"C-863.12 Mercury Controller user manual", MS249E, version 1.2.1 (motion, answers, error codes). Each command cites its section.
+"C-863.12 Mercury Controller user manual", MS249E, version 1.2.1 (motion, answers, error codes).
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class Session:
         self.trigger = 0
 
     def hear(self, line: bytes) -> bytes:
-        """Execute a line, without its end, and return the answer, possibly empty. A refused command sets the code for `ERR?`."""
+        """Execute a line (without line end), and return the answer, possibly empty. A refused command sets the code for `ERR?`."""
         if self.stage.is_lost:
             self.stage.is_lost, self.error = False, Code.LOOP_UNSTABLE
         if len(line) > LONGEST:
@@ -99,7 +99,7 @@ class Session:
 
 
 def spelled(name: str) -> str:
-    """Return a command name as printed in manuals: a single character as `#` and its code."""
+    """Return a command name as printed in manuals: for a single character, `#` and its code."""
     return f"#{ord(name)}" if len(name) == 1 else name
 
 
@@ -462,7 +462,7 @@ def _array(words: Sequence[str], columns: Sequence[np.ndarray], names: Sequence[
 
 COMMANDS: dict[str, Command] = {
     "\x05": Command(lambda s, _: _bits(s.stage.moving), "which axes are moving"),
-    "\x07": Command(lambda _s, _: ["\xb1"], "whether a command can be taken"),
+    "\x07": Command(lambda _s, _: ["\xb1"], "whether the controller is ready"),
     "\x09": Command(lambda s, _: _bits(each.at is not None for each in s.stage.generators), "which wave generators run"),
     "\x18": Command(_stop, "stop all axes"),
     "*IDN?": Command(_plain(_identify), "identification"),
@@ -479,7 +479,7 @@ COMMANDS: dict[str, Command] = {
     "DRR?": Command(_record, "get recorded data values"),
     "DRT": Command(_set_trigger, "set data recorder trigger source"),
     "DRT?": Command(lambda s, w: [f"{t + 1}={s.trigger} 0" for t in _tables(w)], "get data recorder trigger source"),
-    "ERR?": Command(_last_error, "get error number and forget it"),
+    "ERR?": Command(_last_error, "get error number and clear it"),
     "GWD?": Command(_wave_data, "get wave table data"),
     "HDR?": Command(_plain(_recorder_options), "get all data recorder options"),
     "HLP?": Command(_plain(_help), "get list of available commands"),
@@ -530,4 +530,4 @@ COMMANDS: dict[str, Command] = {
         "get wave generator table rate",
     ),
 }
-"""All commands by mnemonic; single-character commands by their character."""
+"""All commands by mnemonic, or by character for single-character commands."""

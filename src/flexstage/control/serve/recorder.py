@@ -17,7 +17,7 @@ NOTHING, TARGET, POSITION, ERROR, VOLTAGE = 0, 1, 2, 3, 16
 
 @dataclass
 class Recorder:
-    """Tables of recorded points: each table has a source (axis or actuator index) and an option. `rate`: samples per point."""
+    """Tables of recorded points. Each table has a source (index of an axis or actuator) and an option. `rate` is in samples per point."""
 
     sources: list[int]
     options: list[int]

@@ -1,4 +1,4 @@
-"""Virtual controller on a loopback socket: clients' lines, and simulated time synchronised with the clock."""
+"""Virtual controller on a loopback socket: lines of its clients, and simulated time synchronised with the clock."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ _HTTP = re.compile(rb"\s*(?:GET|HEAD|POST|PUT|PATCH|DELETE|CONNECT|OPTIONS|TRACE
 
 @dataclass
 class Pace:
-    """Simulated time compared with the clock, from their `offset` at the start: largest lag `most` [s], and lost time."""
+    """Lag of simulated time behind the clock [s]: the `offset` of the clock, the largest lag `most`, and `lost` time."""
 
     offset: float
     most: float = 0.0
     lost: float = 0.0
 
     def behind(self, clock: float, seconds: float) -> float:
-        """Return the lag [s] behind the clock. Lag beyond a second counts as lost, and the simulation continues from its present state.
+        """Return the lag [s] behind the clock. A lag of more than a second counts as lost time, which is not simulated.
 
         >>> pace = Pace(offset=100.0)
         >>> round(pace.behind(100.25, 0.125), 3), round(pace.behind(102.125, 0.125), 3), round(pace.behind(102.25, 0.125), 3)
@@ -58,7 +58,7 @@ class Pace:
 
 
 class ServedStage:
-    """Stage controlled by clients. If not `paced`, time runs as fast as it is computed, while a client is connected."""
+    """Stage controlled by clients. If not `paced`, the simulation runs as fast as possible while a client is connected."""
 
     def __init__(self, stage: StageController, port: int = PORT, *, paced: bool = True) -> None:
         self.stage, self._port = stage, port
@@ -179,7 +179,7 @@ class _Lines:
 
 
 async def run(stage: StageController, port: int, started: Callable[[int], None], *, paced: bool) -> Pace | None:
-    """Serve a stage until interrupted; passes the port to `started`. Returns the pace, or None if not `paced` by the clock."""
+    """Serve a stage until interrupted, and call `started` with the port. Returns the pace, or None if not `paced` by the clock."""
     served = ServedStage(stage, port, paced=paced)
     await served.start()
     try:

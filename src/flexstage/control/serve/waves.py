@@ -14,9 +14,9 @@ LARGEST = 262_144
 
 
 def segment(kind: str, values: Sequence[float]) -> Array:
-    """Compute a segment of a wave table [the axis' unit] from its kind (PNT, SIN_P, RAMP, LIN) and the arguments of `WAV`.
+    """Compute a segment of a wave table, in the unit of the axis, from its kind (PNT, SIN_P, RAMP, LIN) and the arguments of `WAV`.
 
-    Raises `CommandError` for another kind, a wrong number of values, and invalid values.
+    Raises `CommandError` for an unknown kind, a wrong number of values, and invalid values.
 
     >>> segment("LIN", [5, 4, 1, 5, 0, 0]).tolist()
     [1.0, 2.0, 3.0, 4.0, 5.0]

@@ -1,4 +1,4 @@
-"""Loop responses as motions of the viewer: steps and trajectories, with true pose and reference."""
+"""Loop responses as motions in the viewer: steps and trajectories, with true pose and reference."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SETTLED = 3.0
 
 
 def response_motions(found: LoopStudy, still: StageData) -> tuple[Motion, ...]:
-    """Convert the first runs of a loop to stage motions: the platform follows its true pose, all other bodies move ideally."""
+    """Convert the first simulations of a loop to stage motions: the platform follows its true pose, other bodies move ideally."""
     axes = {each.name: each.twists for each in still.motions if each.group is Group.AXIS}
     return tuple(motion for number, run in enumerate(found.runs[:_MOST], start=1) for motion in _played(number, run, axes))
 
@@ -41,7 +41,7 @@ def _played(number: int, run: Run, axes: dict[str, Array]) -> Iterator[Motion]:
     curves = [_curve("time", "s", times)]
     for index in moved:
         unit, name = seen.coordinates[index].unit, names[index]
-        curves += [_curve(f"{name} wanted", unit, wanted[:, index]), _curve(name, unit, true[:, index])]
+        curves += [_curve(f"reference of {name}", unit, wanted[:, index]), _curve(name, unit, true[:, index])]
         curves += [_curve(f"error of {name}", unit, error[:, index])]
     factor = 1.0 if run.figures is not None else magnification(float(np.max(np.ptp(wanted[:, moved], axis=0))), error[:, moved])
     label = f"step {run.course.name}" if run.figures is not None else _followed(run.course.name, factor)
@@ -51,7 +51,7 @@ def _played(number: int, run: Run, axes: dict[str, Array]) -> Iterator[Motion]:
 
 def _followed(name: str, factor: float) -> str:
     """Label of a trajectory, and the magnification of its visible error."""
-    return name if factor == 1.0 else f"{name}, error {factor:g} times"
+    return name if factor == 1.0 else f"{name}, error magnified {factor:g} times"
 
 
 _UNIT = 1e-6

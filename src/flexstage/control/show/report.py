@@ -50,15 +50,16 @@ def loop_report(found: LoopStudy) -> str:
 
 
 def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison) -> str:
-    """Write a controller comparison as an HTML page: the best for each quantity, the Pareto front, and values per motion."""
+    """Write a controller comparison as an HTML page: the best for each quantity, the Pareto front, and values by coordinate."""
     origin = (("physics", digest(mechanism, physics=True)[:16]), ("model", asked.model.value), ("flexstage", __version__))
     data = stage_data(mechanism)
     best = ", ".join(f"{aim} by {kind_name(name)}" for aim, name in found.wins.items())
     detuned = {kind_name(name): each.detuned for name, each in found.controllers.items()}
     lines = {name: each for name, each in detuned.items() if each is not None and len(each.gains)}
     caption = (
-        "Dots: as tuned; lines: the same controllers with their output turned down to a tenth at most. The worst of all motions, in the "
-        "linear loop; of noise the geometric mean, rotations times the stage's length. Full dots: no other is better at once in all four."
+        "Each dot is a controller as tuned; its line is the same controller with reduced output, down to a tenth. Values are the worst "
+        "of all coordinates in the linear loop. Noise is the geometric mean, with rotations times the stage's length. A filled dot is "
+        "Pareto-optimal: no other controller is at least as good in all four quantities."
     )
     drawn = Picture(
         to_svg(
@@ -73,7 +74,7 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
         stage_section(data),
         section("Comparison of controllers", [compared, drawn if lines else None]),
         caveat_section(mechanism, found.warnings),
-        section("By coordinate", [by_coordinate]),
+        section("Results by coordinate", [by_coordinate]),
     )
     head = Head(mechanism.name or "stage", f"Controllers, {asked.model.value} model", origin, Headline(f"Best: {best}."))
     return page(head, sections, {"stage": data})

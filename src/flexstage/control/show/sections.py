@@ -37,7 +37,7 @@ _NOISELESS = 1e-16
 def loop_section(found: LoopStudy) -> Section | None:
     """Build the overview section: facts, block diagram, components."""
     drawn = to_svg(loop_diagram(diagram_of(found)), "loop-diagram", "Block diagram of the loop")
-    caption = "Block diagram of the loop. Shaded: computed by the computer, sample by sample."
+    caption = "Block diagram of the loop. The shaded blocks run on the computer, sample by sample."
     return section("The loop", [Facts(tuple(_facts(found))), Picture(drawn, caption), *loop_tables(found)])
 
 
@@ -49,13 +49,15 @@ def headline(found: LoopStudy) -> Headline:
     phases = {each.channel: float(np.rad2deg(each.phase.value)) for each in found.margins.channels}
     least = min(phases, key=lambda name: phases[name])
     return Headline(
-        f"The loop is {'stable' if stable else 'unstable'}; the smallest phase margin is {number(phases[least], 3)} deg, of {least}.",
+        f"The loop is {'stable' if stable else 'unstable'}; the smallest phase margin is {number(phases[least], 3)} deg, of loop {least}.",
         stable,
     )
 
 
 def _facts(found: LoopStudy) -> Iterator[Fact]:
-    yield Fact("stability", "stable" if found.stability.stable else "unstable", f"slowest decay {number(-found.growth_all_modes, 3)} 1/s")
+    yield Fact(
+        "stability", "stable" if found.stability.stable else "unstable", f"slowest decay rate {number(-found.growth_all_modes, 3)} 1/s"
+    )
     if found.controller.tuning is not None:
         yield Fact("gain crossover", f"{number(found.controller.tuning.bandwidth, 3)} Hz", "all loops")
     if found.peaks is not None:
@@ -77,7 +79,7 @@ def _error_fact(test: Run) -> Fact:
 
 
 def diagram_of(found: LoopStudy) -> Diagram:
-    """Return the content of the loop's block diagram, with the names of the set-up."""
+    """Return the content of the loop's block diagram, with values of the set-up."""
     setup, plant = found.setup, found.plant
     rate = f"{number(1e-3 * found.settled.rate, 4)} kHz"
     stage = Box("stage", f"{found.model_name.partition(',')[0]}\n{count_modes(len(plant.frequencies))}")
@@ -163,26 +165,26 @@ def frequency_section(found: LoopStudy) -> Section | None:
     circles = to_svg(nyquist_figure(seen, peak, margin_points(found)), "nyquist", "Nyquist plot of the open loops")
     poles = to_svg(pole_figure(found.closed.system.poles, found.settled.step, found.closed.held.poles), "poles", "Poles of the closed loop")
     caption = (
-        "Bode plot. Each loop opened alone at the pose, the others closed; dotted: modes of the stage; circles: margins, of gain where the "
-        "phase is −180°, of phase and delay where the gain is 1. Every second curve is dashed."
+        "Bode plot of each loop opened at the pose, with the other loops closed. Dotted lines are modes of the stage. Circles are gain "
+        "margins (phase −180°), and phase and delay margins (gain 1). Every second curve is dashed."
     )
     return section(
-        "Over frequency",
+        "Frequency domain",
         [
             *margin_tables(found),
             Picture(loops, caption, reading=reading(opened, spots)),
             Picture(
                 circles,
-                "Nyquist plot of the same loops near −1; dotted: gain 1; dashed: the highest Ms allowed; circles: the margins.",
+                "Nyquist plot of the same loops near −1. Dotted: gain 1. Dashed: highest permitted peak of S. Circles: margins.",
             ),
             Picture(
                 sensitivities,
-                "Sensitivity S: remaining share of a disturbance; T: tracking. Dashed: specified maximum peak of S.",
+                "Sensitivity S (error per disturbance) and complementary sensitivity T = 1 − S. Dashed: highest permitted peak of S.",
                 reading=reading(pair),
             ),
             Picture(
                 poles,
-                "Closed-loop poles, delay and hold included, with open-loop poles of the stage; dotted: damping ratios 0.1, 0.3, 0.6.",
+                "Closed-loop poles, with delay and hold, and poles of the stage in open loop. Dotted: damping ratios 0.1, 0.3 and 0.6.",
             ),
             fold("Static crosstalk", matrix_table("Static motion per reference", found.crosstalk)),
         ],
@@ -190,15 +192,15 @@ def frequency_section(found: LoopStudy) -> Section | None:
 
 
 def measured_section(found: LoopStudy) -> Section | None:
-    """Build the section of the loop on measured responses, compared with fit and model; `None` without a test."""
+    """Build the section of the loop with measured responses, compared with fit and model; `None` without a test."""
     if found.measured is None:
         return None
     seen = found.measured.sensitivities
     drawn = measured_figure(seen, found.plant.coordinates.names)
-    picture = to_svg(drawn, "measured-loops", "Sensitivities on the measured responses")
-    sure = "shaded: 95 % of every line" if seen.low is not None else "the test has no uncertainty of its responses"
-    caption = f"Sensitivity of every loop along its axis, hold and delay included; {sure}."
-    return section("On the measured responses", [*measured_tables(found), Picture(picture, caption, reading=reading(drawn))])
+    picture = to_svg(drawn, "measured-loops", "Sensitivities from measured responses")
+    sure = "shaded: 95 % interval" if seen.low is not None else "the test has no data on the uncertainty of its responses"
+    caption = f"Sensitivity of every loop along its axis, with hold and delay; {sure}."
+    return section("Loop with measured responses", [*measured_tables(found), Picture(picture, caption, reading=reading(drawn))])
 
 
 def margin_spots(found: LoopStudy) -> Iterator[Spot]:
@@ -242,29 +244,29 @@ def time_section(found: LoopStudy) -> Section | None:
     for number_, test in enumerate(test for test in found.runs if test.figures is None):
         pictures += _trajectory_pictures(test, f"trajectory{number_}")
     small = None if found.second_order is None else Prose(found.second_order.text)
-    return section("Over time", [small, *time_tables(found.runs), *pictures])
+    return section("Time domain", [small, *time_tables(found.runs), *pictures])
 
 
 def _trajectory_pictures(test: Run, name: str) -> Iterator[Picture]:
     if test.course.plane is not None:
-        drawn = to_svg(path_figure(test.simulated, test.course.plane), f"{name}-path", f"Path of the {test.course.name} in plan")
-        yield Picture(drawn, f"The {test.course.name} in plan, to scale, error magnified by the factor above.")
+        drawn = to_svg(path_figure(test.simulated, test.course.plane), f"{name}-path", f"Plan view of the {test.course.name}")
+        yield Picture(drawn, f"Plan view of the {test.course.name}, to scale; the legend has the magnification of the error.")
     drawn = to_svg(error_figure(test.simulated), f"{name}-error", f"Error along the {test.course.name} over time")
     yield Picture(drawn, "Reference minus true pose over time.")
     if test.learned is not None:
         taught = test.learned
-        figure = lesson_figure(taught.rms, taught.coordinates, taught.units, "passes learned from", taught.noise)
-        caption = f"Error in the band up to {number(taught.band, 4)} Hz, pass by pass; dotted: non-repeating part."
+        figure = lesson_figure(taught.rms, taught.coordinates, taught.units, "number of learned passes", taught.noise)
+        caption = f"Error of each pass in the band up to {number(taught.band, 4)} Hz. Dotted: non-repeating component."
         yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by pass"), caption)
     if test.repeated is not None:
         seen = test.repeated
-        figure = lesson_figure(seen.rms, seen.coordinates, seen.units, "periods before")
-        caption = f"Error in the band up to {number(seen.band, 4)} Hz, period by period."
+        figure = lesson_figure(seen.rms, seen.coordinates, seen.units, "number of previous periods")
+        caption = f"Error of each period in the band up to {number(seen.band, 4)} Hz."
         yield Picture(to_svg(figure, f"{name}-lessons", f"Error along the {test.course.name} by period"), caption)
 
 
 def error_section(found: LoopStudy) -> Section | None:
-    """Build the error section: static errors without the loop, noise with it, hysteresis of the stacks."""
+    """Build the error section: static errors in open loop, noise in closed loop, hysteresis of the stacks."""
     blocks: list[Block | None] = [*error_tables(found), *_noise_pictures(found)]
     if (swept := found.hysteresis) is not None:
         worst = int(np.argmax(swept.rms_error))
@@ -279,7 +281,7 @@ def _noise_pictures(found: LoopStudy) -> Iterator[Picture]:
     budget = found.noise
     if not np.any(budget.rms > _NOISELESS):
         return
-    drawn = to_svg(noise_share_figure(budget), "noise-shares", "Shares of the noise by source")
-    yield Picture(drawn, "Noise by source: shares of the mean square of each motion in regulation, and its rms.")
+    drawn = to_svg(noise_share_figure(budget), "noise-shares", "Contributions to the noise by source")
+    yield Picture(drawn, "Contribution of each source to the mean square of each coordinate in regulation, and the rms of the coordinate.")
     drawn = to_svg(noise_spectrum_figure(budget), "noise-spectrum", "Noise over frequency")
-    yield Picture(drawn, "Amplitude densities of the true motion, and its cumulative rms from the lowest frequency.")
+    yield Picture(drawn, "Amplitude density of the true motion, and its cumulative rms from the lowest frequency.")

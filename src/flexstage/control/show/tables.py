@@ -40,7 +40,7 @@ _BY_COORDINATE = ("rejection", "noise", "settling", "overshoot")
 
 
 def loop_tables(found: LoopStudy) -> list[Table | None]:
-    """Tabulate the loop and its parts: charge drive, force feedback, controller."""
+    """Tabulate the loop and its components: charge drive, force feedback, controller."""
     return [loop_table(found), *_charge_tables(found), *_damping_tables(found), *_controller_tables(found)]
 
 
@@ -54,7 +54,7 @@ def short_tables(found: LoopStudy) -> list[Table | str | None]:
     shown = [replace(each, notes=()) for each in (loop_table(found), *margins, *parts) if each is not None]
     if not found.stability.stable:
         shown[0] = loop_table(found)
-    return [*shown, "All tables and notes: --full. With pictures, in one page: --report FILE."]
+    return [*shown, "Use --full for all tables and notes, --report FILE for a page with figures."]
 
 
 def loop_table(found: LoopStudy) -> Table:
@@ -64,12 +64,14 @@ def loop_table(found: LoopStudy) -> Table:
     """
     plant, hardware = found.plant, found.plant.hardware
     delay = f"{number(1e6 * hardware.delay, 4)} us"
-    modes = f"{count_modes(len(plant.frequencies))} up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as a static term"
+    modes = (
+        f"{count_modes(len(plant.frequencies))} up to {number(float(plant.frequencies[-1]), 4)} Hz, {plant.left_out} as static compliance"
+    )
     rows = [
         ("stability", Cell("stable" if found.stability.stable else "unstable", Mark.PASS if found.stability.stable else Mark.FAIL)),
         ("controller", controller_text(found)),
         ("coordinates", ", ".join(plant.coordinates.names)),
-        ("clock", f"{number(found.settled.rate, 5)} Hz, outputs {delay} after the samples, zero-order hold"),
+        ("sampling", f"{number(found.settled.rate, 5)} Hz, output delay {delay}, zero-order hold"),
         ("plant", f"{found.model_name}, {modes}"),
         ("feedforward", ", ".join(each.value for each in found.setup.compensate) or "none"),
     ]
@@ -77,8 +79,10 @@ def loop_table(found: LoopStudy) -> Table:
     if found.peaks is not None:
         peaks = {"sensitivity Ms": found.peaks.sensitivity, "complementary sensitivity Mt": found.peaks.complementary}
         rows += [(f"peak {name}", f"{number(each.value, 4)} at {number(each.frequency, 4)} Hz") for name, each in peaks.items()]
-        notes.append("Sensitivity S: remaining share of a disturbance, amplified above 1; T: share of a reference that the motion follows.")
-        notes.append("Peak sensitivities: of modes as modelled.")
+        notes.append(
+            "The sensitivity S is the error per disturbance: above 1, the loop amplifies it. The complementary sensitivity is T = 1 - S."
+        )
+        notes.append("Peak sensitivities are for the modes as modelled.")
     if not found.retention.complete or found.retention.frequency is not None:
         notes.append(_retained(found.retention))
     if found.controller.tuning is not None:
@@ -88,13 +92,13 @@ def loop_table(found: LoopStudy) -> Table:
 
 def _retained(found: Retention) -> str:
     """Number of retained modes, and the reason."""
-    count = f"Of the model's {count_modes(found.total)} {found.retained} are retained"
+    count = f"The plant retains {count_modes(found.retained)} of the model's {found.total}"
     if not found.complete:
         return f"{count}, as specified; {int(np.sum(found.wanted)) - found.retained} more are significant with this controller."
-    largest = f"a loop gain of {number(found.gain, 3)} at resonance ({number(found.frequency or 0.0, 4)} Hz)"
-    change = "a margin appear or vanish" if np.isinf(found.change) else f"{percent(found.change)} of a margin"
-    why = "by loop gain with this controller; of the others the static compliance"
-    return f"{count}, {why}. Left out is {largest} at most; all that is left out changes {change} at most."
+    largest = f"{number(found.gain, 3)} at resonance ({number(found.frequency or 0.0, 4)} Hz)"
+    change = "make a margin appear or vanish" if np.isinf(found.change) else f"change margins by at most {percent(found.change)}"
+    why = "by loop gain with this controller; the others add their static compliance"
+    return f"{count}, {why}. The largest loop gain of an omitted mode is {largest}. All omitted modes together {change}."
 
 
 def count_modes(count: int) -> str:
@@ -122,7 +126,7 @@ def _damping_tables(found: LoopStudy) -> list[Table | None]:
     if inner is None:
         return []
     corner = f"{number(inner.corner, 4)} Hz" + ("" if inner.rate is None else f", sampled at {number(1e-3 * inner.rate, 4)} kHz")
-    note = f"Gain {number(inner.gain, 4)} 1/s, high pass of order {inner.order} at {corner}: {', '.join(inner.legs)}."
+    note = f"Gain {number(inner.gain, 4)} 1/s, high-pass filter of order {inner.order} at {corner}, in the legs {', '.join(inner.legs)}."
     return [result_table([each for each in inner.modes if each.most > _LEAST_DAMPED], notes=[note]), result_table(inner)]
 
 
@@ -133,7 +137,7 @@ def _charge_tables(found: LoopStudy) -> list[Table | None]:
         return []
     moved = held.rise > _MOVED
     shown = replace(held, by_volts=held.by_volts[moved], by_charge=held.by_charge[moved])
-    note = f"Omitted: modes that change by {percent(_MOVED)} or less."
+    note = f"Modes that change by {percent(_MOVED)} or less are omitted."
     return [result_table(held), array_table("Modes with charge drive", shown, "by_volts", "by_charge", "rise", notes=[note])]
 
 
@@ -144,7 +148,7 @@ def _controller_tables(found: LoopStudy) -> list[Table | None]:
         return []
     laws = {name: each.law for name, each in loops.items()}
     numbers = (each.name for each in walked_fields(type(next(iter(laws.values())))))
-    note = "From the loop's error to its command, both in metres: rotations times the stage's length."
+    note = "Gains are from the error of a loop to its command, both in metres; rotations are multiplied by the stage's length."
     filtered = {name: each for name, each in loops.items() if each.notches or each.prefilter}
     return [row_table("Controller", laws, *numbers, head="loop", notes=[note]), result_table(filtered)]
 
@@ -157,15 +161,15 @@ def margin_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def measured_tables(found: LoopStudy) -> list[Table]:
-    """Tabulate margins on a test's responses, and margins of fit and model at the same lines; none without a test."""
+    """Tabulate margins from a test's responses, and of fit and model at the same frequencies; none without a test."""
     seen = found.measured
     if seen is None:
         return []
     low, high = seen.band
     notes = [
-        f"From {seen.lines} frequency lines between {number(low, 4)} and {number(high, 4)} Hz; between them a peak may be higher.",
+        f"Computed at {seen.lines} frequencies from {number(low, 4)} to {number(high, 4)} Hz; between them, a peak may be higher.",
         "Noise reduces the gain margin where the response is small.",
-        "Identified model: the loop was tuned on it. Design model: without the identified delay.",
+        "The loop was tuned with the identified model. The design model does not include the identified delay.",
     ]
     readings = ("value", "low", "high", "fitted", "predicted")
     margins = {"Gain margin": "gain_high", "Phase margin": "phase", "Sensitivity crossover": "rejection"}
@@ -179,7 +183,7 @@ def measured_tables(found: LoopStudy) -> list[Table]:
 
 
 def time_tables(runs: Sequence[Run]) -> list[Table | None]:
-    """Tabulate steps, tracking errors, learning, limits, and the load on actuators."""
+    """Tabulate steps, tracking errors, learning, limits, and the load of actuators."""
     simulated = {run.course.name: run.simulated for run in runs}
     lost = {name: each for name, each in simulated.items() if np.any(each.out_of_range)}
     followed = {run.course.name: run.tracking for run in runs if run.figures is None}
@@ -196,7 +200,7 @@ def time_tables(runs: Sequence[Run]) -> list[Table | None]:
 
 
 def error_tables(found: LoopStudy) -> list[Table | None]:
-    """Tabulate static errors without the loop, noise with it, hysteresis of the stacks."""
+    """Tabulate static errors in open loop, noise in closed loop, hysteresis of the stacks."""
     static = found.static_errors
     return [
         *([] if static is None else [*static_error_tables(static), _load_table(static)]),
@@ -206,16 +210,19 @@ def error_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def static_error_tables(found: RestErrors) -> list[Table]:
-    """Tabulate open-loop static errors, without and with correction of lost motion: coordinates reached (rows) by commanded ones."""
+    """Tabulate static open-loop errors, without and with correction of lost motion; rows are reached, columns commanded coordinates."""
     errors = {"ideal mapping R_a": found.ideal_map, "lost-motion gains": found.lost_motion_gains}
     if found.other_gains is not None:
         errors[f"lost-motion gains of the {found.other_model.value} model"] = found.other_gains
     largest = ", ".join(f"{name} {percent(each.largest, 3)}" for name, each in errors.items())
-    notes = ["Commanded less reached, by the ideal mapping R_a.", f"Largest error, rotations as lengths: {largest}."]
+    notes = [
+        "The error is the commanded minus the reached pose, for strokes from the ideal mapping R_a.",
+        f"Largest error, with rotations as lengths: {largest}.",
+    ]
     error, corrected = found.ideal_map.error, found.lost_motion_gains.error
     return [
         matrix_table("Static errors without the loop", error, notes=notes),
-        matrix_table("Static errors, lost motion corrected by command", corrected, against=error),
+        matrix_table("Static errors with lost motion corrected", corrected, against=error),
     ]
 
 
@@ -229,7 +236,7 @@ def _load_table(found: RestErrors) -> Table | None:
 
 
 def noise_table(found: LoopStudy) -> Table:
-    """Tabulate positioning noise: the rms of every coordinate in regulation by kind of source, and as simulated."""
+    """Tabulate positioning noise: rms of every coordinate in regulation, by kind of source, and as simulated."""
     budget, resting = found.noise, found.resting
     columns = {"rms": budget.rms}
     if resting is not None:
@@ -244,13 +251,13 @@ def noise_table(found: LoopStudy) -> Table:
 
 def _noise_notes(found: LoopStudy) -> tuple[str, ...]:
     budget, still, resting = found.noise, found.still, found.resting
-    notes = ["Rms of the platform's true motion relative to the ground; sources add as squares."]
+    notes = ["Values are the rms of the platform's true motion relative to the ground. The mean squares of all sources add up."]
     if resting is not None:
-        notes.append(f"Rms: of {resting.count} simulations of {number(resting.seconds, 3)} s, quantisation and limits included.")
+        notes.append(f"The rms is from {resting.count} simulations of {number(resting.seconds, 3)} s, with quantisation and limits.")
     elif still is not None:
-        notes.append(f"Simulated: {number(float(still.times[-1]), 3)} s, quantisation and limits included.")
+        notes.append(f"Simulated values are from {number(float(still.times[-1]), 3)} s of simulation, with quantisation and limits.")
     if Kind.FLOOR in budget.kinds:
-        notes.append(f"The floor from {number(budget.band[0], 3)} to {number(budget.band[1], 4)} Hz.")
+        notes.append(f"Floor vibration is included from {number(budget.band[0], 3)} to {number(budget.band[1], 4)} Hz.")
     return (*notes, *(f"{each[0].upper()}{each[1:]}." for each in budget.notes))
 
 
@@ -260,9 +267,9 @@ def comparison_tables(found: Comparison) -> list[Table | None]:
     best = "; ".join(f"{aim}: {kind_name(name)}" for aim, name in found.wins.items())
     slow = [name for name, each in named.items() if each.slowly_rounding]
     notes = [
-        *([f"Quantisation is counted as white noise, which it is not with {'; '.join(slow)}; see flexstage loop."] if slow else []),
+        *([f"Quantisation is counted as white noise, but is not white with {'; '.join(slow)}; see flexstage loop."] if slow else []),
         f"Best in {best}. Not dominated in crossover, noise, settling and delay margin: {'; '.join(map(kind_name, found.front))}.",
-        *(f"Not possible: {kind_name(name)}: {reason}" for name, reason in found.reasons.items()),
+        *(f"{kind_name(name)} is not possible: {reason}" for name, reason in found.reasons.items()),
     ]
     table = result_table(named, notes=notes)
     return [

@@ -1,4 +1,4 @@
-"""Choices of a loop's set-up. A light module: the command line lists the choices without further imports."""
+"""Choices of a loop's set-up, in a module without slow imports, for the command line."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class ControllerKind(Enum):
     PID = "pid"
     """Proportional, integral and filtered derivative control."""
     RESONANT = "resonant"
-    """Integral resonant control: positive feedback damps the modes inside an integral loop."""
+    """Integral resonant control: an inner positive feedback damps the modes, an outer loop integrates the error."""
     LQG = "lqg"
     """Linear-quadratic regulator with a Kalman filter and integrators."""
     NONE = "none"
@@ -27,7 +27,7 @@ SEARCHED = (*SEARCHED_BY_DEFAULT, ControllerKind.LQG)
 
 
 class OfferedKind(str):
-    """Kind of controller from `CONTROLLERS` that is not in `ControllerKind`, by its name in `CONTROLLERS`."""
+    """Name of a controller kind in `CONTROLLERS` that is not in `ControllerKind`."""
 
     __slots__ = ()
 
@@ -41,7 +41,7 @@ class Axes(Enum):
     """Coordinates in which single loops are closed."""
 
     ACTUATOR = "actuator"
-    """One loop for each actuator: the platform's error in actuator coordinates."""
+    """One loop for each actuator, for the platform's error in actuator coordinates."""
     PLATFORM = "platform"
     """One loop for each motion of the platform."""
     MODAL = "modal"
@@ -52,7 +52,7 @@ class Notching(Enum):
     """Automatic placement of notch filters."""
 
     AUTOMATIC = "automatic"
-    """Notch filters on the modes that require them."""
+    """Notch filters on the modes that need them."""
     NONE = "none"
     """Only the specified notch filters."""
 
@@ -61,11 +61,11 @@ class Compensation(Enum):
     """Feedforward to the actuators."""
 
     LOST_MOTION = "lost-motion"
-    """Commands corrected by the gains of the lost-motion analysis."""
+    """Strokes corrected for lost motion, with gains of the lost-motion analysis."""
     LOAD = "load"
     """Strokes that balance payloads and own weight."""
     REFERENCE = "reference"
-    """The commanded trajectory; the controller corrects the residual."""
+    """The commanded trajectory; the controller corrects the residual error."""
     HYSTERESIS = "hysteresis"
     """The inverse of the stacks' hysteresis."""
 
@@ -74,28 +74,28 @@ class Following(Enum):
     """Tracking method for a known path."""
 
     INVERSE = "inverse"
-    """Inverse of the model's loop applied to the path."""
+    """Inverse of the modelled loop, applied to the path."""
     LEARNING = "learning"
-    """Iterative learning over passes."""
+    """Iterative learning from previous passes."""
     REPETITIVE = "repetitive"
     """Repetitive control, learning from previous periods during the run."""
     ZV = "zv"
     """Zero-vibration shaper for one mode."""
     ZVD = "zvd"
-    """Zero-vibration-derivative shaper, less sensitive to the mode's frequency."""
+    """Zero-vibration-derivative shaper, less sensitive to errors of the mode's frequency."""
 
 
 class StackKind(Enum):
     """Behaviour of hysteretic stacks."""
 
     MODEL = "model"
-    """According to the model of their hysteresis."""
+    """The hysteresis model that is also inverted."""
     BOUC_WEN = "bouc-wen"
-    """Bouc-Wen stacks of the same width: a different model than the inverted one."""
+    """Bouc-Wen stacks with the same loop width, which differ from the inverted model."""
 
 
 class Axis(Enum):
-    """Platform motion of rasters and spirals."""
+    """Axis of rasters and spirals."""
 
     X = "x"
     """Along x."""
@@ -112,7 +112,7 @@ class Axis(Enum):
 
 
 class Criterion(Enum):
-    """Generic vibration criteria: rms velocity of the floor in every third-octave band."""
+    """Generic vibration criterion: limit of the floor's rms velocity in every third-octave band."""
 
     WORKSHOP = "ISO workshop"
     """800 um/s."""

@@ -1,4 +1,4 @@
-"""Comparison of controllers on one stage: performance, trade-offs, and the best for each quantity."""
+"""Comparison of controllers on one stage: performance, trade-offs, and the best controller for each quantity."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from flexstage.mechanism.mechanism import Mechanism
 
 _OWN = (ControllerKind.PI, ControllerKind.PID, ControllerKind.RESONANT, ControllerKind.LQG)
 _SEEN = 0.75
-"""Share of the step length after which settling counts as not reached: lines of a spectrum end slow responses early."""
+"""Fraction of the step length after which settling counts as not reached: frequency lines end slow responses early."""
 _TURNED = np.geomspace(1.0, 0.1, 9)
 """Output gains of a controller for the trade-off curve: a tenth is ten times slower, with low noise."""
 
@@ -51,9 +51,9 @@ OVERSHOOT = Heading("overshoot", digits=3, unit="%")
 class DetunedController:
     """Controller with its output multiplied by `gains` (g,); gains of unstable loops are omitted.
 
-    All values (g,) are the worst of all loops, without limits and with rounding as white noise. `rejection` is the sensitivity crossover,
-    `settling` the settling time (NaN: longer than the step). `noise` is the rms in regulation, with poses as lengths: the geometric mean of
-    the loops (empty: no disturbance).
+    All values (g,) are computed without amplifier limits, and with rounding as white noise. `rejection` is the lowest sensitivity crossover
+    of all loops, `settling` the longest settling time (NaN: longer than the simulated step), `delay_margin` the smallest delay margin.
+    `noise` is the rms in regulation, the geometric mean of all loops with rotations converted to lengths (empty: no disturbance).
     """
 
     gains: Annotated[Array, RATIO]
@@ -65,13 +65,13 @@ class DetunedController:
 
 @dataclass(frozen=True, eq=False)
 class ComparedController:
-    """Result of one controller, by the loop's `coordinates`; `units` are the units of noise.
+    """Result of one controller for the loop's `coordinates`; `units` are the units of `noise`.
 
-    `peak` is the coupled peak of S, `rejection` the first crossing of |S| = 1, `noise` the rms in regulation. `settling` is the 2 %
-    settling time (infinite: not settled), `overshoot` relative to the step, `delay_margin` the lowest of the loops. `gauge_share` is the
-    largest share of gauge noise and quantisation in a mean square (absent: no disturbance). `tuned` describes the tuning, `detuned` is the
-    same controller with reduced gain. `slowly_rounding` are gauges whose rounding is not white, although `noise` assumes it. `warnings`
-    belong to the loop.
+    `peak` is the peak of S of the coupled loops, `rejection` the first crossing of |S| = 1, `noise` the rms in regulation. `settling` is
+    the 2 % settling time (infinite: not settled). `overshoot` is relative to the step. `delay_margin` is the smallest delay margin of all
+    loops. `gauge_share` is the largest fraction of a coordinate's mean square that is caused by gauge noise and quantisation (absent: no
+    disturbance). `tuned` describes the tuning, `detuned` is the same controller with reduced gain. `slowly_rounding` are gauges whose
+    rounding is not white, although `noise` assumes white rounding. `warnings` are those of the loop study.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -79,7 +79,7 @@ class ComparedController:
         "crossover worst_noise slowest_settling largest_overshoot delay_margin peak gauge_share",
         head="controller",
         notes=(
-            "Worst of all coordinates. Noise of the gauges: their largest share, quantisation included, in a mean square.",
+            "Values are the worst of all coordinates. Noise of the gauges is their fraction of the mean square, quantisation included.",
             "{self.tuned}.",
         ),
     )
@@ -105,7 +105,7 @@ class ComparedController:
 
     @property
     def worst_noise(self) -> Annotated[tuple[str, ...], INNER, Heading("positioning noise")]:
-        """Largest rms of translations and of rotations."""
+        """Largest rms of the translations, and of the rotations."""
         largest = {unit: max(value for value, own in zip(self.noise, self.units, strict=True) if own == unit) for unit in self.units}
         return tuple(f"{1e9 * value:.3g} n{unit}" for unit, value in largest.items())
 
@@ -121,7 +121,7 @@ class ComparedController:
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """Criteria by name, smaller is better: the worst of all coordinates. Noise is the mean of logarithms, absent without noise."""
+        """Criteria by name, smaller is better: the worst value of all coordinates; of noise the mean logarithm (absent without noise)."""
         return {
             "rejection": -self.crossover,
             **({"noise": float(np.mean(np.log(self.noise)))} if np.all(self.noise > 0.0) else {}),
@@ -134,14 +134,14 @@ class ComparedController:
 
 @dataclass(frozen=True, eq=False)
 class Comparison(InNotebook):
-    """Controllers by name, with equal stage, sampling, floor and gauges. `reasons` are the reasons of failed designs."""
+    """Controllers by name, for the same stage, sampling, floor and gauges. `reasons` explain the failed designs by name."""
 
     controllers: Mapping[str, ComparedController]
     reasons: Mapping[str, str]
 
     @property
     def wins(self) -> Annotated[Mapping[str, str], VIEW]:
-        """Best controller by quantity; missing quantities are omitted."""
+        """Best controller for each quantity; quantities without a value are omitted."""
         every = {name: each.figures for name, each in self.controllers.items()}
         aims = dict.fromkeys(aim for figures in every.values() for aim in figures)
         return {aim: min((name for name in every if aim in every[name]), key=lambda name: every[name][aim]) for aim in aims}
@@ -179,9 +179,9 @@ def compare_controllers(
 ) -> Comparison:
     """Tune PI, PID, integral resonant control, LQG and the kinds of `CONTROLLERS` for one set-up, and compare their step responses.
 
-    With an objective PI, PID and LQG are optimised; the others are tuned to the highest bandwidth within the same peak of S. `workers`
-    processes share the kinds, with equal results. Raises `DesignError` if no design succeeds, or if the set-up contains gains, which belong
-    to one kind.
+    PI and PID are optimised, unless the set-up specifies plain tuning; LQG is optimised for a specified goal. The others are tuned to the
+    highest bandwidth within the same peak of S. `workers` is the number of parallel processes (0: the calling process); the results do not
+    depend on it. Raises `DesignError` if no design succeeds. A kind fails if the set-up contains gains that it does not have.
     """
     asked = replace(setup or LoopSetup(), trajectory=StepMotion())
     rivals = _rivals(mechanism, asked, tested=test is not None)
@@ -217,7 +217,7 @@ def _every(one: Callable[[Line | None, LoopSetup], _Came], rivals: Mapping[str, 
         if failed.error is not None:
             raise failed.error from None
         what = "processes terminated repeatedly"
-        raise refuse(f"controller {names[id(failed.arguments[0])]}", what, "Free memory, and run it again") from None
+        raise refuse(f"controller {names[id(failed.arguments[0])]}", what, "Free memory, and run the command again") from None
 
 
 def _rival_of(
@@ -253,11 +253,11 @@ def _of_kind(asked: LoopSetup, kind: ControllerKind | OfferedKind) -> Controller
 
 
 def rival(study: LoopStudy) -> ComparedController:
-    """Summarise a closed loop as a compared controller; steps of all its motions are simulated."""
+    """Summarise the study of a closed loop for a comparison; the study must contain steps of all coordinates."""
     names = study.plant.coordinates.names
     steps = {run.course.moved[0]: run.step for run in study.runs if run.step is not None}
     if study.peaks is None or study.bandwidths is None or study.margins is None:
-        raise refuse("controller", "the loop is open", "Compare controllers that close it")
+        raise refuse("controller", "the loop is open", "Use a controller kind other than none")
     settling = np.array([steps[name].settling for name in names])
     return ComparedController(
         coordinates=names,

@@ -1,4 +1,4 @@
-"""Controller of a set-up: tuned for its specification, or with specified gains."""
+"""Controller of a set-up: tuned to its specification, or with specified gains."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ from flexstage.control.tuning.tune import tune
 _EXPECTED = 1e-9
 """Density [m/Hz^0.5] of stroke disturbances assumed by an observer without specified amplifier noise."""
 _QUIETEST = 1e-13
-"""Lowest gauge noise density [m/Hz^0.5] assumed by an observer: it would rely entirely on a noiseless gauge."""
+"""Lowest gauge noise density [m/Hz^0.5] that an observer assumes, because it would rely entirely on a noiseless gauge."""
 _FILTER = 1e3
 
 
 @dataclass(frozen=True)
 class SingleLoop:
-    """Single loop: its `law`, with the parameters of its kind, its `notches`, and the `prefilter` of its reference."""
+    """Single loop: its control `law` with parameters, its `notches`, and the `prefilter` of its reference."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Notch filters and prefilters", "notch_filters prefilter.frequency prefilter.damping prefilter.lead", head="loop"
@@ -53,8 +53,8 @@ class SingleLoop:
 
     @property
     def notch_filters(self) -> Annotated[tuple[str, ...], INNER, Heading("notch filters")]:
-        """Frequencies and depths of the notches."""
-        return tuple(f"{each.frequency:.5g} Hz to {each.depth:.3g}" for each in self.notches)
+        """Frequency of each notch, and gain at this frequency."""
+        return tuple(f"{each.frequency:.5g} Hz (gain {each.depth:.3g})" for each in self.notches)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ class Control:
 
     @property
     def loops(self) -> Annotated[Mapping[str, SingleLoop], VIEW]:
-        """Single loops by name; empty for other controllers."""
+        """Single loops by name; empty for LQG and in open loop."""
         made = self.made_of
         if not isinstance(made, Decentralised):
             return {}
@@ -87,21 +87,21 @@ class Control:
 
     @property
     def tuned(self) -> Annotated[str | None, VIEW]:
-        """Tuning of the controller."""
+        """Summary of the tuning; null without tuning."""
         return None if self.tuning is None else self.tuning.reason
 
     @property
     def bandwidth(self) -> Annotated[float | None, FREQUENCY]:
-        """Tuned bandwidth, of the slowest loop."""
+        """Tuned bandwidth of the slowest loop."""
         return None if self.tuning is None else self.tuning.bandwidth
 
 
 def make_controller(given: ResolvedSetup, gains: Array, known: tuple[Tuning, ...] = ()) -> Control:
     """Design the controller of a set-up; `gains` (n, f) map poses to strokes.
 
-    `known` are tunings of the same loops with fewer modes, from which optimisation starts.
+    `known` are tunings of the same loops with fewer modes; the optimisation starts from them.
 
-    Raises `DesignError` for a bandwidth beyond the maximum, with this maximum and the reason, and for invalid parameters.
+    Raises `DesignError` for invalid parameters, and for a bandwidth beyond the maximum, with this maximum and the reason.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.study.resolve import resolve
@@ -177,7 +177,7 @@ def _loop_findings(asked: ControllerSetup, names: tuple[str, ...]) -> Iterator[F
     missing = [name for name in names if name not in stated]
     if missing and all(getattr(asked, name) is None for name in GAINS):
         what = f"{', '.join(missing)} {'has' if len(missing) == 1 else 'have'} no gains"
-        yield Finding("controller.loops", what, "State them too, or gains of all loops under [controller]")
+        yield Finding("controller.loops", what, "Specify gains for these loops too, or gains of all loops in [controller]")
 
 
 def _law(asked: ControllerSetup, own: LoopNumbers) -> PI | PID:

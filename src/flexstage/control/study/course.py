@@ -36,7 +36,7 @@ _MOST_SAMPLES = 5_000_000
 
 @dataclass(frozen=True, eq=False)
 class NamedTrajectory:
-    """Named trajectory; `plane` are two coordinates for a plan view.
+    """Named trajectory; `plane` are the two coordinates of a plan view.
 
     It is periodic with `period` [s] between the two times `repeats` [s] (default: not periodic), and truncated at its `end` [s].
     """
@@ -60,14 +60,14 @@ class NamedTrajectory:
 
     @property
     def is_step(self) -> bool:
-        """Whether it is a step, evaluated by settling."""
+        """Whether the trajectory is a step, which is evaluated by its settling."""
         return isinstance(self.trajectory, Step)
 
 
 def courses(commanded: TrajectorySetup, coordinates: Coordinates) -> tuple[NamedTrajectory, ...]:
-    """Construct the trajectories of a set-up for a loop of these coordinates: for a step, one per motion.
+    """Construct the trajectories of a set-up for a loop of these coordinates: for steps, one per coordinate.
 
-    Raises `DesignError` for unknown motions and invalid numbers.
+    Raises `DesignError` for unknown coordinates and invalid numbers.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -122,7 +122,7 @@ def _plane(names: tuple[str, ...]) -> tuple[str, str] | None:
 
 
 def stated_motions(by: AxisAmplitudes) -> dict[str, float]:
-    """Return the specified amplitudes [m, rad] by motion.
+    """Return the specified amplitudes [m, rad] by coordinate.
 
     >>> stated_motions(AxisAmplitudes(x=1e-6))
     {'x': 1e-06}
@@ -141,7 +141,7 @@ def _limits(commanded: StepMotion) -> Limits | None:
 
 
 def sampled_course(course: NamedTrajectory, coordinates: Coordinates, step: float, seconds: float) -> tuple[Array, Array]:
-    """Sample a trajectory every `step` for so many `seconds`: times (n,) [s] and poses (n, f) [m, rad].
+    """Sample a trajectory every `step` [s], for a duration of `seconds`: times (n,) [s] and poses (n, f) [m, rad].
 
     Raises `DesignError` for a duration too short or too long to simulate.
 
@@ -155,14 +155,14 @@ def sampled_course(course: NamedTrajectory, coordinates: Coordinates, step: floa
     """
     count = round(seconds / step)
     if not 2 <= count <= _MOST_SAMPLES:
-        what = f"{seconds:g} s at {1.0 / step:g} Hz are {float(count):.7g} samples"
-        require([Finding("seconds", what, f"Simulate between 2 and {_MOST_SAMPLES} samples")])
+        what = f"wrong number of samples (got {float(count):.7g} for {seconds:g} s at {1.0 / step:g} Hz, expected 2 to {_MOST_SAMPLES})"
+        require([Finding("seconds", what, "Change seconds, or the sampling rate")])
     times = step * np.arange(count)
     return times, reference(course.trajectory, coordinates.names, times)
 
 
 def course_findings(course: NamedTrajectory, poses: Array, times: Array, gains: Matrix, limits: StrokeLimits) -> list[Finding]:
-    """Check a trajectory against the stroke limits; `gains` (strokes by coordinate) map the commanded poses.
+    """Check a trajectory against the stroke limits; `gains` map commanded poses to strokes.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -182,7 +182,7 @@ def course_findings(course: NamedTrajectory, poses: Array, times: Array, gains: 
 def course_warnings(
     course: NamedTrajectory, poses: Array, times: Array, gains: Matrix, slew: Array, *, units: tuple[str, ...] = ()
 ) -> list[Finding]:
-    """Warn of a trajectory, except a step, that exceeds the amplifiers' rate limit `slew` (m,): the amplifiers saturate."""
+    """Warn if a trajectory, other than a step, exceeds the rate limits `slew` (m,) of the amplifiers, so that they saturate."""
     if course.is_step or not np.any(np.isfinite(slew)):
         return []
     found = speed_findings(poses, times, gains, slew, units=units)

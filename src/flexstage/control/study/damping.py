@@ -30,10 +30,10 @@ _WHOLE = 1e-9
 
 
 def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], asked: DampingSetup) -> tuple[Plant, Plant, ActiveDamping]:
-    """Close the inner loops of a set-up around both plants, which have link force outputs; return both with their description.
+    """Close the force-feedback loops of a set-up around `plant` and `whole`; return both plants, and a description of the loops.
 
-    Raises `DesignError` if the inner loops are unstable, with all modes or with the retained ones, and for a rate that is not a multiple of
-    the loop's.
+    Both plants must have outputs for link forces. Raises `DesignError` if the force feedback is unstable, with all modes or with the
+    retained modes, and for a rate that is not a multiple of the loop's sampling rate.
     """
     require(_rate_findings(asked.rate, plant.hardware.rate))
     pairs = pair_zeros(model, legs)
@@ -47,7 +47,7 @@ def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], 
     closed, both = close_damping(plant, law, felt), close_damping(whole, law, felt)
     growth = max(closed.system.growth, both.system.growth)
     if growth >= 0.0:
-        what = f"the inner loops are unstable at a gain of {law.gain:.4g} 1/s: they grow by {growth:.3g} 1/s"
+        what = f"force feedback with a gain of {law.gain:.4g} 1/s is unstable (growth rate {growth:.3g} 1/s)"
         raise refuse("damping", what, "Specify less damping, or use faster amplifiers, a higher lag corner and a shorter delay")
     found = replace(describe_damping(plant, closed, law, felt, pairs), rate=asked.rate)
     return with_damped_modes(closed, found), both, found
@@ -65,7 +65,7 @@ def _rate_findings(inner: float | None, outer: float | None) -> Iterator[Finding
         return
     turns = max(round(inner / outer), 1)
     if abs(inner / (turns * outer) - 1.0) > _WHOLE:
-        what = f"rate must be a multiple of the loop's {outer:.6g} Hz (got {inner:.6g} Hz, ratio {inner / outer:.6g})"
+        what = f"must be a multiple of the loop's sampling rate (got {inner:.6g} Hz, {inner / outer:.6g} times {outer:.6g} Hz)"
         yield Finding("damping.rate", what, f"Use {turns * outer:.6g} Hz")
 
 

@@ -22,9 +22,9 @@ _RINGING, _GONE, _LEAKED = 0.1, 1e-6, 1.5
 
 
 def rest_time(closed: Loop, *, ringing: bool = False) -> float:
-    """Return the time [s] for initial settling: eight time constants of the slowest pole, at most 2 s.
+    """Return the time [s] for initial settling: eight time constants of the slowest pole, between 20 ms and 2 s, rounded up.
 
-    Oscillating poles count only if `ringing`, excited by feedforward; charge leakage is not included.
+    Oscillating poles are included only with `ringing`, that is if feedforward excites them. Poles of charge leakage are not included.
 
     >>> from flexstage.control.example import integral_loop
     >>> rest_time(integral_loop(gain=300.0))
@@ -42,7 +42,7 @@ def rest_time(closed: Loop, *, ringing: bool = False) -> float:
 
 @dataclass(frozen=True, eq=False)
 class DisturbedLoop:
-    """Loop with noise that starts `rest` [s] before a simulation, so that it is stationary.
+    """Loop with noise. The noise starts `rest` [s] before a simulation, to be stationary in it.
 
     Floor vibration fades in.
     """
@@ -52,7 +52,7 @@ class DisturbedLoop:
     rest: float
 
     def simulate(self, poses: Array, number: int = 0, held: Array | float = 0.0) -> Simulated:
-        """Simulate commanded poses (n, f), starting at rest in the pose `held` (f,); `number` seeds the random numbers."""
+        """Simulate commanded poses (n, f), starting at rest in the pose `held` (f,); the noise depends on its `number`."""
         lead, series = self._noise(len(poses), number)
         if not series and not np.any(held):
             return simulate(self.machine, poses)
@@ -60,7 +60,7 @@ class DisturbedLoop:
         return part_of(simulate(self.machine, np.concatenate([before, poses]), series), slice(lead, None))
 
     def begin(self, count: int) -> Callable[[Array], Array]:
-        """Start a loop of `count` samples with noise number 0. The returned function simulates commanded poses and returns the poses."""
+        """Start a simulation of `count` samples; the returned function continues it with commanded poses, and returns measured poses."""
         lead, series = self._noise(count, 0)
         running = RunningLoop(self.machine, series)
         running.advance(np.zeros((lead, len(self.machine.names))))
@@ -76,7 +76,7 @@ class DisturbedLoop:
 
 
 def part_of(found: Simulated, part: slice) -> Simulated:
-    """Return the samples `part` of a simulation, with time from their start. Shares of samples at limits belong to the whole simulation."""
+    """Return the samples `part` of a simulation, with time from their start. Fractions of time at limits refer to the whole simulation."""
     names = [field.name for field in fields(Simulated) if np.shape(getattr(found, field.name))[:1] == found.times.shape]
     kept = {name: getattr(found, name)[part] for name in names}
     return replace(found, **(kept | {"times": found.times[part] - found.times[part.start]}))

@@ -22,7 +22,7 @@ FORMAT = "flexstage loop 1"
 
 @check_arguments
 def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
-    """Return the set-up in a file; relative file names refer to its folder.
+    """Return the set-up in a file. Relative file names in it refer to its folder.
 
     Raises `DesignError` with all errors, each finding with file, line and key.
 
@@ -37,14 +37,14 @@ def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
 
 @dataclass(frozen=True)
 class SetupChange:
-    """Override of a set-up: a new raw value, or a function of the value in the file; `option` names it in findings."""
+    """Override of a set-up: a new raw value, or a function of the value in the file. Findings name the `option`."""
 
     option: str
     value: Any
 
 
 def read_setup(path: str | os.PathLike[str] | None, changes: Mapping[str, SetupChange]) -> tuple[LoopSetup, list[Finding]]:
-    """Return the set-up in a file (default: the default set-up) with valid overrides by address, and findings for the others.
+    """Return the set-up in a file (default: the default set-up) with overrides by address, and findings for invalid overrides.
 
     >>> read_setup(None, {"controller.bandwidth": SetupChange("--bandwidth", "30 Hz")})[0].controller.bandwidth
     30.0
@@ -76,7 +76,7 @@ def _apply(table: Any, keys: list[str], value: Any) -> None:
 
 
 def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
-    r"""Parse a set-up text; `where` names it in findings.
+    r"""Parse the text of a set-up file; findings name it `where`.
 
     >>> loads_setup('format = "flexstage loop 1"\nrate = "5 kHz"').rate
     5000.0
@@ -97,7 +97,7 @@ def setup_schema() -> dict[str, Any]:
 
 
 def example() -> str:
-    """Return a commented example file; the lines not commented out are the defaults.
+    """Return a commented example file; lines that are not commented out contain the defaults.
 
     >>> example().splitlines()[0]
     'format = "flexstage loop 1"'

@@ -1,4 +1,4 @@
-"""Command of a trajectory for a known path: inverted, shaped or learned."""
+"""Commanded path for a trajectory known in advance: by inversion, shaping or learning."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ _FEWEST = 2.0
 def follow(
     asked: FollowSetup, closed: Loop, control: System, path: Array, course: NamedTrajectory, *, noisy: DisturbedLoop
 ) -> tuple[Simulated, dict[str, Any]]:
-    """Simulate a path (n, f) by the set-up's tracking method, with rest around it, and return fields of its `Run`.
+    """Simulate a path (n, f), with rest before and after it, by a tracking method; also return further fields of its `Run`.
 
-    Raises `DesignError` if the loop is not known well enough for an inverse at any frequency.
+    Raises `DesignError` if the loop is not known well enough for an inverse at any frequency, and for too few periods.
     """
     step = closed.step or 1.0
     around = round(noisy.rest / step)
@@ -57,6 +57,6 @@ def _repetition(course: NamedTrajectory, around: int, step: float) -> Repetition
     period, (start, stop) = course.period or np.inf, course.repeats or (0.0, 0.0)
     count = (stop - start) / period
     if count < _FEWEST:
-        what = f"the {course.name} repeats {count:.3g} times every {period:.4g} s, but learning acts one period later"
+        what = f"the {course.name} has only {count:.3g} periods of {period:.4g} s, but repetitive control needs at least {_FEWEST:g}"
         raise refuse("follow", what, "Use more lines or periods: 6 periods remove most of the repeating error")
     return Repetition(period, slice(around + round(start / step), around + round(stop / step)))

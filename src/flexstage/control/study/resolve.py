@@ -49,12 +49,12 @@ _RESONANCE = 0.01
 class ResolvedSetup:
     """Set-up resolved for a stage: its kinematics, linear model, plant, and the floor's spectra by input.
 
-    `plant` has the modes retained for the loop, or as many as specified. `whole` has all modes of the model; `stage` has all modes too,
-    without inner loops. `highest` [Hz] is the highest of the platform modes, as many as loop coordinates. `displaced`: the model is
-    linearised at an operating point, deflection included. `loaded` is the effect of permanent load on the nominal stage, and defines the
-    model if significant. With a measured plant, `predicted` is the model's plant. `damping` describes the inner loops, `charge` the charge
-    amplifiers. The plants include both; `model` is at constant voltage, which is correct for statics. `solid` is the finite-element stage,
-    if it is the model.
+    `plant` has the retained modes, or the specified number of modes. `whole` has all modes of the model; `stage` has all modes too, but no
+    inner loops. `highest` [Hz] is the highest of the f lowest platform modes, for f loop coordinates. If `displaced`, the model is
+    linearised at an operating point, deflection included. `loaded` is the effect of permanent load on the nominal stage; if it is
+    significant, the model is the loaded stage. With a measured plant, `predicted` is the model's plant. `damping` describes the force
+    feedback, `charge` the charge amplifiers. The plants include both; `model` is at constant voltage, which is correct for statics. `solid`
+    is the finite-element stage, if that is the model.
     """
 
     mechanism: Mechanism
@@ -92,10 +92,10 @@ class ResolvedSetup:
 def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None = None, solid: FeaModes | None = None) -> ResolvedSetup:
     """Resolve a set-up for a stage: nominal, at an operating point, or under permanent load if that is significant.
 
-    With a `solid` the model is the nominal finite-element stage; the kinematics is still the ideal stage's.
+    With a `solid`, the model is the nominal finite-element stage, with the kinematics of the ideal stage.
 
-    Raises `DesignError` with all findings: errors of the set-up, gauges that cannot observe the pose, actuators that cannot produce it.
-    Also for missing stack data of amplifiers, a sampling rate too low for the platform's modes, and a model without stiffness.
+    Raises `DesignError` for errors of the set-up, for gauges that cannot observe the pose, and for actuators that cannot produce it. Also
+    for missing stack data that amplifiers need, for a sampling rate too low for the platform's modes, and for a model without stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = resolve(double_triangle(), LoopSetup())
@@ -111,7 +111,7 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None
         raise refuse("loop", f"{what}: no motion to control", "Release a motion in the design, and add an actuator for it")
     model = solid.model if solid is not None else there.linear if there is not None else felt(mechanism, setup.model)
     if model is None:
-        raise refuse("model", "rigid bodies have no stiffness and no modes", "Take lumped or mapped")
+        raise refuse("model", "rigid bodies have no stiffness and no modes", "Use model lumped or mapped")
     require(_force_findings(kinematics, setup))
     setup = _settle(setup, forced=bool(kinematics.thrusts))
     charged, drives = _charges(mechanism, model, setup)
@@ -147,7 +147,7 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None
 
 
 def retain_modes(given: ResolvedSetup, wanted: Array) -> ResolvedSetup:
-    """Return the same set-up with the `wanted` modes (k,) of the whole plant; inner loops are designed on these.
+    """Return the same set-up with the `wanted` modes (k,) of the whole plant; inner loops are designed with these modes.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> found = resolve(parallelogram(), LoopSetup())
@@ -174,9 +174,9 @@ def _with_inner_loops(given: ResolvedSetup, found: Plant, stage: StagePlant) -> 
 
 @dataclass(frozen=True, eq=False)
 class StagePlant:
-    """Stage with all modes of its model, before inner loops: the source of reduced plants.
+    """Stage with all modes of its model and without inner loops, from which reduced plants are derived.
 
-    `moving` is the model at constant charge for charge drives, in the legs `charged` with their `drives`. `sensed` are the legs with force
+    `moving` is the model with the legs `charged` at constant charge; `drives` are their charge drives. `sensed` are the legs with force
     feedback.
     """
 
@@ -209,7 +209,11 @@ def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
     --record: S: no output channel of this name in the record. Use y; a loop needs all.
     """
     if given.setup.damping is not None:
-        raise refuse("damping", "the test's plant has no forces in the legs", "Record the stage with its inner loops closed")
+        raise refuse(
+            "damping",
+            "the identified plant has no leg forces to feed back",
+            "Record the stage with its inner loops closed, and remove damping",
+        )
     seen = measured_plant(given.plant, given.model, found)
     return replace(given, plant=seen, whole=seen, predicted=given.plant, stage=None)
 
@@ -225,13 +229,15 @@ def _settle(setup: LoopSetup, *, forced: bool) -> LoopSetup:
 def _force_findings(kinematics: Kinematics, setup: LoopSetup) -> Iterator[Finding]:
     """Findings for stack options of a force-driven stage."""
     if kinematics.thrusts and setup.hysteresis is not None:
-        yield Finding("hysteresis", f"forces drive the stage ({', '.join(kinematics.thrusts)}), and it has no stacks", "Omit it")
+        yield Finding(
+            "hysteresis", f"hysteresis needs stacks, but forces drive the stage ({', '.join(kinematics.thrusts)})", "Remove hysteresis"
+        )
     if kinematics.thrusts and setup.amplifier.settings.charge is not None:
         what = f"charge drive needs stacks, but forces drive the stage ({', '.join(kinematics.thrusts)})"
-        yield Finding("amplifier.kind", what, "Omit kind: coil amplifiers control the current")
+        yield Finding("amplifier.kind", what, 'Remove kind = "charge": coil amplifiers control the current')
     if kinematics.thrusts and Compensation.LOAD in setup.compensate:
-        what = "load compensation is not supported for forces"
-        yield Finding("compensate", what, "Omit load: the controller's integrator supplies these forces")
+        what = "load compensation is not supported for force actuators"
+        yield Finding("compensate", what, 'Remove "load" from compensate: the integrator of the controller supplies the forces')
 
 
 def highest_platform_mode(mechanism: Mechanism, model: LinearModel, count: int) -> float:
@@ -266,16 +272,14 @@ def round_up(value: float) -> float:
 
 def _rate_findings(rate: float, highest: float) -> Iterator[Finding]:
     if rate < _LEAST_OVER_HIGHEST * highest:
-        what = f"sampling at {rate:g} Hz is {rate / highest:.3g} times the highest platform mode, {highest:.4g} Hz"
-        yield Finding(
-            "rate", what, f"Sample at {_LEAST_OVER_HIGHEST * highest:.4g} Hz at least, better at {_OVER_HIGHEST * highest:.0f} Hz"
-        )
+        what = f"sampling at {rate:g} Hz is only {rate / highest:.3g} times the highest platform mode of {highest:.4g} Hz"
+        yield Finding("rate", what, f"Use at least {_LEAST_OVER_HIGHEST * highest:.4g} Hz, preferably {_OVER_HIGHEST * highest:.0f} Hz")
 
 
 def _delay_findings(samples: float) -> Iterator[Finding]:
     if samples > _MOST_LATE:
-        what = f"too long (got {samples:.4g} samples): each delayed stroke is a state"
-        yield Finding("delay", what, f"Use at most {_MOST_LATE} samples, or a lower sampling rate")
+        what = f"too long (got {samples:.4g} samples, expected {_MOST_LATE} or less)"
+        yield Finding("delay", what, "Reduce delay, or use a lower sampling rate")
 
 
 def _hardware(mechanism: Mechanism, setup: LoopSetup, rate: float, delay: float) -> Hardware:

@@ -1,4 +1,4 @@
-"""Static errors in open loop: with the ideal map, with gains that correct lost motion, and with gains of another model."""
+"""Static errors in open loop: with the ideal mapping, with gains that correct lost motion, and with gains of another model."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from flexstage.models.theory import Model
 
 @dataclass(frozen=True, eq=False)
 class RestErrors(InNotebook):
-    """Static errors of the stage by its model: commanded by R_a (`ideal_map`), and by the gains of the same model (`lost_motion_gains`).
+    """Static errors of a stage: commanded with R_a (`ideal_map`), and with lost-motion gains of the same model (`lost_motion_gains`).
 
-    `other_gains` is the error with gains of the `other_model` (`None` if that model does not apply). `load` (6,) [m, rad] is the platform's
-    deflection under all its loads, strokes fixed. `load_left` (6,) is the part of the deflection that strokes cannot cancel. `load_strokes`
-    (n,) [m] are the strokes that cancel the remaining part.
+    `other_gains` is the error with lost-motion gains of the `other_model` (`None` if that model does not apply). `load` (6,) [m, rad] is
+    the platform's deflection under all its loads with fixed actuators. `load_strokes` (n,) [m] are the strokes that cancel this deflection
+    where possible; `load_left` (6,) is the residual deflection.
     """
 
     ideal_map: StaticError

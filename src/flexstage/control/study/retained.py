@@ -19,10 +19,10 @@ from flexstage.experiment.progress import part
 
 
 def control_and_modes(given: ResolvedSetup, gains: Array) -> tuple[ResolvedSetup, Control, Retention]:
-    """Design the controller on the retained modes, retain the significant modes with it, and repeat until no mode is added.
+    """Design the controller for the retained modes, add the modes that are significant with it, and repeat until no mode is added.
 
-    Modes are only added: removal could cycle. Modes specified by the set-up are kept. `gains` (n, f) map poses to strokes. Raises
-    `DesignError` as `make_controller` does.
+    Modes are never removed, because that could repeat endlessly. A number of modes in the set-up is kept. `gains` (n, f) map poses to
+    strokes. Raises `DesignError` as `make_controller` does.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.study.resolve import resolve
@@ -56,7 +56,7 @@ def control_and_modes(given: ResolvedSetup, gains: Array) -> tuple[ResolvedSetup
 
 
 def stated_modes_warnings(given: ResolvedSetup, control: Control, closed: Loop, found: Retention) -> list[Finding]:
-    """Warn if too few modes are specified: margins would change with all significant modes."""
+    """Warn if too few modes are specified, so that margins change with all significant modes."""
     if given.setup.modes is None or found.complete:
         return []
     more = loop(retain_modes(given, found.wanted).plant, control.system)
@@ -65,8 +65,8 @@ def stated_modes_warnings(given: ResolvedSetup, control: Control, closed: Loop, 
         return []
     texts = (f"the peak of S is {peak:.4g} and the lowest phase margin {phase:.4g} deg" for peak, phase in (own, rest))
     few, many = (len(each.plant.frequencies) for each in (closed, more))
-    what = f"with the {few} specified modes {next(texts)}, with {many} of the model's {found.total} {next(texts)}"
-    return [Finding("modes", what, "Omit modes: the significant ones are then retained")]
+    what = f"too few modes: with {few} modes, {next(texts)}; with {many} of the model's {found.total} modes, {next(texts)}"
+    return [Finding("modes", what, "Remove modes: the significant modes are then retained")]
 
 
 def _worst(closed: Loop) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Simulations of a loop: all trajectories of its set-up."""
+"""Simulations of a loop along all trajectories of its set-up."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ def _settled(time: float) -> Mark:
 
 @dataclass(frozen=True, eq=False)
 class StepAnswer:
-    """Response to a step of `size` [`unit`] in its own coordinate: `settling` time [s], infinite without settling.
+    """Response of one coordinate to a step of `size` [`unit`], with its `settling` time [s] (infinite: not settled).
 
-    `overshoot` is relative to the step. `residual` [`unit`] is the true error at the end. `others` are the largest motions of all other
-    platform axes. `largest` (f,) [m, rad] are the largest true errors of the coordinates.
+    `overshoot` is relative to the step. `residual` [`unit`] is the true error at the end. `others` are the largest motions along all other
+    platform axes. `largest` (f,) [m, rad] are the largest true errors of all coordinates.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -59,8 +59,8 @@ class StepAnswer:
         head="step",
         notes=(
             (
-                "Settling time: the true error stays within 2 % of the step. Cross-axis error: the largest translation and rotation along "
-                "all other axes of the platform, at any time."
+                "After the settling time, the true error stays within 2 % of the step. The cross-axis error is the largest translation "
+                "and rotation along all other axes of the platform, at any time."
             ),
         ),
     )
@@ -75,7 +75,7 @@ class StepAnswer:
 
     @property
     def cross_axis_error(self) -> Annotated[tuple[str, ...], INNER, Heading("cross-axis error")]:
-        """Largest motion of each unit, with its axis; below 0.1 fm or frad it is rounding."""
+        """Largest translation and rotation, each with its axis; values below 0.1 fm or frad are rounding errors and omitted."""
         largest = {
             each.unit: max((other.largest, name) for name, other in self.others.items() if other.unit == each.unit)
             for each in self.others.values()
@@ -85,16 +85,16 @@ class StepAnswer:
 
 @dataclass(frozen=True)
 class CoilHeat:
-    """Thermal load of a force actuator in a repeated trajectory: `rms` of its input and the continuous limit `held` [`unit`].
+    """Thermal load of a force actuator in a repeated trajectory: `rms` input, and the continuous limit `held` [`unit`].
 
-    `power` [W] is the dissipated power, and `warming` [K] the steady temperature rise; absent without data.
+    `power` [W] is the dissipated power, `warming` [K] the steady temperature rise; both are absent without data.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Heat of force actuators",
         "rms held power warming",
         head="trajectory, actuator",
-        notes=("Each trajectory repeated indefinitely, without heat removal by motion.",),
+        notes=("Each trajectory is repeated indefinitely. Cooling by the motion is neglected.",),
     )
 
     rms: Annotated[float, UnitIn("unit"), Heading("rms input", digits=3)]
@@ -106,17 +106,17 @@ class CoilHeat:
 
 @dataclass(frozen=True)
 class LegUse:
-    """Amplifier load by force feedback: the largest stroke [m] `added`, and the `largest` of both loops together.
+    """Amplifier load: the largest stroke `added` by force feedback, and the `largest` total stroke of both loops [m].
 
-    `fastest` [m/s] is the largest rate of both together between samples. `reach` [m] is the amplifier's limit in that direction, `slew`
-    [m/s] its rate limit: infinite without a limit.
+    `fastest` [m/s] is the largest rate of the total stroke between samples. `reach` [m] is the amplifier's stroke limit in the direction of
+    the largest stroke, `slew` [m/s] its rate limit (infinite: no limit).
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Force feedback and amplifiers",
         "added stroke_share speed_share is_held",
         head="trajectory, actuator",
-        notes=("Shares of the amplifier's stroke and speed: both loops together. The simulation does not limit them.",),
+        notes=("Stroke and speed of both loops together, relative to the amplifier's limits. The simulation does not apply these limits.",),
     )
 
     added: Annotated[float, DISPLACEMENT, Heading("largest added stroke", digits=3, varying=True)]
@@ -126,28 +126,28 @@ class LegUse:
     slew: Annotated[float, SPEED]
 
     @property
-    def is_held(self) -> Annotated[bool, VIEW, Heading("achievable", mark={True: Mark.PASS, False: Mark.FAIL}.__getitem__)]:
-        """Whether the amplifier's limits are kept."""
+    def is_held(self) -> Annotated[bool, VIEW, Heading("within limits", mark={True: Mark.PASS, False: Mark.FAIL}.__getitem__)]:
+        """Whether stroke and speed are within the amplifier's limits."""
         return self.largest <= self.reach and self.fastest <= self.slew
 
     @property
-    def stroke_share(self) -> Annotated[float, INNER, Heading("share of stroke", digits=3, unit="%")]:
-        """Largest stroke relative to the amplifier's limit."""
+    def stroke_share(self) -> Annotated[float, INNER, Heading("stroke / limit", digits=3, unit="%")]:
+        """Largest total stroke relative to the amplifier's limit."""
         return self.largest / self.reach
 
     @property
-    def speed_share(self) -> Annotated[float | None, INNER, Heading("share of speed", digits=3, unit="%")]:
-        """Largest rate relative to the amplifier's limit; absent without a limit."""
+    def speed_share(self) -> Annotated[float | None, INNER, Heading("speed / limit", digits=3, unit="%")]:
+        """Largest total rate relative to the amplifier's limit; absent without a limit."""
         return None if np.isinf(self.slew) else self.fastest / self.slew
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Simulated trajectory: `figures` of a step, `tracking` errors (rms and peak, measured by the gauges and true).
+    """Simulated trajectory, with the `figures` of a step, and `tracking` errors: rms and peak, true and as measured by the gauges.
 
-    `learned` and `repeated` are results of iterative and repetitive learning, if requested. `heat` is the load of force actuators by name,
-    `legs` the amplifier load of inner loops. `commanded` (n, f) is the command if it differs from the trajectory; some samples of rest
-    precede it.
+    `learned` and `repeated` are results of iterative learning and repetitive control, if specified. `heat` is the thermal load of force
+    actuators by name, `legs` the amplifier load with force feedback. `commanded` (n, f) is the commanded path if it differs from the
+    trajectory; it contains samples of rest before and after the trajectory.
     """
 
     course: NamedTrajectory
@@ -169,7 +169,7 @@ class Run:
 
     @property
     def step(self) -> Annotated[StepAnswer | None, VIEW]:
-        """Response, if the trajectory is a step."""
+        """Step response; null for other trajectories."""
         if self.figures is None:
             return None
         seen, index = self.simulated, self.index
@@ -195,9 +195,10 @@ def runs(
 ) -> tuple[Run, ...]:
     """Simulate all trajectories of a set-up.
 
-    Steps are simulated without noise, all else with it. Gauge resolution and amplifier limits apply. The stacks have the hysteresis of
-    `stacks`, inverted if specified. A loop is simulated until settled (see `rest_time`), or for the set-up's duration. `offset` (n,) [m]
-    are strokes already used by loads. Raises `DesignError` with all findings: unknown motions, trajectories beyond the strokes.
+    Steps are simulated without noise, other trajectories with noise. Gauge resolution and amplifier limits apply. The stacks have the
+    hysteresis of `stacks`, compensated by its inverse if specified. A loop is simulated until it has settled (see `rest_time`), or for the
+    set-up's duration. `offset` (n,) [m] are strokes already used by loads. Raises `DesignError` for unknown coordinates, and for
+    trajectories beyond the strokes.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.systems.closed import loop
@@ -250,7 +251,7 @@ def _with_heat(given: ResolvedSetup, run: Run) -> Run:
         told = (None if power is None else float(power), None if warming is None else float(warming))
         heat[channel.name] = CoilHeat(rms, channel.unit, min(ends, default=None), *told)
         if ends and rms > min(ends):
-            what = f"{channel.name} runs at {rms:.3g} {channel.unit} rms, above its continuous limit of {min(ends):.3g} {channel.unit}"
+            what = f"rms input of {channel.name} too large (got {rms:.3g} {channel.unit}, expected {min(ends):.3g} {channel.unit} or less)"
             warnings.append(Finding(f"trajectory {run.course.name}", what, "Pause between trajectories, or reduce the amplitude"))
     return replace(run, heat=Table(heat), warnings=(*run.warnings, *warnings)) if heat else run
 
@@ -270,14 +271,14 @@ def _with_legs(run: Run, computed: Machine) -> Run:
         fastest = float(np.max(np.abs(np.diff(both)), initial=0.0)) / computed.step
         used[name] = LegUse(float(np.max(np.abs(added))), abs(float(both[place])), reach, fastest, float(powers.slew[number]))
         if not used[name].is_held:
-            what = f"with force feedback {name} goes to {1e6 * used[name].largest:.4g} um of {1e6 * reach:.4g} um"
-            rates = f"at up to {1e3 * fastest:.4g} mm/s of {1e3 * used[name].slew:.4g} mm/s; the simulation ignores these limits"
-            warnings.append(Finding(f"trajectory {run.course.name}", f"{what} {rates}", "Reduce amplitude, speed or damping"))
+            what = f"with force feedback, {name} needs {1e6 * used[name].largest:.4g} um (limit {1e6 * reach:.4g} um)"
+            rates = f"and {1e3 * fastest:.4g} mm/s (limit {1e3 * used[name].slew:.4g} mm/s), but the simulation does not apply these limits"
+            warnings.append(Finding(f"trajectory {run.course.name}", f"{what} {rates}", "Reduce the amplitude, the speed or the damping"))
     return replace(run, legs=Table(used), warnings=(*run.warnings, *warnings)) if used else run
 
 
 def command_ends(given: ResolvedSetup) -> StrokeLimits:
-    """Return the limits of strokes relative to the bias, or of the inputs of force actuators."""
+    """Return the limits of the strokes, relative to the bias, or of the inputs of force actuators."""
     if not given.kinematics.thrusts:
         return stroke_limits(given.mechanism)
     powers = [given.plant.hardware.amplifiers[name] for name in given.plant.actuators]
@@ -286,7 +287,7 @@ def command_ends(given: ResolvedSetup) -> StrokeLimits:
 
 
 def driven_machine(given: ResolvedSetup, control: Control, stacks: Stacks | None = None) -> Machine:
-    """Build the machine of a loop for simulation: hardware with limits and quantisation, and hysteretic `stacks` with optional creep."""
+    """Build the simulation model of a loop: hardware with limits and quantisation, and hysteretic `stacks`, with creep if specified."""
     if stacks is None:
         return machine(given.plant, control.system, _electric(given))
     inverted = stacks.model if Compensation.HYSTERESIS in given.setup.compensate else None
@@ -302,7 +303,7 @@ def _electric(given: ResolvedSetup) -> Drive | None:
 
 
 def simulate_rest(given: ResolvedSetup, control: Control, closed: Loop) -> Simulated | None:
-    """Simulate the regulated loop with all noise, in the steady state; `None` without noise except rounding."""
+    """Simulate the steady state of the loop in regulation, with all noise; `None` without noise other than rounding."""
     hardware = given.plant.hardware
     noisy = given.floor or any(each.noise_density for each in (*hardware.sensors.values(), *hardware.amplifiers.values()))
     if not noisy:
@@ -332,10 +333,10 @@ class RestRms:
 
 
 def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
-    """Compute the rms in regulation from several simulations with independent random numbers, for noise without a linear budget.
+    """Compute the rms in regulation from several simulations with independent random numbers, for rounding that is not white noise.
 
-    Each simulation regulates at another pose within the gauges' resolution steps. The motion is small at the middle of a step, and larger
-    near its edge, where the reading changes between two steps.
+    Each simulation regulates at a different pose within the gauges' resolution steps. The motion is small if a reading is in the middle of
+    a step, and larger near its edge, where the reading alternates between two values.
     """
     (noisy, whole), to_pose, squares = _resting_loop(given, control, closed), given.plant.coordinates.pose, list[Array]()
     count = whole // 3
@@ -362,5 +363,5 @@ def _range_warnings(course: NamedTrajectory, found: Simulated, computed: Machine
     for read, share, reach in zip(computed.read(), found.out_of_range, computed.reach, strict=True):
         if share > 0.0:
             what = f"{read.name} exceeds its range of +-{1e6 * reach:.4g} u{read.unit} in {100.0 * share:.3g} % of the samples"
-            advice = "Reduce the amplitude, or use a gauge of a larger range: the loop uses the last valid reading"
+            advice = "Reduce the amplitude, or use a gauge with a larger range: out of range, the loop uses the last valid reading"
             yield Finding(f"trajectory {course.name}", what, advice)

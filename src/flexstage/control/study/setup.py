@@ -1,6 +1,6 @@
-"""Set-up of a loop, the form of its file: sampling, amplifier, gauges, floor, controller, compensation, trajectory.
+"""Set-up of a loop, with the keys of its file: sampling, amplifier, gauges, floor, controller, compensation, trajectory.
 
-Every field has its quantity, from which the file reader and schema are generated.
+The file reader and the schema are generated from the quantities of the fields.
 """
 
 from __future__ import annotations
@@ -55,23 +55,23 @@ _CREEP = Bound(low=-0.2, high=0.2)
 
 @dataclass(frozen=True)
 class KindNode(ChoiceNode):
-    """Kinds of controllers: the members of `ControllerKind`, and the entries of `CONTROLLERS`, which other packages extend."""
+    """Kinds of controllers: the members of `ControllerKind`, and the entries of `CONTROLLERS`, to which other packages add kinds."""
 
     @property
     def words(self) -> dict[str, Any]:
-        """Kinds by their names in files."""
+        """Kinds by name, as in files."""
         return {each.value: each for each in ControllerKind} | {name: OfferedKind(name) for name in CONTROLLERS}
 
 
 KINDS = KindNode(ControllerKind)
-"""Kinds of controllers by the names in files and options."""
+"""Kinds of controllers by name, as in files and options."""
 GAINS = ("proportional", "integral", "derivative")
-"""Keys of a law's gains."""
+"""Keys of the gains of a control law."""
 
 
 @dataclass(frozen=True)
 class AxisAmplitudes(CheckedFields):
-    """Amplitudes by platform motion; default: none."""
+    """Amplitudes of the platform coordinates. If any is specified, the others are zero."""
 
     x: Annotated[float, DISPLACEMENT] | None = None
     y: Annotated[float, DISPLACEMENT] | None = None
@@ -83,9 +83,9 @@ class AxisAmplitudes(CheckedFields):
 
 @dataclass(frozen=True)
 class GaugeSetup(CheckedFields):
-    """Gauges: white `noise`, steps of `resolution`, `bandwidth`; default: the data of each gauge in the design.
+    """Gauges: density of white `noise`, quantisation step `resolution`, `bandwidth`. Defaults: the values in the design.
 
-    `filter_order` and `filter_corner` describe an analogue low-pass filter (Butterworth) before sampling (order 0: none).
+    `filter_order` and `filter_corner` describe an analogue low-pass filter (Butterworth) before the sampler (order 0: no filter).
     """
 
     noise: Annotated[float, NOISE_DENSITY, NOT_NEGATIVE] | None = None
@@ -97,9 +97,9 @@ class GaugeSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class VibrationSetup(CheckedFields):
-    """The floor along one axis: a `criterion` by name, or an amplitude density of `acceleration`, `velocity` or `displacement`.
+    """Floor vibration along one axis: a named `criterion`, or amplitude densities of `acceleration`, `velocity` or `displacement`.
 
-    A single density is white. With `frequencies`, as many as densities, it is interpolated in log-log, and zero outside.
+    A single density is white noise. Densities at several `frequencies`, one for each, are interpolated in log-log, and zero outside.
     """
 
     criterion: Criterion | None = None
@@ -111,7 +111,7 @@ class VibrationSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class Floor(CheckedFields):
-    """Floor vibration by axis; default: none."""
+    """Floor vibration of each axis. Default: no vibration."""
 
     x: VibrationSetup | None = None
     y: VibrationSetup | None = None
@@ -129,7 +129,7 @@ class NotchSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class PrefilterSetup(CheckedFields):
-    """Second-order low-pass prefilter of the reference, with `frequency` and `damping`, and a `lead` above it."""
+    """Second-order low-pass prefilter of the reference: `frequency`, `damping`; above the corner `lead` the gain falls less steeply."""
 
     frequency: Annotated[float, FREQUENCY, POSITIVE]
     damping: Annotated[float, RATIO, POSITIVE] = 1.0
@@ -138,9 +138,9 @@ class PrefilterSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class LoopNumbers(CheckedFields):
-    """Parameters of some loops, named by `axes`: x, rz ..., in other coordinates mode1 or the actuator's name.
+    """Parameters of the loops named in `axes`: x, rz ... in platform coordinates, otherwise mode1 ... or names of actuators.
 
-    Missing parameters are the common ones; `notches` are additional.
+    Missing parameters have the common values of all loops; `notches` are additional to the common ones.
     """
 
     axes: tuple[str, ...]
@@ -156,9 +156,10 @@ class LoopNumbers(CheckedFields):
 class GoalSetup(CheckedFields):
     """Specification of optimisation-based tuning: its `objective`, and limits for every loop.
 
-    `rejection` is the lowest sensitivity crossover, `settling` the longest 2 % settling time, `overshoot` the maximum, `delay_margin` the
-    minimum; default: no limit. The limit of the peak of S must hold for relative mode shifts up to `spread` and relative gain errors up to
-    `gain`. `prefilter` also optimises a reference prefilter.
+    The limits are the lowest permitted sensitivity crossover `rejection`, the longest 2 % settling time `settling`, the largest `overshoot`
+    of a step response and the smallest `delay_margin`. By default, only the overshoot is limited. The limit on the peak of S applies to all
+    relative mode shifts up to `spread` and relative gain errors up to `gain`. With `prefilter`, a prefilter of the reference is also
+    optimised.
     """
 
     objective: TuningObjective = TuningObjective.BALANCE
@@ -175,12 +176,13 @@ class GoalSetup(CheckedFields):
 class ControllerSetup(CheckedFields):
     """Controller: `kind`, coordinates, and either a specification or gains.
 
-    The default kind is PI, for force-driven stages PID (unless gains are specified). Specification: `bandwidth` (the gain crossover;
-    default: the highest that `sensitivity` allows) and `sensitivity`, the maximum peak of S. Gains: `proportional` (strokes or motion per
-    error), `integral` rate, `derivative` time and its `filter` corner, common to all loops; `loops` specify individual ones. `notches` are
-    additional to automatic ones. `prefilter` shapes the reference.
+    The default kind is PI; for force-driven stages without specified gains it is PID. The specification consists of `sensitivity`, the
+    highest permitted peak of S, and of `bandwidth`, the gain crossover (default: the highest that `sensitivity` allows). The gains
+    `proportional`, `integral` and `derivative`, with the corner `filter` of the derivative, apply to all loops; `loops` override them for
+    single loops. `notches` are additional to automatic ones. `prefilter` filters the reference.
 
-    PI and PID are optimised for a `goal` within `sensitivity`, by default balance. `quick`, a bandwidth, gains or notches disable this.
+    By default, PI and PID are optimised for the `goal` balance, within `sensitivity`. `quick`, a bandwidth, gains or notches disable the
+    optimisation.
     """
 
     kind: Annotated[ControllerKind | OfferedKind, KINDS] | None = None
@@ -200,13 +202,13 @@ class ControllerSetup(CheckedFields):
 
     @property
     def search_goal(self) -> GoalSetup | None:
-        """Goal of the optimisation-based tuning in force; absent: plain tuning, or none."""
+        """Goal of the optimisation, specified or by default; `None` for plain tuning and for specified gains."""
         plain = self.quick or self.stated or self.bandwidth is not None or self.notches or self.notching is Notching.NONE
         return self.goal if self.goal is not None or plain or self.law not in SEARCHED_BY_DEFAULT else GoalSetup()
 
     @property
     def stated(self) -> tuple[str, ...]:
-        """Specified gains, common or individual: these are not tuned."""
+        """Names of the gains specified for all loops or for single loops. With any of them, the controller is not tuned."""
         return tuple(name for name in GAINS if any(getattr(each, name) is not None for each in (self, *self.loops)))
 
     @property
@@ -219,12 +221,12 @@ class ControllerSetup(CheckedFields):
 class DampingSetup(CheckedFields):
     """Integral force feedback in the legs, inside the pose loop: each stack extends at a rate proportional to its leg's tension.
 
-    `ratio` is the required damping of the modes with the largest residues; alternatively `gain`. `corner` belongs to the high-pass filter
-    (default: a tenth of the lowest of these modes without the stacks' stiffness). The filter's `order` 2 preserves the static stiffness;
-    order 1 keeps a / (a + gain) of it, with a = 2 pi `corner`. The tension comes from a force sensor in each leg, with white `noise`, or
-    from strain `gauges` on links of the legs, with their own noise and bandwidth. `lag` and `delay` belong to analogue electronics.
-    Alternatively a computer runs the law at a `rate`, an integer multiple of the loop's, with strokes after `delay` (default: one sample of
-    that rate).
+    `ratio` is the required damping ratio of the modes with the largest residues; `gain` specifies the feedback directly. `corner` is the
+    corner of a high-pass filter (default: a tenth of the lowest frequency that these modes have without the stacks' stiffness). A filter of
+    `order` 2 preserves the static stiffness; order 1 reduces it to the fraction a / (a + gain), with a = 2 pi `corner`. The tension is
+    measured by a force sensor in each leg, with white `noise`, or by strain `gauges` on links of the legs, with their noise and bandwidth
+    in the design. `lag` and `delay` describe analogue electronics. With `rate`, an integer multiple of the loop's sampling rate, a computer
+    runs the feedback; the default `delay` is then one sample of this rate.
     """
 
     ratio: Annotated[float, RATIO, _DAMPED] | None = None
@@ -242,9 +244,9 @@ class DampingSetup(CheckedFields):
 class FollowSetup(CheckedFields):
     """Tracking method for a trajectory known in advance; the error is relative to the trajectory.
 
-    `method` is the inverse of the model's loop, iterative learning (`passes`, `gain`), or repetitive control with that gain for a periodic
-    path (a raster, a sine). All three act in the band that is robust to relative mode shifts up to `spread`. Alternatively `method` is an
-    input shaper for a mode at `frequency` of a `damping` ratio.
+    `method` is the inverse of the modelled loop, iterative learning (`passes`, `gain`), or repetitive control with this `gain` for a
+    periodic path (raster or sine). These three act in the frequency band in which relative mode shifts up to `spread` are permissible.
+    Alternatively, `method` is an input shaper for a mode of `frequency` and `damping` ratio.
     """
 
     method: Following
@@ -257,11 +259,11 @@ class FollowSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class HystereticStacks(CheckedFields):
-    """Hysteresis of the stacks: a model in a `file`, from `flexstage hysteresis`, or only the `width` of the loop relative to the stroke.
+    """Hysteresis of the stacks: a model in a `file` of `flexstage hysteresis`, or only the loop's `width` relative to the stroke.
 
-    The model is scaled to each stack's stroke and voltage, and defines the inverse. The stacks themselves follow `plant`: the same model,
-    or Bouc-Wen stacks of the same width, which the inverse does not cancel exactly (default: the model of a file, Bouc-Wen for a width).
-    `creep` is the creep per decade of time relative to the stroke, from 0.1 s (default: as in the file).
+    The model is scaled to each stack's stroke and voltage, and defines the inverse. `plant` selects the simulated stacks: the same model,
+    or Bouc-Wen stacks of the same width, which the inverse does not cancel exactly. Default: the model with a file, Bouc-Wen with a width.
+    `creep` is the creep per decade of time after 0.1 s, relative to the stroke (default: the creep in the file).
     """
 
     file: str | None = None
@@ -272,10 +274,10 @@ class HystereticStacks(CheckedFields):
 
 @dataclass(frozen=True)
 class StepMotion(CheckedFields):
-    """Step of every specified motion, one at a time; default: 1 um and 10 urad, for all motions of the stage.
+    """Step of each specified coordinate, one at a time. Default: 1 um and 10 urad, for all coordinates of the stage.
 
-    With `speed`, `acceleration` and `jerk`, all three, it is a motion profile within these limits, along the path in m. For pure rotations
-    a metre represents a radian.
+    `speed`, `acceleration` and `jerk` together replace the step by a motion profile within these limits. For rotations, a metre represents
+    a radian.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "step")
@@ -288,9 +290,9 @@ class StepMotion(CheckedFields):
 
 @dataclass(frozen=True)
 class RasterMotion(CheckedFields):
-    """Raster scan: `lines` of a `length`, `pitch` apart, at constant `speed`, reversed with `acceleration`.
+    """Raster scan: `lines` of a `length`, a `pitch` apart, at constant `speed`, with reversals at an `acceleration`.
 
-    The axes are `fast` and `slow`. For rotations a metre represents a radian: a line of 20 um along rx is one of 20 urad.
+    The lines are along the axis `fast`, the pitch along `slow`. For rotations a metre represents a radian: 20 um along rx are 20 urad.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "raster")
@@ -306,7 +308,7 @@ class RasterMotion(CheckedFields):
 
 @dataclass(frozen=True)
 class SpiralMotion(CheckedFields):
-    """Spiral from the centre to `radius`, with `pitch` between turns, at constant `speed`, in the plane of `first` and `second`.
+    """Spiral from the centre to `radius`, turns a `pitch` apart, at constant `speed`, in the plane of `first` and `second`.
 
     For rotations a metre represents a radian.
     """
@@ -322,7 +324,10 @@ class SpiralMotion(CheckedFields):
 
 @dataclass(frozen=True)
 class SineMotion(CheckedFields):
-    """Sine of every specified motion at `frequency`, simultaneously, for `periods`; default: 1 um in the first one."""
+    """Simultaneous sines of all specified coordinates at `frequency`, for a number of `periods`.
+
+    Default: 1 um (10 urad) of the stage's first coordinate.
+    """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "sine")
 
@@ -333,7 +338,7 @@ class SineMotion(CheckedFields):
 
 @dataclass(frozen=True)
 class FileMotion(CheckedFields):
-    """Table of times and poses in a `file` (CSV): a first column `time [s]`, and motions with units, e.g. `x [um]`, `rz [urad]`."""
+    """Trajectory in a CSV `file`: a first column `time [s]`, then coordinates with units, e.g. `x [um]`, `rz [urad]`."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "file")
 
@@ -345,11 +350,11 @@ TrajectorySetup: TypeAlias = StepMotion | RasterMotion | SpiralMotion | SineMoti
 
 @dataclass(frozen=True)
 class LoopSetup(CheckedFields):
-    """Loop set-up: plant `model`, sampling `rate`, output `delay`, and all other parts.
+    """Loop set-up: plant `model`, sampling `rate`, output `delay`, and the tables of all components.
 
     The default rate is 10 kHz, or ten times the highest platform mode for faster stages; the default delay is one sample. `modes` is the
-    number retained, lowest first (default: the significant ones), with the static compliance of the others. The simulation lasts `seconds`
-    (default: the trajectory, and settling); `seed` determines its random numbers.
+    number of retained modes, lowest first (default: all significant modes); the static compliance of the others is kept. The simulation
+    lasts `seconds` (default: the trajectory and settling); `seed` determines its random numbers.
 
     >>> LoopSetup().controller.law.value
     'pi'
@@ -372,7 +377,7 @@ class LoopSetup(CheckedFields):
     follow: FollowSetup | None = None
 
     def to_json(self) -> dict[str, Any]:
-        """Return the keys of the set-up file with plain values in SI."""
+        """Return the keys of the set-up file with plain values in SI units."""
         kind, word = self.trajectory.TOLD_BY
         chosen = {"amplifier": {"kind": self.amplifier.kind, **asdict(self.amplifier)}}  # type: ignore[call-overload]
         return asdict(self) | chosen | {"trajectory": {kind: word, **asdict(self.trajectory)}}

@@ -31,7 +31,7 @@ from flexstage.mechanism.mechanism import Mechanism
 _LEGS = ((0.0, 1.0), (1.0, 0.0), (0.0, 1.0), (1.0, 0.2), (0.2, 0.8), (0.8, 0.0), (0.0, 0.6), (0.6, 0.0))
 _LEG = 60
 _STROKE, _VOLTS = 150e-6, (0.0, 1000.0)
-"""Reference stack if only the width is known; its model is scaled to the others."""
+"""Reference stack if only the width is known; its model is scaled to the stage's stacks."""
 _SWEPT = 0.6
 _CREEPS = (0.01, 100.0)
 """Time range [s] of simulated creep: earlier creep counts as stroke; a simulation is shorter."""
@@ -41,7 +41,7 @@ _TURNS = (1.0, -1.0, 0.7, -0.7, 0.4, -0.4, 0.0)
 
 @dataclass(frozen=True, eq=False)
 class Stacks:
-    """Stacks of the actuators: `plant` is their behaviour, `model` the known and inverted model, both from volts to strokes [m].
+    """Stacks of the actuators: `plant` is their simulated behaviour, `model` the inverted model, both from volts to strokes [m].
 
     `electric` converts strokes to voltages. `width` (n,) is the plant's loop width relative to the stroke. `creep` follows the hysteresis
     (`None`: no creep).
@@ -56,15 +56,16 @@ class Stacks:
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """Open-loop sweep with decreasing amplitude: requested strokes `wanted` (k, n) [m], strokes `bare` and with the `inverse`.
+    """Open-loop sweep with decreasing amplitude: requested strokes `wanted` (k, n) [m], and actual strokes.
 
-    `width` (n,) is each stack's loop width relative to its stroke.
+    Actual strokes (k, n) [m] are `bare`, without the inverse, and with the `inverse`. `width` (n,) is each stack's loop width relative to
+    its stroke.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Hysteresis of the stacks",
         "width range rms_error rms_error_inverse improvement",
-        notes=("Isolated stacks in open loop: actual less commanded stroke, as a share of the range swept.",),
+        notes=("Errors are actual minus commanded strokes of isolated stacks in open loop, relative to the swept range.",),
     )
 
     actuators: tuple[str, ...]
@@ -74,7 +75,7 @@ class Sweep:
     inverse: Array
 
     @property
-    def range(self) -> Annotated[Array, LENGTH, Along("actuators"), Heading("range swept", digits=4, varying=True)]:
+    def range(self) -> Annotated[Array, LENGTH, Along("actuators"), Heading("swept range", digits=4, varying=True)]:
         """Swept range (n,) [m]."""
         return np.ptp(self.wanted, axis=0)
 
@@ -90,7 +91,7 @@ class Sweep:
 
     @property
     def improvement(self) -> Annotated[Array, Along("actuators"), Heading("improvement factor", digits=3, infinite="exact")]:
-        """Ratio of the errors without and with inverse (n,); infinite for an inverse exact to rounding."""
+        """Ratio of the errors without and with inverse (n,); infinite if the inverse is exact within rounding error."""
         exact = self.rms_error_inverse <= _EXACT
         return np.where(exact, np.inf, self.rms_error / np.where(exact, 1.0, self.rms_error_inverse))
 
@@ -99,11 +100,11 @@ class Sweep:
 
 
 def stacks_of(mechanism: Mechanism, given: HystereticStacks) -> Stacks:
-    """Construct the stacks of a stage with the hysteresis of a set-up, scaled to their strokes and volts.
+    """Construct the stacks of a stage with the hysteresis of a set-up, scaled to their strokes and voltages.
 
-    A file's model is scaled so that its loop over each stack's voltage range has the full stroke. For a width only, the plant is a Bouc-Wen
-    stack, and the model is identified from its simulated record. Raises `DesignError` for invalid files, and for stacks without a voltage
-    range.
+    A file's model is scaled so that its loop over each stack's voltage range has the full stroke. With only a width, the plant is by
+    default a Bouc-Wen stack, and the model is identified from a simulated record of such a stack. Raises `DesignError` for invalid files,
+    and for stacks without a voltage range.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = stacks_of(double_triangle(), HystereticStacks(width=0.15))
@@ -167,7 +168,7 @@ def loop_widths(model: Hysteresis, ranges: Sequence[Range]) -> Array:
 
 
 def sweep_stacks(given: Stacks) -> Sweep:
-    """Sweep the stacks in open loop around the bias, from 60 % of the range with decreasing amplitude.
+    """Sweep the stacks in open loop around the bias, with amplitudes that decrease from 60 % of the range.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = sweep_stacks(stacks_of(double_triangle(), HystereticStacks(width=0.15)))

@@ -61,19 +61,19 @@ _ENOUGH = 0.98
 """Sufficient fraction of the requested damping."""
 _NO_LOOP = "the stage is commanded in open loop"
 _NO_TEST = "no test record is available"
-_NO_STROKES = "force-driven stage: no lost motion, static pose by its stiffness"
+_NO_STROKES = "a force-driven stage has no lost motion: its stiffness determines the static pose"
 
 
 @dataclass(frozen=True, eq=False)
 class LoopStudy(InNotebook):
     """Loop study: a loop and all its results.
 
-    `closed` is the loop with the modes retained in its plant, see `retention`. `growth_all_modes` [1/s] is the spectral abscissa with all
-    modes of the model. `margins`, `peaks`, `disk_margin` (of all loops at once), `bandwidths`, `curves` are at the pose; absent in open
-    loop, see `reasons`. `static_errors` belong to the stage without its loop. `noise` is the budget in regulation. `still` is a simulation
-    in regulation, if there is noise. `resting` summarises several simulations if rounding is not white, so that the budget does not apply.
-    `stacks` are the hysteretic stacks, if specified; `hysteresis` is their open-loop sweep. `runs` are the simulations. `warnings` list
-    assumptions and limits.
+    `closed` is the loop with the retained modes of the plant (see `retention`). `growth_all_modes` [1/s] is the spectral abscissa with all
+    modes of the model. `margins`, `peaks`, `disk_margin` (all loops varied together), `bandwidths` and `curves` are those of the loops
+    opened at the pose. In open loop they are absent (see `reasons`). `static_errors` are open-loop errors of the stage. `noise` is the
+    noise budget in regulation; `still` is a simulation in regulation, if there is noise. If rounding is not white, the budget does not
+    apply; `resting` then summarises several simulations. `stacks` are the hysteretic stacks, if specified; `hysteresis` is their open-loop
+    sweep. `runs` are the simulated trajectories. `warnings` list assumptions and limitations.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a loop study", "fs.control.loop_study(stage)")
@@ -103,12 +103,12 @@ class LoopStudy(InNotebook):
 
     @property
     def setup(self) -> Annotated[LoopSetup, VIEW]:
-        """Keys of the set-up file with the specified values, SI; null: default from the stage."""
+        """Keys of the set-up file with the specified values in SI units; null: default from the stage."""
         return self.settled.setup
 
     @property
     def model_name(self) -> Annotated[str, VIEW]:
-        """Name of the plant's model: an analytical one, or finite elements with their order."""
+        """Name of the plant's model: an analytical model, or finite elements with their order."""
         return self.settled.model_name
 
     @property
@@ -118,7 +118,7 @@ class LoopStudy(InNotebook):
 
     @property
     def damping(self) -> Annotated[ActiveDamping | None, VIEW]:
-        """Force feedback in the legs, included in the plant; null without any."""
+        """Force feedback in the legs, included in the plant; null without force feedback."""
         return self.settled.damping
 
     @property
@@ -133,7 +133,7 @@ class LoopStudy(InNotebook):
 
     @property
     def second_order(self) -> Annotated[SecondOrder | None, VIEW]:
-        """Error of the linear kinematics of the nominal plant over the runs; null without a motion."""
+        """Error of the linear kinematics along the simulated trajectories; null at an operating point, or without rotation and bending."""
         given = self.settled
         if given.displaced or not self.runs:
             return None
@@ -142,17 +142,17 @@ class LoopStudy(InNotebook):
 
     @cached_property
     def shifted_peaks(self) -> Annotated[tuple[ShiftedPeak, ...], VIEW]:
-        """Peak sensitivity with all modes shifted; none in open loop."""
+        """Peak sensitivities with all modes shifted in frequency; empty in open loop."""
         return () if self.peaks is None else shifted_peaks(self.closed)
 
     @property
     def highest_platform_mode(self) -> Annotated[float, FREQUENCY]:
-        """Highest frequency [Hz] among the lowest platform modes, as many as loop coordinates."""
+        """Highest frequency [Hz] of the f lowest platform modes, for f loop coordinates."""
         return self.settled.highest
 
     @property
     def simulated_rms(self) -> Annotated[Array | None, VIEW]:
-        """Rms (f,) of the true motion in regulation by simulation, by coordinate; null without noise."""
+        """Simulated rms (f,) of the true motion of each coordinate in regulation; null without noise."""
         if self.resting is not None:
             return self.resting.rms
         return None if self.still is None else np.sqrt(np.mean(self.still.true_error**2, axis=0))
@@ -174,13 +174,14 @@ def loop_study(
     test: Identification | None = None,
     tell: ProgressCallback | None = None,
 ) -> LoopStudy:
-    """Analyse the loop of a stage for a set-up; missing keys have usual defaults.
+    """Analyse the control loop of a stage for a set-up. Missing keys have default values.
 
-    The plant is linearised at an operating point `there`, if specified. Otherwise it is the set-up's model, or the lumped model of the
-    loaded stage if permanent load is significant. With a `solid` it is the nominal finite-element stage. With a `test` it is the identified
-    plant from strokes to gauges (`measured_plant`), and margins also come from its responses (`measured`).
+    The plant is linearised at an operating point `there`, if specified. Otherwise it is the set-up's model of the stage, or its lumped
+    model under permanent load if that load is significant. With a `solid`, the plant is the finite-element model of the nominal stage. With
+    a `test`, it is the identified plant from strokes to gauges (`measured_plant`); margins are then also computed from the measured
+    responses (`measured`).
 
-    Raises `DesignError` with all findings: see `resolve`, `make_controller` and `runs`; for an unstable loop with the cause.
+    Raises `DesignError` as `resolve`, `make_controller` and `runs` do, and for an unstable loop, with the cause.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.study.setup import ControllerSetup
@@ -264,7 +265,7 @@ def _reasons(*, is_closed: bool, forced: bool, tested: bool) -> dict[str, str]:
 
 
 def pose_gains(given: ResolvedSetup, lost: LostMotion | None) -> Array:
-    """Compute the strokes (n, f) per commanded pose, or the inputs of force actuators by the elastic model, without lost motion."""
+    """Compute the gains (n, f) from commanded poses to strokes (corrected for lost motion if specified) or inputs of force actuators."""
     if lost is not None and Compensation.LOST_MOTION in given.setup.compensate:
         return np.real(first_design(np.asarray(lost.correction.values), 2))
     return given.plant.coordinates.strokes
@@ -275,7 +276,7 @@ def _whole_growth(given: ResolvedSetup, control: Control) -> float:
     whole = loop(given.whole, control.system)
     if whole.system.growth >= 0.0:
         what = verdict(whole).sentence
-        raise refuse("modes", f"with all modes {what}", "Retain more of them (modes), or reduce the bandwidth")
+        raise refuse("modes", f"with all modes {what}", "Increase modes, or reduce the bandwidth")
     return float(whole.system.growth)
 
 
@@ -283,7 +284,7 @@ def _slow_rounding(noise: NoiseBudget) -> Iterator[Finding]:
     """Warnings for rounding that is not white noise."""
     if noise.slowly_rounding:
         what = f"readings of {', '.join(noise.slowly_rounding)} change by less than half a step per sample: rounding is not white noise"
-        advice = "Use the simulated rms, with its interval; a finer step, or noise of half a step, would make rounding white"
+        advice = "Use the simulated rms and its interval. A finer resolution, or noise of half a step, makes rounding white"
         yield Finding("gauges", what, advice)
 
 
@@ -292,33 +293,33 @@ def _warnings(given: ResolvedSetup) -> list[Finding]:
     found = []
     silent = [name for name, each in given.plant.hardware.sensors.items() if each.noise_density is None]
     if silent:
-        what = f"no specified noise for {', '.join(silent)}; only quantisation counts"
+        what = f"no noise specified for {', '.join(silent)}: only quantisation is included"
         found.append(Finding("gauges", what, "Specify noise_density in the design, or gauges.noise in the set-up"))
     if given.damping is not None:
         yielding = given.damping
         worst = int(np.argmin(yielding.softest))
         what = f"the platform's dynamic stiffness falls to {100.0 * yielding.softest[worst]:.3g} % of the static stiffness"
-        advice = "The pose loop must supply the difference; a higher corner or a lower ratio reduces it"
+        advice = "The pose loop must supply the missing stiffness. Increase corner or reduce ratio for more stiffness"
         found.append(Finding("damping", f"{what} along {yielding.coordinates[worst]}, at {yielding.softest_at[worst]:.3g} Hz", advice))
         asked = None if given.setup.damping is None else given.setup.damping.ratio
         if asked is not None and yielding.reached < _ENOUGH * asked:
-            what = f"a damping of {100.0 * asked:.3g} % was specified, but the lowest of the dominant modes is "
-            advice = "Use shorter delays, faster amplifiers and sensors, or a higher rate; legs cannot damp modes that do not strain them"
-            found.append(Finding("damping.ratio", f"{what}{100.0 * yielding.reached:.3g} %", advice))
+            what = f"damping ratio of a dominant mode too low (got {100.0 * yielding.reached:.3g} %, expected {100.0 * asked:.3g} %)"
+            advice = "Use shorter delays, faster amplifiers and sensors, or a higher rate. Legs cannot damp modes that do not strain them"
+            found.append(Finding("damping.ratio", what, advice))
         quiet = [each.actuator for each in yielding.sensed if each.noise is None]
         if quiet:
             found.append(Finding("damping", f"no specified sensor noise for the legs of {', '.join(quiet)}", "Specify damping.noise"))
     if given.setup.hysteresis is not None and given.charge is not None:
         left, corner = 100.0 * float(np.max(given.charge.residual_hysteresis)), float(np.max(given.charge.corners))
-        what = f"for charge-driven stacks {left:.3g} % of it is simulated above {corner:.3g} Hz, all of it far below"
+        what = f"charge drive reduces the simulated hysteresis to {left:.3g} % above {corner:.3g} Hz, but has no effect far below"
         found.append(
             Finding(
                 "hysteresis",
                 what,
-                "The isolated stack is shown with voltage drive; specify amplifier.residual_hysteresis from a record with charge drive",
+                "Specify amplifier.residual_hysteresis from a record with charge drive. Results of isolated stacks are for voltage drive",
             )
         )
     if given.setup.hysteresis is not None:
-        what = "margins, noise and poles exclude hysteresis and creep of the stacks"
-        found.append(Finding("hysteresis", what, "See the simulations for their effect"))
+        what = "margins, noise and poles do not include hysteresis and creep of the stacks"
+        found.append(Finding("hysteresis", what, "Use the simulated trajectories to judge these effects"))
     return found

@@ -12,16 +12,16 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
 def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Finding]:
-    """Check whether poses (n, f) leave the `polytope` of reachable poses; one finding with first and worst time, and the scale that fits.
+    """Check poses (n, f) against the `polytope` of reachable poses: one finding, with the first and worst times, and a permissible scale.
 
-    Columns are the polytope's coordinates; the boundary counts as reachable.
+    The columns of `poses` are the polytope's coordinates. The boundary counts as reachable.
 
     >>> from flexstage.analysis.workspace.polytope import reachable
     >>> from flexstage.analysis.workspace.stroke import StrokeLimits
     >>> span = StrokeLimits(("B",), np.array([-1e-6]), np.array([1e-6]))
     >>> room = reachable(Matrix(np.eye(1), ("B",), ("x",), "1"), span)
     >>> print(reach_findings(np.array([[1e-6], [2e-6]]), np.array([0.0, 1.0]), room)[0].advice)
-    Scale the trajectory to 0.5 of its size, or move it towards the middle of the strokes
+    Multiply the trajectory by 0.5, or move it towards the middle of the strokes
     """
     outside = np.flatnonzero(~polytope.contains(poses))
     if not len(outside):
@@ -29,8 +29,8 @@ def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Findi
     share = np.max(poses @ polytope.normals.T / polytope.offsets, axis=-1)
     worst = int(np.argmax(share))
     pose = ", ".join(f"{name} = {_show(value, name)}" for name, value in zip(polytope.coordinates, poses[worst], strict=True) if value)
-    what = f"beyond the strokes from {times[outside[0]]:g} s; at {times[worst]:g} s {pose} takes {share[worst]:.3g} of the stroke"
-    advice = f"Scale the trajectory to {1.0 / share[worst]:.3g} of its size, or move it towards the middle of the strokes"
+    what = f"beyond the strokes from {times[outside[0]]:g} s on; at {times[worst]:g} s, {pose} needs {share[worst]:.3g} times the stroke"
+    advice = f"Multiply the trajectory by {1.0 / share[worst]:.3g}, or move it towards the middle of the strokes"
     return [Finding("trajectory", what, advice)]
 
 
@@ -39,15 +39,15 @@ def _show(value: float, coordinate: str) -> str:
 
 
 def speed_findings(poses: Array, times: Array, mapping: Matrix, slew: Array, *, units: tuple[str, ...] = ()) -> list[Finding]:
-    """Check sampled poses (n, f) against the amplifier speed `slew` (m,): R_a times the poses' differences.
+    """Check the actuator speeds for sampled poses (n, f), by R_a, against the amplifiers' rate limits `slew` (m,).
 
-    The findings are warnings: the simulation includes the saturation of the amplifier. Columns of `mapping` (R_a) are the coordinates of
-    the poses. `units` are the units of the actuators' inputs (default: m).
+    The findings are warnings, because the simulation includes the saturation of the amplifiers. The columns of `mapping` (R_a) are the
+    coordinates of the poses. `units` are the units of the actuators' inputs (default: m).
 
     >>> lever = Matrix(np.array([[2.0]]), ("B1",), ("x",), "1")
     >>> found = speed_findings(np.array([[0.0], [1e-6]]), np.array([0.0, 1e-3]), lever, np.array([1e-3]))
     >>> print(found[0])
-    B1: the trajectory requires 2000 um/s at 0.001 s, the amplifier's limit is 1000 um/s. Reduce its speed to 0.5.
+    B1: the trajectory requires 2000 um/s at 0.001 s, but the amplifier's limit is 1000 um/s. Multiply the speed by 0.5.
     """
     rates = np.abs(np.diff(poses, axis=0) @ np.asarray(mapping.values).T) / np.diff(times)[:, None]
     found = []
@@ -55,6 +55,6 @@ def speed_findings(poses: Array, times: Array, mapping: Matrix, slew: Array, *, 
         worst = int(np.argmax(column))
         if column[worst] > most * (1.0 + 1e-9):
             wanted, given = (f"{1e6 * value:.4g} um/s" if unit == "m" else f"{value:.4g} {unit}/s" for value in (column[worst], most))
-            what = f"the trajectory requires {wanted} at {times[worst + 1]:g} s, the amplifier's limit is {given}"
-            found.append(Finding(actuator, what, f"Reduce its speed to {most / column[worst]:.3g}"))
+            what = f"the trajectory requires {wanted} at {times[worst + 1]:g} s, but the amplifier's limit is {given}"
+            found.append(Finding(actuator, what, f"Multiply the speed by {most / column[worst]:.3g}"))
     return found

@@ -1,4 +1,4 @@
-"""Protocol of trajectories, poses over time, and the reference of a loop."""
+"""Protocol of trajectories (poses over time), and the reference of a loop."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from flexstage.base.number import Array
 
 
 class Trajectory(Protocol):
-    """Platform poses over time: `at(times)` in m and rad, in the stage's axes, relative to its static equilibrium.
+    """Platform poses over time, relative to the static equilibrium: `at(times)` in m and rad, in the stage's axes.
 
     A trajectory starts at rest at zero. `duration` is the end of the last motion [s].
     """
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Names of the moving coordinates, of x, y, z, rx, ry, rz."""
+        """Names of the moving coordinates: x, y, z, rx, ry or rz."""
         ...
 
     @property
@@ -36,14 +36,16 @@ class Trajectory(Protocol):
 def require_positive(where: str, numbers: Mapping[str, float | None]) -> None:
     """Raise `DesignError` for values that are not positive and finite; None is accepted."""
     wrong = {name: value for name, value in numbers.items() if value is not None and not 0.0 < value < np.inf}
-    require(Finding(f"{where}{name}", f"it is {value:g}", "Use a positive number") for name, value in wrong.items())
+    require(
+        Finding(f"{where}{name}", f"must be positive (got {value:g})", "Use a positive, finite number") for name, value in wrong.items()
+    )
 
 
 @check_arguments
 def reference(trajectory: Trajectory, coordinates: Sequence[str], times: Array) -> Array:
-    """Evaluate the reference poses (n, f) of a loop of these coordinates at `times` (n,); coordinates without motion are 0.
+    """Evaluate the reference poses (n, f) of a loop with these `coordinates` at `times` (n,); coordinates without motion are 0.
 
-    Raises `DesignError` for unknown coordinates of the loop.
+    Raises `DesignError` if the trajectory moves other coordinates than those of the loop.
 
     >>> from flexstage.control.trajectory.step import Step
     >>> up = Step({"z": 2e-6}, start=1.0)

@@ -13,9 +13,9 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Piecewise polynomial in time [s], columns by coordinate; at rest before its first and after its last knot.
+    """Piecewise polynomial in time [s], a column for each coordinate; constant before the first and after the last knot.
 
-    `coefficients` (k, m, c) have the highest power first, relative to their own knot; `knots` (m + 1,).
+    `coefficients` (k, m, c) have the highest power first; time counts from the first knot of each piece. `knots` is (m + 1,).
     """
 
     coefficients: Array
@@ -27,13 +27,13 @@ class Pieces:
         return float(self.knots[-1])
 
     def at(self, times: Array, order: int = 0) -> Array:
-        """Compute values (n, c), or their time derivative of this `order`, at `times` (n,) [s]."""
+        """Compute values (n, c), or their time derivative of an `order`, at `times` (n,) [s]."""
         whole = scipy.interpolate.PPoly(self.coefficients, self.knots)
         return np.asarray(whole(np.clip(times, self.knots[0], self.knots[-1]), order))
 
 
 def join(parts: Iterable[tuple[float, Array]]) -> Pieces:
-    """Concatenate pieces (duration [s], coefficients (6, c)), each relative to its own start; those of zero duration are omitted.
+    """Concatenate pieces (duration [s], coefficients (6, c)), each relative to its own start; pieces of zero duration are omitted.
 
     >>> forth = np.zeros((6, 1)); forth[1] = 2.0
     >>> join([(0.5, forth), (0.5, rest(np.array([1.0])))]).at(np.array([0.25, 0.75, 9.0])).ravel().tolist()
@@ -58,7 +58,7 @@ def rest(position: Array) -> Array:
 def smooth(start: Array, end: Array, time: float) -> Array:
     """Compute coefficients (6, c) of the quintic rest-to-rest move: start + (end - start)(10 s^3 - 15 s^4 + 6 s^5), s = t/`time` [s].
 
-    Largest speed 15/8 d/time, acceleration 10/3^(1/2) d/time^2.
+    For a distance d, the largest speed is 15/8 d/time, the largest acceleration 10/3^(1/2) d/time^2.
 
     >>> move = join([(2.0, smooth(np.array([0.0]), np.array([1.0]), 2.0))])
     >>> move.at(np.array([1.0, 2.0])).ravel().tolist()
@@ -71,7 +71,7 @@ def smooth(start: Array, end: Array, time: float) -> Array:
 
 
 def smooth_time(distance: float, speed: float, acceleration: float) -> float:
-    """Compute the minimum time [s] of a smooth move over a `distance` within a `speed` and an `acceleration`.
+    """Compute the minimum time [s] of a `smooth` move over a `distance`, with limited `speed` and `acceleration`.
 
     >>> smooth_time(1.0, 15.0 / 8.0, 100.0)
     1.0

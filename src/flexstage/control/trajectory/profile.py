@@ -13,7 +13,7 @@ from flexstage.control.trajectory.pieces import Pieces, join
 
 @dataclass(frozen=True)
 class Limits(CheckedFields):
-    """Limits of a move along its path: `speed` [m/s], `acceleration` [m/s^2], `jerk` [m/s^3]; in rad for pure rotations."""
+    """Limits of a move along its path: `speed` [m/s], `acceleration` [m/s^2], `jerk` [m/s^3]; with rad instead of m for pure rotations."""
 
     speed: float
     acceleration: float
@@ -23,9 +23,9 @@ class Limits(CheckedFields):
 def profile(distance: float, limits: Limits) -> Pieces:
     """Compute the time-optimal move over a `distance` [m, rad] within `limits`: jerk +j, 0, -j, constant speed, then -j, 0, +j.
 
-    Times of one jerk t_j, of constant acceleration t_a and of constant speed t_v follow in sequence (Biagiotti and Melchiorri, Trajectory
-    Planning for Automatic Machines and Robots, 2008, section 3.4): t_j = min(a/j, (v/j)^(1/2), (d/2j)^(1/3)). Raises `DesignError` for
-    limits that are not positive and finite.
+    The durations of constant jerk t_j, of constant acceleration t_a and of constant speed t_v are computed in this sequence (Biagiotti and
+    Melchiorri, Trajectory Planning for Automatic Machines and Robots, 2008, section 3.4), with t_j = min(a/j, (v/j)^(1/2), (d/2j)^(1/3)).
+    Raises `DesignError` for limits that are not positive and finite.
 
     >>> move = profile(1.0, Limits(speed=1e9, acceleration=1e9, jerk=32.0))  # jerk alone counts: 4 (d/2j)^(1/3)
     >>> move.duration, move.at(np.array([0.5, 1.0])).ravel().tolist()

@@ -19,11 +19,11 @@ _STEEPEST = 10.0 / 3.0**0.5
 
 @dataclass(frozen=True, eq=False)
 class Raster(CheckedFields):
-    """Raster of `lines` parallel lines of a `length`, `pitch` apart [m], centred at zero, at constant `speed` [m/s].
+    """Raster of `lines` parallel lines of a `length`, a `pitch` apart [m], centred at zero, at constant `speed` [m/s].
 
-    Reversals are outside the lines. The fast coordinate decelerates uniformly to the opposite speed, while the slow one moves smoothly by
-    the pitch. No acceleration exceeds `acceleration` [m/s^2]; reversals last at least as long as the slow move. The approach from 0 and the
-    return to 0 are smooth. `overshoot` is the distance of reversals beyond the lines.
+    Reversals are outside the lines: the fast coordinate decelerates uniformly to the opposite speed, while the slow coordinate moves
+    smoothly by the pitch. No acceleration exceeds `acceleration` [m/s^2]; a reversal lasts at least as long as the slow move. The approach
+    from 0 and the return to 0 are smooth. `overshoot` is the distance by which reversals exceed the lines.
 
     >>> raster = Raster(length=10e-6, pitch=1e-6, lines=3, speed=1e-3, acceleration=20.0)
     >>> round(raster.overshoot * 1e9, 6)  # turns are as slow as the step: 0.54 ms
@@ -44,17 +44,17 @@ class Raster(CheckedFields):
 
     @property
     def overshoot(self) -> float:
-        """Distance of the reversals beyond the lines [m]: v^2 / 2 a."""
+        """Distance [m] by which reversals exceed the lines: v^2 / 2 a."""
         return 0.5 * self.speed**2 / self._swing
 
     @property
     def duration(self) -> float:
-        """Time of the return to zero [s]."""
+        """Time at which the path returns to zero [s]."""
         return self._pieces.duration
 
     @property
     def line_starts(self) -> Array:
-        """Start time of each line [s] (lines,); it lasts length / speed."""
+        """Start times of the lines [s] (lines,); each line lasts length / speed."""
         entry = self._approach(self._first) + self.speed / self._swing
         return entry + np.arange(self.lines) * (self.length / self.speed + self._turn_time)
 
@@ -65,7 +65,7 @@ class Raster(CheckedFields):
 
     @property
     def repeats(self) -> tuple[float, float]:
-        """Start and end of the periodic part [s]: from the start of the first line to the end of the last."""
+        """Start and end of the periodic section [s]: from the start of the first line to the end of the last."""
         starts = self.line_starts
         return float(starts[0]), float(starts[-1]) + self.length / self.speed
 

@@ -16,7 +16,7 @@ from flexstage.control.trajectory.pieces import join, smooth
 class Sine(CheckedFields):
     """Sine a sin(2 pi f t): `amplitudes` a by coordinate [m, rad], `frequency` f [Hz].
 
-    `fade` [s] is the duration of a smooth amplitude rise from 0. Without it the speed starts with a jump.
+    `fade` [s] is the duration of a smooth amplitude rise from 0. Without a fade, the speed starts with a jump.
 
     >>> round(float(Sine({"x": 1e-6}, frequency=10.0).at(np.array([0.025]))[0, 0]), 12)
     1e-06

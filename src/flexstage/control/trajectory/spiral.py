@@ -1,4 +1,4 @@
-"""Archimedean spirals at constant path speed, or at constant angular rate."""
+"""Archimedean spirals at constant path speed."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from flexstage.control.trajectory.pieces import Pieces, join
 
 @dataclass(frozen=True, eq=False)
 class Spiral(CheckedFields):
-    """Spiral r = b theta from 0 to a final `radius` [m], `pitch` = 2 pi b between turns [m], at constant `speed` [m/s].
+    """Spiral r = b theta from 0 to a final `radius` [m], with a `pitch` = 2 pi b between turns [m], at constant path `speed` [m/s].
 
-    `ramp` [s] is the duration of the linear speed rise at the start, and fall at the end. The path's length is s = b/2 (theta (1 +
-    theta^2)^(1/2) + arsinh theta); theta follows from Newton's method, to rounding.
+    `ramp` [s] is the duration of the linear speed rise at the start, and of the fall at the end. The path's length is s = b/2 (theta (1 +
+    theta^2)^(1/2) + arsinh theta); Newton's method computes theta to rounding error.
 
     >>> spiral = Spiral(radius=10e-6, pitch=1e-6, speed=1e-3)
     >>> np.hypot(*spiral.at(np.array([9.0])).T).round(12).tolist()
@@ -36,7 +36,7 @@ class Spiral(CheckedFields):
         super().__post_init__()
         require_positive("spiral: ", {"radius": self.radius, "pitch": self.pitch, "speed": self.speed})
         if not 0.0 <= self.ramp <= self._whole / self.speed:
-            what = f"ramp too long (got {self.ramp:g} s, expected below {self._whole / self.speed:g} s at full speed)"
+            what = f"out of range (got {self.ramp:g} s, expected 0 to {self._whole / self.speed:g} s at this speed)"
             raise refuse("spiral: ramp", what, "Shorten the ramp, or reduce the speed")
 
     @property

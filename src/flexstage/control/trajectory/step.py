@@ -17,7 +17,7 @@ from flexstage.control.trajectory.profile import Limits, profile
 class Step(CheckedFields):
     """Move `to` a pose (by coordinate [m, rad]) at `start` [s]: immediate, or within `limits` along the straight path.
 
-    The path length is the translation, or the angle of a pure rotation; other coordinates move in proportion.
+    The length of the path is the translation, or the angle of a pure rotation; all coordinates move in proportion.
 
     >>> step = Step({"x": 3e-6, "y": 4e-6}, limits=Limits(speed=1e-3, acceleration=1.0, jerk=32.0))
     >>> step.at(np.array([0.0, 1.0])).round(15).tolist(), step.coordinates

@@ -27,7 +27,8 @@ else:  # slow import: all record formats
 class Table:
     """Piecewise linear poses `values` (n, c) [m, rad] at increasing `times` (n,) [s]; constant before the first and after the last.
 
-    `source` names the origin. Raises `DesignError` for times that do not increase, values that are not finite and shapes that do not match.
+    `source` names the origin in findings. Raises `DesignError` for times that do not increase, values that are not finite, and shapes that
+    do not match.
 
     >>> way = Table(np.array([0.0, 1.0, 3.0]), np.array([[0.0], [2e-6], [0.0]]), ("x",))
     >>> way.at(np.array([0.5, 2.0, 5.0])).ravel().tolist()
@@ -60,14 +61,16 @@ def _findings(table: Table) -> list[Finding]:
     found = []
     for row in np.flatnonzero(~(np.diff(table.times) > 0.0))[:1]:
         what = f"times must increase (got {table.times[row + 1]:g} s in row {row + 2} after {table.times[row]:g} s)"
-        found.append(Finding(table.source, what, "Sort the rows, with different times"))
+        found.append(Finding(table.source, what, "Sort the rows by time, and remove repeated times"))
     for row, column in np.argwhere(~np.isfinite(table.values))[:1]:
-        found.append(Finding(f"{table.source}: {table.coordinates[column]}", f"row {row + 1} is not finite", "Correct the row"))
+        found.append(
+            Finding(f"{table.source}: {table.coordinates[column]}", f"the value in row {row + 1} is not finite", "Correct the value")
+        )
     return found
 
 
 def from_file(path: str | os.PathLike[str]) -> Table:
-    r"""Read a CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; uneven times are allowed.
+    r"""Read a CSV table of times and coordinates with units, `time [s], x [um], rz [urad]`; the times may be unevenly spaced.
 
     Raises `DesignError` for an unreadable file, and for missing times or coordinates.
 
@@ -89,12 +92,16 @@ def from_file(path: str | os.PathLike[str]) -> Table:
     whole = Record(channels, 1.0, samples, source=str(place))
     named = tuple(name for name in whole.names if name in COMPONENTS)
     if not named:
-        raise refuse(str(place), f"no column is a coordinate: {', '.join(whole.names)}", f"Name columns {', '.join(COMPONENTS)}")
+        raise refuse(str(place), f"no column is a coordinate (got {', '.join(whole.names)})", f"Name the columns {', '.join(COMPONENTS)}")
     stated = whole.select((whole.names[0], *named))
     chosen = in_si(stated)
     wanted = dict(zip((whole.names[0], *COMPONENTS), ("s", *TWIST_UNITS), strict=True))
     require(
-        Finding(f"{place}: {after.name}", f'its unit is "{before.unit}"', f'Use a unit of {wanted[after.name]}, e.g. "x [um]"')
+        Finding(
+            f"{place}: {after.name}",
+            f'wrong unit (got "{before.unit}", expected {wanted[after.name]})',
+            f'Use e.g. "{after.name} [u{wanted[after.name]}]"',
+        )
         for before, after in zip(stated.channels, chosen.channels, strict=True)
         if after.unit != wanted[after.name]
     )

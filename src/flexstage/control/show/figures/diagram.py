@@ -1,4 +1,4 @@
-"""Block diagram of a loop, from the commanded to the true pose, with the computer's part shaded."""
+"""Block diagram of a loop, from the commanded to the true pose; blocks of the computer are shaded."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SPELLED = {"R_a": "R\u2090", "R_s^-1": "R\u209b⁻¹"}
 
 @dataclass(frozen=True)
 class Block:
-    """Block of a diagram: its name, its text (lines of a few words), and whether the computer computes it."""
+    """Block of a diagram: its name, its text (lines of a few words), and whether it runs on the computer."""
 
     name: str
     detail: str = ""
@@ -31,8 +31,8 @@ class Block:
 class Diagram:
     """Content of a block diagram: blocks from error to pose, and from pose to its estimate, in signal order.
 
-    `onto` are external signals, each with the name of the block it enters. `fed_forward`: the reference bypasses the controller. If not
-    `closed`, the loop ends at the pose.
+    `onto` are external signals, each with the name of the block that it enters. If `fed_forward`, the reference also bypasses the
+    controller. If not `closed`, the diagram ends at the pose.
     """
 
     forward: tuple[Block, ...]
@@ -43,7 +43,7 @@ class Diagram:
 
 
 def loop_diagram(diagram: Diagram) -> Any:
-    """Plot the block diagram as a matplotlib Figure: error to pose above, pose to its estimate below; the computer's part is shaded.
+    """Plot the block diagram as a matplotlib Figure: error to pose above, pose to its estimate below; blocks of the computer shaded.
 
     >>> blocks = (Block("controller", "PI", True), Block("stage"))
     >>> len(loop_diagram(Diagram(blocks, (Block("gauges"), Block("R_s^-1", digital=True)))).axes)
@@ -119,7 +119,7 @@ def _feed_forward(axes: Any, places: Sequence[float], width: float) -> None:
     _arrow(axes, (behind, over), (behind, _UPPER + 0.045))
     axes.plot([0.28], [_UPPER], ".", color=INK, markersize=3.0)
     axes.plot([behind], [_UPPER], "o", color=PAPER, markeredgecolor=INK, markersize=4.5, markeredgewidth=0.8, zorder=4)
-    axes.text(0.5 * (0.28 + behind), over + 0.03, "fed forward", fontsize=6.0, color=MUTED, ha="center")
+    axes.text(0.5 * (0.28 + behind), over + 0.03, "feedforward", fontsize=6.0, color=MUTED, ha="center")
 
 
 def _back(axes: Any, diagram: Diagram, places: Sequence[float], width: float) -> None:

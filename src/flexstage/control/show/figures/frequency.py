@@ -22,7 +22,7 @@ _NEAR = 4.0
 
 
 def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) -> Any:
-    """Plot open loops, each with the others closed (Nichols plot): magnitude over phase, gain 1 and -180 degrees, modes and `spots`."""
+    """Plot open loops, each with the others closed (Bode plot): magnitude and phase, lines at 1 and -180 degrees, modes, `spots`."""
     with style_context():
         figure = canvas(FULL, 3.9)
         grid = panels(figure, 2, 1, Margins(left=0.68, top=0.32, down=0.12), heights=[1.6, 1.0])
@@ -48,7 +48,7 @@ def open_loop_figure(found: Curves, marks: Array, spots: Sequence[Spot] = ()) ->
 
 
 def nyquist_figure(found: Curves, highest: float, points: Array) -> Any:
-    """Plot the open loops near -1 (Nyquist): unit circle, circle where abs(S) is the `highest` Ms allowed, `points` (m,) at the margins.
+    """Plot the open loops near -1 (Nyquist plot): unit circle, circle of the `highest` permitted abs(S), `points` (m,) of the margins.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.systems.closed import LoopBreak
@@ -74,12 +74,12 @@ def nyquist_figure(found: Curves, highest: float, points: Array) -> Any:
 
 
 def sensitivity_figure(found: Curves, highest: float) -> Any:
-    """Plot the sensitivity |S| of each loop and complementary sensitivity |T|, with the limit for the peak of S."""
+    """Plot the sensitivity |S| and complementary sensitivity |T| of each loop, with the `highest` permitted peak of S."""
     own = np.diagonal(found.sensitivity, axis1=1, axis2=2)
     with style_context():
         figure = canvas(FULL, 2.5)
         grid = panels(figure, 1, 2, Margins(left=0.62, top=0.42, across=0.68))
-        for axes, values, title in ((grid[0, 0], own, "sensitivity |S|"), (grid[0, 1], 1.0 - own, "following |T|")):
+        for axes, values, title in ((grid[0, 0], own, "sensitivity |S|"), (grid[0, 1], 1.0 - own, "complementary sensitivity |T|")):
             for index, name in enumerate(found.names):
                 x, size = thin_out(found.frequencies, np.abs(values[:, index]))
                 axes.loglog(x, np.maximum(size, _LEAST), linewidth=1.1, label=name, **look(index))
@@ -94,7 +94,7 @@ def sensitivity_figure(found: Curves, highest: float) -> Any:
 
 
 def measured_figure(found: ReadLines, names: tuple[str, ...]) -> Any:
-    """Plot |S| of every loop from measured responses with its 95 % interval, and |S| of fit and model; one panel per loop."""
+    """Plot |S| of every loop from measured responses, with its 95 % interval, and |S| of fit and model; one panel per loop."""
     columns = min(3, len(names))
     rows = -(-len(names) // columns)
     with style_context():
@@ -124,7 +124,7 @@ def _measured_panel(axes: Any, found: ReadLines, index: int) -> None:
 
 
 def pole_figure(poles: Array, step: float, alone: Array | None = None) -> Any:
-    """Plot closed-loop poles (n,): z plane, and damping ratio over frequency, with poles of the stage `alone`; unstable poles red.
+    """Plot closed-loop poles (n,) in the z plane, unstable poles in red; and damping ratios over frequency, also of the stage `alone`.
 
     >>> len(pole_figure(np.array([0.9 + 0.1j, 0.9 - 0.1j]), 1e-4).axes)
     2
@@ -148,7 +148,9 @@ def _damping_panel(axes: Any, poles: Array, step: float, alone: Array | None) ->
     """Plot damping ratio over frequency."""
     if alone is not None:
         frequencies, ratios = _damping(alone, step)
-        axes.plot(frequencies, ratios, "o", color=MUTED, markersize=3.5, markerfacecolor="none", markeredgewidth=0.6, label="stage alone")
+        axes.plot(
+            frequencies, ratios, "o", color=MUTED, markersize=3.5, markerfacecolor="none", markeredgewidth=0.6, label="stage in open loop"
+        )
     frequencies, ratios = _damping(poles, step)
     axes.plot(frequencies, ratios, "x", color=SERIES[0], markersize=4.0, markeredgewidth=0.9, label="closed loop", linestyle="none")
     least = min(0.3 * float(np.min(ratios[ratios > 0.0], initial=1.0)), 0.5)
@@ -158,7 +160,7 @@ def _damping_panel(axes: Any, poles: Array, step: float, alone: Array | None) ->
 
 
 def thin_out(x: Array, y: Array) -> tuple[Array, Array]:
-    """Reduce the points (n,) of a curve to the minimum and maximum of each of many intervals."""
+    """Reduce the points (n,) of a curve to the minima and maxima in a fixed number of intervals."""
     if len(x) <= 2 * _POINTS:
         return x, y
     stretches = np.array_split(np.arange(len(x)), _POINTS)
@@ -205,7 +207,7 @@ def _phase_ticks(axes: Any) -> None:
 
 
 def plain_ticks(*axes: Any, steps: tuple[float, ...] = (1.0,)) -> None:
-    """Set ticks of logarithmic axes at these multiples of powers of ten, as plain numbers."""
+    """Set ticks of logarithmic axes at the multiples `steps` of powers of ten, as plain numbers."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
     for axis in axes:
@@ -215,7 +217,7 @@ def plain_ticks(*axes: Any, steps: tuple[float, ...] = (1.0,)) -> None:
 
 
 def legend_of_lines(figure: Any, panels: Iterable[Any], columns: int = 8) -> None:
-    """Add a legend above all panels, for their named lines."""
+    """Add one legend above all panels, for all lines with a label."""
     handles = [line for axes in panels for line in axes.get_lines() if not line.get_label().startswith("_")]
     figure.legend(handles, [line.get_label() for line in handles], loc="upper left", ncols=columns, handlelength=1.4, borderaxespad=0.2)
 

@@ -1,4 +1,4 @@
-"""Trade-off between controllers: sensitivity crossover, noise, settling and delay margin."""
+"""Trade-offs between controllers: sensitivity crossover, noise, settling and delay margin."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexstage.show.figures.style import FULL, SERIES, Margins, canvas, panels, 
 
 
 def front_figure(found: Mapping[str, DetunedController], front: Collection[str]) -> Any:
-    """Plot each tuned controller as a dot, filled on the Pareto `front`, with a line for the same controller at reduced gains."""
+    """Plot each tuned controller as a dot (filled on the Pareto `front`), with a line for the same controller at reduced gains."""
     told = {
         "noise [nm]": (lambda one: one.noise, 1e9),
         "settling [ms]": (lambda one: one.settling, 1e3),
@@ -28,7 +28,7 @@ def front_figure(found: Mapping[str, DetunedController], front: Collection[str])
                 colour, y = SERIES[index % len(SERIES)], factor * np.asarray(values(one))
                 axes.loglog(one.rejection, y, color=colour, linewidth=1.0, label=name)
                 axes.plot(one.rejection[:1], y[:1], "o", color=colour, markersize=6.0, markerfacecolor=colour if name in front else "none")
-            axes.set(xlabel="rejects to [Hz]", ylabel=label)
+            axes.set(xlabel="sensitivity crossover [Hz]", ylabel=label)
             for axis in (axes.xaxis, axes.yaxis):
                 low, high = axis.get_view_interval()
                 plain_ticks(axis, steps=(1.0,) if high > 300.0 * low else (1.0, 2.0, 5.0))

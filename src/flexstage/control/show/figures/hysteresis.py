@@ -33,6 +33,6 @@ def hysteresis_figure(wanted: Array, reached: Mapping[str, Array]) -> Any:
             grid[0, 0].plot(form.factor * wanted[::step], form.factor * each[::step], **look)
             grid[0, 1].plot(form.factor * wanted[::step], fine.factor * (each - wanted)[::step], **look)
         for axes, label in zip(grid[0], (f"stroke [{form.unit}]", f"actual minus requested stroke [{fine.unit}]"), strict=True):
-            axes.set(xlabel=to_typography(f"wanted stroke [{form.unit}]"), ylabel=to_typography(label))
+            axes.set(xlabel=to_typography(f"requested stroke [{form.unit}]"), ylabel=to_typography(label))
         legend_above(grid[0, 0], 3)
     return figure

@@ -17,7 +17,7 @@ _ROW = 0.24
 
 
 def noise_share_figure(found: NoiseBudget) -> Any:
-    """Plot the share of every source in the mean square of each coordinate, and its rms."""
+    """Plot the fraction of every source in the mean square of each coordinate, and the rms of the coordinate."""
     squares, coordinates = np.asarray(found.by_kind.values), short_names(found.output_names)
     total = np.sum(squares, axis=1)
     with style_context():
@@ -35,7 +35,7 @@ def noise_share_figure(found: NoiseBudget) -> Any:
             axes.text(
                 101.5, row, to_typography(format_value(float(np.sqrt(square)), unit, 3)), ha="left", va="center", fontsize=7.5, color=INK
             )
-        axes.set(xlim=(0.0, 100.0), ylim=(-0.6, len(total) - 0.4), yticks=[], xlabel="share of the mean square [%]")
+        axes.set(xlim=(0.0, 100.0), ylim=(-0.6, len(total) - 0.4), yticks=[], xlabel="fraction of the mean square [%]")
         axes.grid(axis="y", visible=False)
         legend_above(axes, 6)
     return figure

@@ -1,4 +1,4 @@
-"""Time-domain figures of loops: steps, errors, paths in plan with magnified error."""
+"""Time-domain figures of loops: steps, errors, plan views of paths with magnified error."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FEW = 1.5
 
 
 def step_figure(found: Sequence[tuple[str, Simulated]]) -> Any:
-    """Plot step responses, one panel per coordinate: the reference, the true motion and, paler, other motions of the same unit.
+    """Plot step responses, one panel per coordinate: reference, true motion and, in grey, other coordinates of the same unit.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -58,7 +58,7 @@ def _step(axes: Any, name: str, test: Simulated) -> None:
     for other, channel in enumerate(test.coordinates):
         if other != index and channel.unit == unit:
             axes.plot(*thin_out(time, form.factor * true[:, other]), color=MUTED, linewidth=0.6, alpha=0.7)
-    axes.plot(time, form.factor * test.reference[:, index], color=INK, linewidth=0.7, linestyle="--", label="wanted")
+    axes.plot(time, form.factor * test.reference[:, index], color=INK, linewidth=0.7, linestyle="--", label="reference")
     axes.plot(*thin_out(time, form.factor * true[:, index]), color=SERIES[0], linewidth=1.2, label="true")
     axes.set_title(to_typography(f"{name} [{form.unit}]"), fontsize=7.5, loc="left")
     axes.tick_params(labelsize=6.5)
@@ -72,7 +72,7 @@ def _settling_band(test: Simulated, name: str) -> float:
 
 
 def error_figure(test: Simulated) -> Any:
-    """Plot the true error over time, lengths above angles.
+    """Plot the true errors over time, lengths above angles.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
@@ -101,7 +101,7 @@ def error_figure(test: Simulated) -> Any:
 
 
 def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: str, floor: Array | None = None) -> Any:
-    """Plot errors (n, f) in the band by pass or period, lengths above angles; dotted: the non-repeating part (f,), if known.
+    """Plot rms errors (n, f) in the band by pass or period, lengths above angles; dotted: the non-repeating component (f,), if known.
 
     >>> len(lesson_figure(np.array([[1e-6], [1e-7]]), ["x"], ["m"], "pass").axes)
     1
@@ -126,7 +126,7 @@ def lesson_figure(rms: Array, names: Sequence[str], units: Sequence[str], noun: 
 
 
 def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
-    """Plot the path in plan: the command, and the motion with magnified error; the title contains the factor.
+    """Plot a plan view of the path: reference, and motion with magnified error; the legend contains the factor.
 
     >>> from flexstage.show.figures.style import canvas
     """
@@ -138,11 +138,11 @@ def path_figure(test: Simulated, axes_shown: tuple[str, str]) -> Any:
     forms = [display_unit_of(test.coordinates[place].unit, size) for place in places]
     factors = np.array([form.factor for form in forms])
     followed = asked - factor * error
-    label = "followed" if factor == 1.0 else f"motion, error {factor:g} times"
+    label = "motion" if factor == 1.0 else f"motion, error magnified {factor:g} times"
     with style_context():
         figure = canvas(FULL * 0.62, _height(followed))
         plan = panels(figure, 1, 1, Margins(left=0.6, top=0.32))[0, 0]
-        plan.plot(*(factors * asked).T, color=MUTED, linewidth=0.9, label="commanded")
+        plan.plot(*(factors * asked).T, color=MUTED, linewidth=0.9, label="reference")
         plan.plot(*(factors * followed).T, color=SERIES[0], linewidth=0.9, label=label)
         plan.set_aspect("equal", adjustable="datalim")
         x, y = (to_typography(f"{name} [{form.unit}]") for name, form in zip(axes_shown, forms, strict=True))
@@ -158,7 +158,7 @@ def _height(path: Array) -> float:
 
 
 def magnification(size: float, error: Array) -> float:
-    """Choose the magnification (1, 2 or 5 times a power of ten, at least 1) that shows the largest error as about 1/20 of a size.
+    """Choose a magnification (1, 2 or 5 times a power of ten, at least 1) that shows the largest error as about 1/20 of `size`.
 
     >>> magnification(1.0, np.array([[0.001, 0.0]]))
     50.0

@@ -1,4 +1,4 @@
-"""Kinds of amplifiers in a set-up file. Other packages add further ones."""
+"""Kinds of amplifiers in a set-up file. Other packages can add kinds."""
 
 from flexstage.base.register import Register
 from flexstage.control.study.hardware.amplifiers import AmplifierForm, AmplifierSetup, ChargeSetup

@@ -26,7 +26,7 @@ _COUPLED, _LEFT = Bound(low=0.0, high=1.0, open_high=True), Bound(low=0.0, high=
 
 
 class AmplifierForm(CheckedFields):
-    """Common interface of amplifier kinds, frozen dataclasses with the keys of their table as fields; see `amplifier_kinds`."""
+    """Interface of an amplifier kind: a frozen dataclass, with the keys of its table as fields (see `amplifier_kinds`)."""
 
     kind: ClassVar[str]
 
@@ -37,18 +37,18 @@ class AmplifierForm(CheckedFields):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Check the table independently of the stage; each finding has its key."""
+        """Findings in the table that do not depend on the stage; each has its key."""
         yield from ()
 
 
 @dataclass(frozen=True)
 class AmplifierSetup(AmplifierForm):
-    """Amplifiers and their converter: first-order lag with the stack's capacitance; ideal by default.
+    """Amplifiers with a digital-to-analogue converter and a first-order lag; ideal by default.
 
-    `bandwidth` is specified, or follows from the output `resistance`, 1/(2 pi R C). `current` is the maximum output current and `slew` the
-    maximum voltage rate; both limit the stroke rate. `noise` is white at the output. `bits` is the resolution of the converter over the
-    full voltage range. Each stack's range converts voltage to free stroke. Voice coil amplifiers control the current: `bandwidth`,
-    `current`, `current_noise` and `bits` apply.
+    The corner of the lag is `bandwidth`, or 1/(2 pi R C) with the output `resistance` R and the stack's capacitance C. `current` is the
+    maximum output current and `slew` the maximum voltage rate; both limit the stroke rate. `noise` is white at the output. `bits` is the
+    resolution of the converter over the full voltage range. Each stack's range converts voltage to free stroke. Voice coil amplifiers
+    control the current: only `bandwidth`, `current`, `current_noise` and `bits` apply.
     """
 
     kind: ClassVar[str] = "voltage"
@@ -68,19 +68,22 @@ class AmplifierSetup(AmplifierForm):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Check for both a bandwidth and a resistance, and for invalid bits."""
+        """Check for both a bandwidth and a resistance."""
         if self.bandwidth is not None and self.resistance is not None:
-            yield Finding("amplifier", "both its bandwidth and its resistance are given", "Specify one of them: the other follows")
+            yield Finding(
+                "amplifier", "bandwidth and resistance are both specified", "Remove one of them: the resistance determines the bandwidth"
+            )
 
 
 @dataclass(frozen=True)
 class ChargeSetup(AmplifierSetup):
-    """Charge amplifiers for stacks: the data of voltage amplifiers, in the voltage of an unloaded stack.
+    """Charge amplifiers for stacks, with the data of voltage amplifiers, converted to the voltage of an unloaded stack.
 
-    `coupling` is k of the stack (at most k33 of its ceramic, 0.7 of soft PZT): the stiffness increases by 1/(1 - k^2) at constant charge.
-    Below the `corner`, specified or by the `leakage` resistance parallel to the stack, 1/(2 pi R C), it acts as a voltage drive.
-    `residual_hysteresis` is the remaining share of hysteresis and creep above it. Default: one fifth (Ge & Jouaneh, IEEE Trans. Control
-    Syst. Technol. 4 (1996) 209, by Fleming & Leang, Design, Modeling and Control of Nanopositioning Systems, 2014, ch. 12).
+    `coupling` is the coupling k of the stack (at most k33 of its ceramic, 0.7 for soft PZT); at constant charge the stack is stiffer by the
+    factor 1/(1 - k^2). Below the `corner` the drive acts as a voltage drive. With a `leakage` resistance R parallel to the stack, the
+    corner is 1/(2 pi R C). `residual_hysteresis` is the fraction of hysteresis and creep that remains above the corner. Default: one fifth
+    (Ge & Jouaneh, IEEE Trans. Control Syst. Technol. 4 (1996) 209, by Fleming & Leang, Design, Modeling and Control of Nanopositioning
+    Systems, 2014, ch. 12).
     """
 
     kind: ClassVar[str] = "charge"
@@ -97,12 +100,12 @@ class ChargeSetup(AmplifierSetup):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Check for a missing coupling, a missing or double corner, and data of voltage amplifiers that do not apply."""
+        """Check for a missing coupling, for a corner that is missing or specified twice, and as for voltage amplifiers."""
         yield from super().faults
         if self.coupling is None:
-            advice = "Use e.g. coupling = 0.7: data-sheet strokes and capacitances, d^2 k / C, overestimate it"
+            advice = "Use e.g. coupling = 0.7. An estimate from data-sheet values, d^2 k / C, is too large"
             yield Finding("amplifier.coupling", "charge drive needs the electromechanical coupling of the stack", advice)
         if (self.corner is None) == (self.leakage is None):
-            given = "are both given" if self.corner is not None else "are both missing"
-            advice = 'Specify one of them: every charge drive has leakage. Use e.g. corner = "0.1 Hz"'
-            yield Finding("amplifier", f"its corner and its leakage {given}", advice)
+            given = "are both specified" if self.corner is not None else "are both missing"
+            advice = 'Specify one of them, e.g. corner = "0.1 Hz": every charge drive has leakage'
+            yield Finding("amplifier", f"corner and leakage {given}", advice)
