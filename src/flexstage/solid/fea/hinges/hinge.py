@@ -138,9 +138,9 @@ def hinge_compliance(
     `roots` selects the ends that are on blocks (default: both ends of a profile that rises to its blocks, else none). `stub` [m] is the
     length of a stub: by default the hinge's full height, or five times its `grain` if the block is wider than the hinge.
 
-    The depth of the root is a convention: C_x depends on the stub's length by 1-3 %, C_y by about 10 %, and C_rx of a hinge several times
-    wider than high by a factor. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made. `told` is called
-    for every mesh and solve.
+    The depth of the root is a convention: C_x depends on the stub's length by 1-3 %, C_y by about 10 %, and C_rx of a hinge several
+    times wider than high by a multiple. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made.
+    `told` is called for every mesh and solve.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight

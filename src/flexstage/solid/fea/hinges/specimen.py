@@ -1,9 +1,9 @@
 """A hinge as a specimen: drawn at the origin, with a stub of its block at each elastic end.
 
 If a profile rises to a block, the stub has the hinge's full height, and hinge and stub are one outline. Half-circle arcs are drawn
-completely: they end perpendicular to the stub's flank, without tangent faces. A rigid face would be tangent to an arc. There, the arc ends
-at its true end with a blunted wedge, because a sharp wedge could not be meshed; it would carry almost no load. All other hinges end on a
-stub wider than themselves on all sides.
+completely: they end perpendicular to the stub's flank, without tangent faces. At a rigid face, to which an arc would be tangent, the arc
+ends at its true end with a blunted wedge. A sharp wedge could not be meshed, and would carry almost no load. All other hinges end on a stub
+wider than themselves on all sides.
 """
 
 from __future__ import annotations

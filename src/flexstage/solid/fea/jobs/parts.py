@@ -100,7 +100,7 @@ def content_in_stage(part: Component) -> str:
 
 
 def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Superelement]]) -> Parts:
-    """Components with the superelements of their `reduce_jobs`, with faces on rigid bodies kept plane; equal components share one.
+    """Components with the superelements of their `reduce_jobs`, faces on rigid bodies kept plane; equal ones share a superelement.
 
     >>> as_joined((), ())
     ()

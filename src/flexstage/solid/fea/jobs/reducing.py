@@ -105,7 +105,7 @@ class Reduce(ComponentJob):
 
     @property
     def phase(self) -> str:
-        """Its components and their order."""
+        """Its group in announcements, with the order."""
         return f"components at order {self.reduction.fineness.order}"
 
     @property

@@ -42,8 +42,8 @@ WARPS = 12
 class Fineness(CheckedFields):
     """Mesh size and polynomial `order`, also of the curved geometry; elements in notches and thin leaves have one order more.
 
-    Elements on the faces of a link have `neck` times its smallest thickness. Elsewhere elements have `block` times the body's smallest
-    dimension. They grow by `grading` (0.1 slow to 0.9 fast).
+    The element size is `neck` times a link's smallest thickness on its faces, and `block` times a body's smallest dimension elsewhere. It
+    grows by `grading` (0.1 slow to 0.9 fast).
     """
 
     neck: float = 1.5

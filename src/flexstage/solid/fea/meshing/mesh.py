@@ -227,9 +227,10 @@ def _middle_points(form: Shaped, size: float) -> Array:
 
 
 def core_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
-    """Points (n, 3) within a round neck with an arc, in its frame, and the element size there [m]; faces have `neck` times the thickness.
+    """Points (n, 3) within a round neck with an arc, in its frame, and the element size there [m].
 
-    The points are on its axis and halfway to its surface. Other hinges have none.
+    `neck` is the element size on its faces over the thickness. The points are on its axis and halfway to its surface. Other hinges have
+    none.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> list(core_points(Leaf("steel", 0.01, 1e-3, 5e-3), 1.5))
