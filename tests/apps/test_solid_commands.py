@@ -64,7 +64,7 @@ def test_units(command: Command, tmp_path: Path) -> None:
     assert unit["commands_m"][-1] == pytest.approx(38e-6)
     page = (tmp_path / "units.html").read_text(encoding="utf-8")
     assert "Isolated units as solids" in page
-    assert "Output of the drive unit by command" in page
+    assert "Output and lost motion of the drive unit over its stroke" in page
 
 
 def test_the_stage(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -102,7 +102,7 @@ def test_verification(command: Command, tmp_path: Path, monkeypatch: pytest.Monk
 def test_calibration_is_told_from_theory(command: Command, tmp_path: Path) -> None:
     ended = command("calibrate", "stage.toml", "-o", "calibrated.toml", *ROUGH)
     assert ended.code == 0, ended.err
-    assert "Compliance by FEA over beam theory" in ended.out
+    assert "Difference in compliance between FEA and beam theory" in ended.out
     assert "# As drawn." in (tmp_path / "calibrated.toml").read_text(encoding="utf-8")
     assert command("modes", "calibrated.toml").code == 0
     rows = command("verify", "calibrated.toml", *ROUGH, "--json", "-").document["rows"]
@@ -141,7 +141,7 @@ def test_a_stage_without_units_of_its_own(command: Command, tmp_path: Path) -> N
     fs.dump(case("bridge"), tmp_path / "bridge.toml")
     ended = command("solid", "bridge.toml", "--scope", "unit", "--json", "out.json")
     assert ended.code == 2
-    assert "none of the stage's units drives an output" in ended.err
+    assert "no unit of the stage drives its own output" in ended.err
     assert not (tmp_path / "out.json").exists()
 
 

@@ -135,7 +135,7 @@ def test_a_step_file_is_stated_so_that_the_design_holds_it(flexstage: Command, t
     ("arguments", "said"),
     [
         (("nowhere.step", "--material", "steel"), "file not found"),
-        (("stage.toml", "--material", "steel"), "no STEP file"),
+        (("stage.toml", "--material", "steel"), "not a STEP file"),
         (("nowhere.step", "--material", "stele"), "steel"),
     ],
 )

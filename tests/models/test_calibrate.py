@@ -240,13 +240,13 @@ def test_a_loss_is_known_as_well_as_the_gain_that_it_is_the_rest_of() -> None:
 @pytest.mark.parametrize(
     ("unit", "theory", "calibrated_value", "words"),
     [
-        ("N/m", 4.4, 4.3, "theory 4.4 times too stiff (rigid bodies bend)"),
-        ("N/m", 1.1, 1.1, "theory 10 % too stiff (rigid bodies bend)"),
+        ("N/m", 4.4, 4.3, "theory 4.4 times too stiff (its bodies are rigid)"),
+        ("N/m", 1.1, 1.1, "theory 10 % too stiff (its bodies are rigid)"),
         ("N/m", 1.1, 1.0, "theory 10 % too stiff"),
         ("N m/rad", 0.25, 0.3, "theory 4 times too soft"),
         ("m/N", 0.25, None, "theory 4 times too stiff"),
         ("rad/(N m)", 2.0, None, "theory 2 times too soft"),
-        ("Hz", 2.0, 2.0, "theory 2 times too high (rigid bodies bend)"),
+        ("Hz", 2.0, 2.0, "theory 2 times too high (its bodies are rigid)"),
         ("Hz", 0.9, None, "theory 10 % too low"),
         ("N/m", 1.01, 1.0, ""),
     ],
@@ -267,7 +267,7 @@ def test_headlines_say_in_words_where_theory_and_finite_elements_differ(
 
 def test_what_is_not_known_gets_no_verdict() -> None:
     known = Row("stage", "mode 1", "Hz", 101.0, 100.0, 0.001)
-    without_error = replace(known, fea_error=None, reason="FEA's error was not estimated")
+    without_error = replace(known, fea_error=None, reason="the error of FEA is unknown")
     without_partner = replace(known, figure="mode 2", theory=None, reason="theory has no mode like it")
     assert {row.trust for row in (without_error, without_partner)} == {None}
     for row in (without_error, without_partner):

@@ -101,7 +101,7 @@ def test_a_hinge_that_is_done_is_kept_when_another_is_interrupted(tmp_path: Path
 
 
 def test_too_little_memory_is_told_by_name() -> None:
-    with pytest.raises(DesignError, match=r"prop: its coarsest mesh needs about .* GB at order 2, 0\.001 GB are available"):
+    with pytest.raises(DesignError, match=r"prop: its coarsest mesh needs about .* GB at order 2 \(0\.001 GB available\)"):
         kept(ROD, Ways(None, limits=Limits(memory=1e6)))
 
 

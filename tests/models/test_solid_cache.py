@@ -107,7 +107,7 @@ def test_an_unwritable_folder_is_told(tmp_path: Path) -> None:
     keep(Cache(tmp_path / "file"), "key", "lever", ELEMENT, notice=notices.append)
     (notice,) = notices
     assert notice.where == "lever"
-    assert "could not be kept" in notice.what
+    assert "could not be stored" in notice.what
     assert "FLEXSTAGE_CACHE" in notice.advice
 
 

@@ -119,5 +119,5 @@ def test_a_neck_too_thin_to_follow_is_named_at_once() -> None:
     notch = replace(STAGE.parts["lever_notch"], thickness=1e-6)
     link = Link(("ground", "platform"), "notch", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), bends=(0.0, 0.0, 1.0))
     stage = Mechanism("hinge", STAGE.materials, {"notch": notch}, {"platform": Body(mass=1.0)}, {"hinge": link})
-    with pytest.raises(DesignError, match=r"hinge: its 0\.001 mm are too thin to mesh over 50\.3 x"):
+    with pytest.raises(DesignError, match=r"hinge: its thickness of 0\.001 mm is too small to mesh over 50\.3 x"):
         mesh_component(components(stage)[0], Fineness())

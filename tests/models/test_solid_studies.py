@@ -314,7 +314,7 @@ def test_errors_that_were_not_estimated_are_unknown() -> None:
     rows = tuple(stage_rows(small(), small(), Converged(small_stage(), {}, 2)))
     assert len(rows) > 10
     assert {row.trust for row in rows} == {None}
-    assert all(row.fea_error is None and "error is not estimated" in row.reason for row in rows)
+    assert all(row.fea_error is None and "the error of FEA is unknown" in row.reason for row in rows)
     assert verdict(rows).startswith("No verdict.")
     assert Converged(None, {"gain": 1e-4}, 2).error == 1e-4
     assert Converged(None, {"gain": 1e-4}, 2, unestimated=("loss",)).error == np.inf  # one that is not known is no accuracy reached

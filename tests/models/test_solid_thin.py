@@ -185,7 +185,7 @@ def test_work_beyond_memory_or_time_is_refused_before_it_begins(monkeypatch: pyt
     assert "Use order 2" in str(beyond_memory.value)
     long = ReductionWork(Counts.of(1.0), 1e8, 1e14)
     monkeypatch.setattr("flexstage.solid.fea.jobs.parts.work_all", lambda todo, done, *_: done(todo[0], (long,)))
-    with pytest.raises(DesignError, match=r"takes about .* hours, 60 minutes are allowed\. Use a lower order"):
+    with pytest.raises(DesignError, match=r"takes about .* hours \(at most 60 minutes allowed\)\. Use a lower order"):
         obtain(jobs, Ways(None))
 
 
@@ -206,7 +206,9 @@ def test_an_interrupted_run_reports_what_it_keeps(tmp_path: Path, monkeypatch: p
     ways = Ways(Cache(tmp_path), note=lines.append)
     with pytest.raises(KeyboardInterrupt):
         obtain(jobs, ways)
-    assert lines[0].startswith("to do: 2 at order 2 (2 at once), about 4 s of CPU time" if workers(ways.limits) == 2 else "to do: 2")
+    assert lines[0].startswith(
+        "to do: components at order 2 (2); " + ("2 in parallel, about 4 s of CPU time" if workers(ways.limits) == 2 else "")
+    )
     assert "1 of 2 results are kept" in lines[-1]
     assert len(obtain(jobs, ways)) == 2
     assert asked == [2, 1]

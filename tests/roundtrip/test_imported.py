@@ -152,7 +152,7 @@ def test_the_content_counts_and_the_path_does_not(part: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "said"),
     [
-        ("a.step", b"no step", "no STEP file"),
+        ("a.step", b"no step", "not a STEP file"),
         ("a.step", b"ISO-10303-21;\nHEADER;\nbroken", "cannot read it"),
         ("a.txt", b"ISO-10303-21;\n", 'ends in ".txt"'),
     ],

@@ -15,7 +15,7 @@ from flexstage.parts.section import Section
 
 @dataclass(frozen=True, eq=False)
 class Beam:
-    """Beam symmetric about its centre: `flexibility` and `inertia` per length at each station (..., m, 6), order (x, y, z, rx, ry, rz).
+    """Beam symmetric about its centre: `flexibility` and `inertia` per length at each station (..., m, 6), for (x, y, z, rx, ry, rz).
 
     The flexibilities are 1/(E A), k/(G A) twice, twist rate per torque, 1/(E I_y), 1/(E I_z). The inertias are rho A three times, rho I_p,
     rho I_y, rho I_z.
@@ -61,7 +61,7 @@ def beam(points: Stations, section: Section, material: Material) -> Beam:
 
 
 def shear_across(material: Material) -> Array | None:
-    """Return the shear modulus in the x-y plane (..., 1) [Pa] if it differs from the x-z plane (cubic crystal); else `None`."""
+    """Return the shear modulus in the x-y plane (..., 1) [Pa] if it differs from that in the x-z plane (cubic crystal); else `None`."""
     return None if material.shear_across is None else _column(material.shear_across)
 
 

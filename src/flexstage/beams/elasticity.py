@@ -6,7 +6,7 @@ Each law is the compliance of beam theory plus the neglected terms:
 - contraction that wide hinges and clamped ends prevent (Poisson's ratio squared, over the width),
 - shear that clamped ends change.
 
-`python -m tools.validation.beam_errors` computes the hinges, fits the coefficients and prints both.
+`python -m tools.validation.beam_errors` computes hinge compliances by finite elements, fits the coefficients and prints both.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ Law = Callable[[HingeDimensions, Numbers], Array]
 
 
 def notch_x(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Tension of a notch: the root compliance d(t/R) / (E b), and restrained contraction."""
+    """Tension of a notch: root compliance d(t/R) / (E b), with a fitted function d, and restrained contraction."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[5] + p[6] * (1.0 - flat)
     return hinge.plane_strain(p[3], p[4], hinge.half) * (hinge.beam[..., 0] + yielded / hinge.width)
@@ -97,7 +97,7 @@ def notch_y(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending of a notch about its thickness, as for tension; the roots of narrow hinges are stiffer."""
+    """Bending of a notch about y, in the plane of its width, as for tension; the roots of narrow hinges are stiffer."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[7] + p[8] * (1.0 - flat)
     share = 1.0 / (1.0 + p[5] * (hinge.along / hinge.width) ** p[6])
@@ -112,7 +112,7 @@ def notch_rz(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def fillet_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Transverse compliance of a fillet: plate action if wide, root rotation at its arms, and the block as for a notch."""
+    """Transverse compliance of a fillet: plate action if wide, root rotation times its lever arms, and the block as for a notch."""
     bent = _plate_share(hinge, shear_factor, p[3], p[4]) * (hinge.beam[..., 1] - hinge.shear_share)
     turned = _root_rotation(hinge, p) * (hinge.half - p[2] * hinge.along) ** 2
     return bent + hinge.shear_share * (1.0 + p[5] * hinge.root) + turned - _block_as_plate(hinge, p[6], p[7])
@@ -168,12 +168,12 @@ def bar_ry(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def bar_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Transverse compliance of a bar for which beam theory has no plate action."""
+    """Transverse compliance of a bar, including plate action, which its beam theory neglects."""
     return hinge.beam[..., 1] * (_plate_share(hinge, shear_factor, 1.0, p[0]) - hinge.poisson**2 * p[1] * _proportions(hinge)[1])
 
 
 def bar_rz(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending of a bar for which beam theory has no plate action."""
+    """Bending of a bar, including plate action, which its beam theory neglects."""
     return hinge.beam[..., 5] * _plate_share(hinge, moment_factor, 1.0, p[0])
 
 
@@ -190,7 +190,7 @@ def leaf_y(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def leaf_rx(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Torsion of a leaf: its strips bend with restrained contraction at the ends, from 1 to 1 / (1 - nu^2) stiffer with the width."""
+    """Torsion of a leaf: restrained contraction at its ends stiffens its strips by factors of 1 (narrow) to 1 / (1 - nu^2) (wide)."""
     wide, _ = _proportions(hinge)
     restrained = hinge.poisson**2 / (1.0 - hinge.poisson**2)
     return hinge.beam[..., 3] / (1.0 + p[0] + restrained * _saturate(p[1] * wide + p[2] * wide**2))
@@ -212,7 +212,7 @@ def _saturate(share: Array) -> Array:
 
 
 def toroidal(hinge: HingeDimensions, p: Numbers, index: int) -> Array:
-    """Compute the compliance factor of a toroidal neck, exp(t/R (p0 + p1 (t/R)^1/2 + p2 (nu - 0.3)))."""
+    """Compute the compliance of a toroidal neck: beam theory times exp(t/R (p0 + p1 (t/R)^1/2 + p2 (nu - 0.3)))."""
     return hinge.beam[..., index] * np.exp(hinge.root**2 * (p[0] + p[1] * hinge.root + p[2] * (hinge.poisson - 0.3)))
 
 

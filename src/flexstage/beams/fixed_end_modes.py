@@ -13,7 +13,7 @@ nu^2). Shear at the edges reduces the twist stiffness: G J of the section replac
 
 The energy of a twisted beam is 2 U = integral of G J phi'^2 + E C_w phi''^2 dx, with phi' = 0 at ends with restrained warping.
 
-The eigenvalues are distinct. Complex-step derivatives of the modes by any number are therefore correct.
+The eigenvalues are distinct. Complex-step derivatives of the modes are therefore correct for any parameter.
 """
 
 from __future__ import annotations

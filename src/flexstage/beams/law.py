@@ -19,7 +19,7 @@ _CALIBRATE = 'Specify a measured or computed 6x6 (kind = "compliance_matrix"), o
 
 @dataclass(frozen=True, eq=False)
 class Range:
-    """Ratio of dimensions, such as t/R, with the interval in which beam theory was compared with elasticity."""
+    """Ratio of dimensions, such as t/R, with the interval in which beam theory was compared with finite elements."""
 
     name: str
     value: Array
@@ -35,7 +35,9 @@ class Range:
         value = values[outside[0]]
         bound, side = (self.low, "below") if value < self.low else (self.high, "above")
         place = where if values.size == 1 else f"{where}[{outside[0]}]"
-        return Finding(place, f"{self.name} = {value:.3g} is {side} {bound:g}, the limit of the comparison with elasticity", _CALIBRATE)
+        return Finding(
+            place, f"{self.name} = {value:.3g} is {side} {bound:g}, the limit of the comparison with finite elements", _CALIBRATE
+        )
 
 
 def ratio(top: Number, bottom: Number) -> Array:
@@ -53,7 +55,7 @@ def _no_family(_: Any) -> str | None:
 
 @dataclass(frozen=True)
 class PartLaw:
-    """Law of a kind of part. Its functions take a part and its material; if `needs_material` is false, only a part.
+    """Law of a kind of part, as functions of a part, or of a part and its material (`None` if `needs_material` is false).
 
     Usually, `beam` defines compliance, mass, geometric stiffness and stress of the part. `diagonal` (..., 6) is the compliance if it
     differs from the beam's (plates). All 6x6 are about the centre. A part without a beam has:
@@ -67,8 +69,9 @@ class PartLaw:
     - `damping`: the viscous damping (..., 6, 6) [N s/m];
     - `twisting_load`: the compression [N] at which a column of this kind buckles in twist, below Euler's load;
     - `concentration`: the stress concentration factor of its notches; without it, or if it is `None`, the stress is unknown;
-    - `ranges`: the intervals of comparison with elasticity; - `family`: the name of the fitted laws for the model error;
-    - `held`: the fixed-end modes, `inner_modes` of them, at stations from -1 to 1 over the half length.
+    - `ranges`: the intervals compared with finite elements;
+    - `family`: the name of the fitted laws for the model error;
+    - `fixed_end_modes`: the `inner_modes` lowest ones, at stations from -1 to 1 over the half length.
     """
 
     beam: Callable[[Any, Any], Beam] | None = None

@@ -1,4 +1,4 @@
-"""Leaf springs by beam theory, with plate action and restrained warping; with `section` beam, without both."""
+"""Leaf springs by beam theory, with plate action and restrained warping, or without both if the `section` is a beam."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexstage.parts.section import Rectangle, Section, cowper_rectangle
 
 
 def leaf_beam(part: Leaf, material: Material) -> Beam:
-    """Build the Timoshenko beam of a leaf without plate action (Cowper's shear factor); warping is restrained unless its section is a beam.
+    """Build the Timoshenko beam of a leaf without plate action (Cowper's shear factor); warping is restrained unless its ends may warp.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> leaf = leaf_beam(Leaf("steel", length=0.05, thickness=0.0005, width=0.01), steel)
@@ -39,7 +39,7 @@ def leaf_diagonal(part: Leaf, material: Material) -> Array:
 
     The leaf is a Timoshenko beam with two changes: the bending compliance about z is divided by the plate factors of `beams.plate`, and
     torsion is `torsional_compliance`. In-plane bending and tension are those of the beam. Restrained contraction is neglected: for b >> L,
-    the true compliance is smaller by up to 1 - nu^2.
+    the true compliance is smaller, by a factor down to 1 - nu^2.
 
     With `section` beam, all six entries are those of `leaf_beam`, with Saint-Venant torsion, as in a textbook frame element.
 

@@ -2,8 +2,8 @@
 
 A hinge is symmetric about its centre. The stations cover the half x >= 0, from the centre to the arc's end, both included, with one
 Gauss-Lobatto rule on each smooth piece. On an arc, the variable is the angle p, stretched by p = d sinh(v), with i d the singularity of 1/h
-(h: thickness) nearest to the centre. Thin and thick necks then converge equally. Integrals of 1/h ... 1/h^4 are correct to 1e-13 for
-thickness over radius from 1e-3 upwards, and to 2e-12 at 1e-4.
+(h: thickness) nearest to the centre. Convergence is then equal for thin and thick necks. Integrals of 1/h ... 1/h^4 are correct to 1e-13
+for thickness over radius from 1e-3 upwards, and to 2e-12 at 1e-4.
 
 Parabolas and hyperbolas use the same stretching. On straight flanks, the variable is chosen such that 1/h is exponential. Power profiles
 have three pieces for any exponent (error 1e-9 at 16). A table has one rule with fewer points for each piece.

@@ -36,8 +36,8 @@ def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
     """Compute the diagonal (..., 6) of the compliance about the centre: the beam's, reduced by the plate action of its thin ends.
 
     Each thin end, up to its fillet, is a leaf whose two ends cannot curve across the width, with the factors of `beams.plate`. The moment
-    at its middle and the shear force have different factors. The middle is assumed stiff, which is valid if it is twice as thick. The
-    middle is a beam and curves freely across its width. With `section` beam, there is no plate action.
+    at its centre and the shear force have different factors. The thick middle is assumed to prevent curvature of the leaf across the width,
+    which is valid if it is twice as thick. It bends as a beam. With `section` beam, there is no plate action.
     """
     whole = reinforced_beam(part, material).diagonal()
     if part.section is LeafSection.BEAM:

@@ -29,7 +29,7 @@ _Bounds = tuple[float, float]
 class Validity(InNotebook):
     """Validity of beam theory for a part: its ranges, relative compliance `errors` by component (-0.1: 10 % too stiff), and warnings.
 
-    A component without an error, or with NaN in a batch, was not compared with elasticity.
+    A component without an error, or with NaN in a batch, was not compared with finite elements: its error is unknown.
     """
 
     ranges: tuple[Range, ...] = ()
@@ -42,9 +42,9 @@ def validity(part: Part, where: str = "part", material: Material | None = None) 
 
     The errors are correct within 1 % of the compliance (fillets along y and about z: 2 %), compared with three-dimensional finite elements.
 
-    - Notches include their roots, on blocks of their full height and width. Straight notches, leaves and rods are between rigid faces.
-    - Along z and about x a notch has no error: its own compliance is too small compared with the blocks.
-    - Parts with a specified matrix have no error.
+    - Errors of notches include the roots, on blocks of full height and width. Straight notches, leaves and rods are between rigid faces.
+    - Along z and about x, the error of a notch is unknown: its own compliance is too small compared with the blocks.
+    - The error of parts with a specified matrix is not estimated.
 
     >>> from flexstage.parts.notch import Notch
     >>> hinge = validity(Notch("steel", thickness=0.001, width=0.01, profile=Circular(0.005)))
@@ -121,9 +121,9 @@ def _axes(profile: Profile | None) -> tuple[Array, Array]:
 
 
 def within(family: str, axis: str, hinge: HingeDimensions) -> Array:
-    """Return whether the proportions and Poisson's ratio are within the comparison with finite elements.
+    """Return whether the proportions and Poisson's ratio are in the range that was compared with finite elements.
 
-    Bending about z has no bound on the sides of thin throats and wide hinges, because the limits are known: beam theory and plane strain.
+    For bending about z, thin throats and wide hinges have no bound, because the limits are known: beam theory and plane strain.
 
     >>> from flexstage.parts.rod import Rod
     >>> bool(within("bar", "x", hinge_dimensions(Rod("steel", length=0.1, diameter=0.002), 0.45)))

@@ -28,8 +28,8 @@ from flexstage.parts.section import Rectangle, Section, cowper_rectangle
 class Resolution(CheckedFields):
     """Discretisation of a flexure: numbers of modes and points.
 
-    `twist`, `across` and `bending` are the numbers of modes of twist and of bending about y and z. `fields` are the numbers of loads of the
-    two plate fields. `points` is the number of points along the flexure.
+    `twist`, `across` and `bending` are the numbers of modes of twist and of bending about y and z. `fields` are the numbers of line loads
+    on the two plate fields, with one mode each. `points` is the number of points along the flexure.
     """
 
     twist: int = 6
@@ -153,7 +153,7 @@ def natural_curvature(part: Leaf, material: Material) -> float:
 
 
 def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = False, curvature: float = 0.0) -> FlexureLaw:
-    """Build the law of any `Beam` part by stress modes: curvature = flexibility(s) x polynomials (docs/nonlinear.md, 14).
+    """Build the law of a part with a `Beam` by stress modes: curvature = flexibility(s) x polynomials (docs/nonlinear.md, 14).
 
     At zero load, the law equals the 6x6 of the beam. `flat`: the section is thin, and its fibres far from the axis stretch in twist (Wagner
     effect). `curvature` is the natural curvature about z [1/m].

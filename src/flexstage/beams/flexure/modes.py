@@ -65,7 +65,7 @@ def polynomials(count: int, places: Array) -> Array:
 
 
 def slopes(count: int, places: Array) -> Array:
-    """Evaluate the derivatives of these polynomials by s at `places` s (p,). Returns (count, p).
+    """Evaluate the derivatives of the `polynomials` with respect to s at `places` s (p,). Returns (count, p).
 
     >>> slopes(2, np.array([0.5])).ravel().tolist()
     [0.0, 2.0]

@@ -40,9 +40,10 @@ def cad(
 ) -> None:
     """Write a stage as solids.
 
-    Output: a STEP assembly of named solids, the mesh, or animated modes. Use --order with --mesh or --gltf, --modes with --gltf.
+    Writes a STEP assembly of named solids (--output), the mesh (--mesh) or animated modes (--gltf). --order is for --mesh and --gltf,
+    --modes is for --gltf.
 
-    Solids that do not meet, overlap or nearly coincide are errors.
+    Gaps, overlaps and nearly coincident faces are errors with --mesh and --gltf, otherwise warnings.
     """
     if output is None and mesh is None and gltf is None:
         raise refuse("--output", "missing", "Use -o stage.step, --mesh stage.vtu or --gltf stage.glb")
@@ -52,13 +53,13 @@ def cad(
 
 
 def state(
-    part: Annotated[Path, typer.Argument(metavar="PART.STEP", help="STEP file of one solid, or an assembly.", show_default=False)],
+    part: Annotated[Path, typer.Argument(metavar="PART.STEP", help="STEP file of one solid or of an assembly.", show_default=False)],
     design: Design,
     *,
     material: Annotated[
-        str | None, typer.Option("--material", help="Material of the design. Default: the only material.", show_default=False)
+        str | None, typer.Option("--material", help="Material of the solid. Default: the only material of the design.", show_default=False)
     ] = None,
-    body: Annotated[str, typer.Option("--body", metavar="NAME", help="Body of the outline.")] = "platform",
+    body: Annotated[str, typer.Option("--body", metavar="NAME", help="Body that gets the outline.")] = "platform",
     solid: Annotated[
         str | None,
         typer.Option("--solid", metavar="NAME", help="Solid of an assembly, by name or number, e.g. #2.", show_default=False),
@@ -66,9 +67,9 @@ def state(
 ) -> None:
     """Import a STEP file as an outline of a body.
 
-    Prints the table for the design file: file, digest, size, mass, centre of mass and inertia.
+    Prints the TOML table for the design file: file, digest, size, mass, centre of mass and inertia.
 
-    Rigid models use the specified values. The solid model uses the geometry of the file, and compares the values with it.
+    Models with rigid bodies use these values. The solid model uses the geometry of the file, and compares the values with the geometry.
     """
     mechanism = load(design)
     chosen = _material(mechanism, material)
@@ -82,7 +83,7 @@ def state(
 
 def superelement(
     design: Design,
-    solid: Annotated[str, typer.Argument(metavar="SOLID", help="Body or link of the solid.", show_default=False)],
+    solid: Annotated[str, typer.Argument(metavar="SOLID", help="Body or link in the solid.", show_default=False)],
     *,
     output: Annotated[Path, output_option("FRAME.NPZ", "NPZ file of stiffness and mass.")],
     order: Annotated[int, order_option(min=1)] = 3,
@@ -91,10 +92,11 @@ def superelement(
 ) -> None:
     """Reduce one solid of a stage to a superelement.
 
-    Writes stiffness and mass over its ports and fixed-interface modes. Prints the table of the part for a design file in the folder of
-    the matrices.
+    Writes stiffness and mass for the motions of the ports and for the modes with fixed ports. Prints the TOML table of the part, for a
+    design file in the folder of the matrices.
 
-    A body includes the links that are one solid with it. Its ports are the faces to other links.
+    The solid includes all links and bodies that are one piece with SOLID. Its ports are the end faces of links between it and other bodies,
+    stacks or the ground.
     """
     mechanism = open_design(design, changes, [("--output", output)])
     require_solver()
@@ -111,7 +113,7 @@ def _material(mechanism: Mechanism, name: str | None) -> str:
         return known[0]
     if name is None or name not in known:
         what = f"the design has {len(known)} materials" if name is None else f"the design has no material {name}"
-        raise refuse("--material", what, f"Name one. {suggest_nearest(name or '', known)}")
+        raise refuse("--material", what, f"Specify one. {suggest_nearest(name or '', known)}")
     return name
 
 

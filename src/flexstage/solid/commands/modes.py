@@ -20,5 +20,5 @@ def fea_modes(mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
             return modes.fea_modes(mechanism, DEFAULT, solids(Ways(Cache(), shown.step, notice=print_warning)))
     found = modes.fea_modes_from_cache(mechanism, Cache())
     if found is None:
-        print_note("not given: FEA: not in the cache; --fea computes it")
+        print_note("not computed: modes by FEA (not in the cache; --fea computes them)")
     return found

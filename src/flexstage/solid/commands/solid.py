@@ -77,7 +77,9 @@ class Scope(Enum):
     STAGE = "stage"
 
 
-Accuracy: TypeAlias = Annotated[str, typer.Option("--accuracy", metavar="SHARE", help="Relative error of stiffness, gain and frequency.")]
+Accuracy: TypeAlias = Annotated[
+    str, typer.Option("--accuracy", metavar="SHARE", help="Permitted relative error of stiffness, gain and frequency.")
+]
 Order: TypeAlias = Annotated[
     int | None,
     order_option(min=2, help="Order of the elements. Default: raised until the accuracy is met.", show_default=False),
@@ -133,9 +135,10 @@ def solid(
 ) -> CommandResult:
     """Analyse a stage as elastic solids by finite elements.
 
-    Scope hinge: the 6x6 of every hinge. Scope unit: stiffness, lost motion and stress. Scope stage: stiffness, modes and stress.
+    With scope hinge, computes the 6x6 compliance of every hinge. With scope unit, computes stiffness, lost motion and stress of isolated
+    units. With scope stage, computes stiffness, modes and stress of the stage.
 
-    Reduced parts are kept in the cache.
+    The cache keeps reduced components for later commands.
     """
     resolution = options.resolution
     with progress_bar() as shown, Pool() as pool:
@@ -160,8 +163,8 @@ def verify(
 ) -> CommandResult:
     """Compare theory with finite elements.
 
-    Compares hinges, units and the whole stage by axial springs, lumped model, calibrated lumped model and FEA.
-    Rows with calibrated parts are not independent of FEA.
+    Compares the results of four models for hinges, units and the whole stage: axial springs, lumped, lumped with calibrated hinges, and
+    FEA. Results with calibrated parts are not independent of FEA.
     """
     resolution = options.resolution
     with progress_bar() as shown, Pool() as pool:
@@ -213,7 +216,7 @@ def calibrate(
 ) -> CommandResult:
     """Calibrate the 6x6 of hinges by finite elements.
 
-    Writes a design file whose lumped model has the accuracy of FEA in its hinges. Comments and the drawn hinges stay.
+    Writes a design file in which hinges have the 6x6 from FEA, for a more accurate lumped model. Comments and the drawn hinges are kept.
     """
     resolution = options.resolution
     text = read_text(design)
@@ -239,7 +242,7 @@ def _hinge_study(mechanism: Mechanism, resolution: Resolution, ways: Ways) -> _R
     found = solid_hinges(mechanism, hinges(resolution.accuracy, resolution.order, ways))
     warnings = _inexact_hinges(found)
     return _Result(
-        said=page.Headline(f"{len(found)} distinct hinges, {len(warnings) or 'none'} of them below the required accuracy.", not warnings),
+        said=page.Headline(f"{len(found)} distinct hinges, {len(warnings) or 'none'} of them less accurate than required.", not warnings),
         results=({"hinges": found},),
         tables=lambda: iter([hinge_table(found), *hinge_matrices(found)]),
         sections=lambda: iter([pages.hinge_section(found)]),
@@ -300,7 +303,7 @@ _STUDIES = {Scope.HINGE: _hinge_study, Scope.UNIT: _unit_study, Scope.STAGE: _st
 
 
 def free_end_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Leaves with ends free to warp in theory, but clamped in the solid model.
+    """Warnings about leaves whose ends are free to warp in theory, but clamped in the solid model.
 
     >>> free_end_warnings(Mechanism("stage"))
     ()
@@ -311,7 +314,7 @@ def free_end_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
         if isinstance(part, Leaf) and part.ends is LeafEnds.FREE and link.material is not None:
             clamped = leaf_diagonal(replace(part, ends=LeafEnds.CLAMPED), link.material)[3]
             stiffer = float(np.max(np.real(leaf_diagonal(part, link.material)[3] / clamped))) - 1.0
-            what = f"its ends warp in theory, but are clamped in finite elements: {100.0 * stiffer:.3g} % stiffer in twist"
+            what = f"its ends are free to warp in theory, but clamped in the solid model, which is {100.0 * stiffer:.3g} % stiffer in twist"
             found[link.link.part] = Finding(f"parts.{link.link.part}", what, 'Compare with ends = "clamped"')
     return tuple(found.values())
 
@@ -334,10 +337,10 @@ def _accuracy_warnings(what: str, found: Converged[Any], resolution: Resolution)
 
 def _accuracy_text(found: Converged[Any]) -> str:
     size = f"{100.0 * max(found.errors.values()):.2g} %" if found.errors else "unknown"
+    more = f", {found.order + 1} in {found.raised} of the components" if found.raised else ""
     if found.unestimated:
         locked, number = ", ".join(found.unestimated[:3]), len(found.unestimated)
-        return f"of {number} figures ({locked}{', ...' if number > 3 else ''}) {NOT_ESTIMATED}; of the others it is {size}"
-    more = f", {found.order + 1} in {found.raised} of the components" if found.raised else ""
+        more = f"; for {number} other figures ({locked}{', ...' if number > 3 else ''}), {NOT_ESTIMATED.partition('. ')[0]}"
     return f"the estimated error of finite elements is {size} at order {found.order}{more}"
 
 

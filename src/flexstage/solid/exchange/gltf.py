@@ -1,7 +1,7 @@
-"""GLB files (glTF 2.0, binary): the surface of a stage, a coloured node for each body or link, motions as animated morph targets.
+"""GLB files (binary glTF 2.0): the surface of a stage, with a coloured node for each body or link and animated motions.
 
-Lengths are in metres; the stage's z axis is glTF's y axis (up). Every node has one morph target for each motion, animated by a sine with
-a period of one second.
+Lengths are in metres; the stage's z axis is glTF's y axis (up). Every node has one morph target for each motion. The weight of a target
+follows a sine with a period of one second.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from flexstage.solid.fea.solver.component import groups
 from flexstage.solid.fea.solver.surface import vertex_places
 
 _KEYS = 33
-"""Keyframes of one period: linear interpolation of a sine is within 0.5 % of its amplitude."""
+"""Keyframes of one period: the error of linear interpolation is below 0.5 % of the amplitude."""
 _SECONDS = 1.0
 _LARGEST = 0.05
 """The largest displacement of an animation over the diagonal of the stage."""
@@ -40,10 +40,7 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Surface of a body or link: `vertices` (v, 3) [m] in the stage's frame, `triangles` (t, 3), displacements `shifts` (k, v, 3) [m].
-
-    The k displacements belong to the motions.
-    """
+    """Surface of a body or link: `vertices` (v, 3) [m] in the stage's frame, `triangles` (t, 3), `shifts` (k, v, 3) [m] in k motions."""
 
     vertices: Array
     triangles: Array
@@ -84,7 +81,7 @@ def _split_surface(item: Placed, vertices: Array, shifts: Array) -> dict[str, Su
 
 
 def gltf(stage: str, shown: Mapping[str, Surface], motions: Sequence[Motion]) -> bytes:
-    """Write the bytes of a GLB file with the surfaces `shown` of a stage, and one animation for each motion.
+    """Return the content of a GLB file with the surfaces `shown` of a stage, and one animation for each motion.
 
     Bodies have different colours, links are grey. Normals are omitted, so viewers shade every triangle flat.
 

@@ -24,7 +24,7 @@ _EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Grid of quadratic tetrahedra: `points` (p, 3) [m], `cells` (c, 10) in VTK's order; `owner` (c,) is the number of a cell's piece."""
+    """Quadratic tetrahedra: `points` (p, 3) [m], `cells` (c, 10) in VTK's order, and the piece (index) of each cell, `owner` (c,)."""
 
     points: Array
     cells: Array
@@ -33,7 +33,7 @@ class Grid:
 
 @dataclass(frozen=True, eq=False)
 class Gridding(ComponentJob):
-    """Job that meshes a component as a grid, in a separate process."""
+    """Job that meshes a component in a separate process and returns the mesh as a grid."""
 
     fineness: Fineness
 

@@ -1,4 +1,4 @@
-"""Export of the reduced matrices of one solid of a stage, as a part with ports for theory and other programs."""
+"""Export of the reduced matrices of one solid of a stage, as a superelement for theory and other programs."""
 
 from __future__ import annotations
 
@@ -38,29 +38,29 @@ def export_superelement(
     progress: Progress | None = None,
     memory: float | None = None,
 ) -> Superelement:
-    """Reduce one solid of a stage by finite elements, write its matrices as an NPZ file, and return the part defined by them.
+    """Reduce one solid of a stage by finite elements, write its matrices to an NPZ file, and return the part that they define.
 
-    The solid contains the body or link of this `name` and all parts of the same component (see `fea.component`). Its ports are the end
-    faces of links to other components: the ground, rigid bodies, stacks, other units. A port remains plane and has the name of its link
-    (`left`, or `left-platform` if both ends of the link are ports). The frame of a port is at the middle of the face. Its axes are
-    those of the stage, or of the unit if the solid belongs to a unit.
+    The solid contains the body or link of this `name` and all parts of the same component (see `fea.solver.component`). Its ports are the
+    end faces of links where the solid meets the ground, rigid bodies, stacks or other units. The faces remain plane. A port has the name of
+    its link (`left`, or `left-platform` if both ends of the link are ports). Its frame is at the middle of the face. Its axes are those of
+    the stage, of the unit that contains the solid, or of the link if the solid is a single link.
 
-    Stiffness `K` and mass `M` are in SI units. Their coordinates are the ports' twists, then inner coordinates: the `reduction.modes`
+    Stiffness `K` and mass `M` are in SI units. Their coordinates are the twists of the ports, then inner coordinates: the `reduction.modes`
     lowest modes with all ports fixed, and static responses that replace the omitted modes. These are the responses to wrenches on the
     bodies and to the inertia of the ports' motions.
 
     Raises `DesignError` for the errors of `model`, for an unknown name, for fewer than two ports, and for a stack, because the matrices
-    have no stroke.
+    cannot represent its stroke.
     """
     target = Path(path)
     if target.suffix != ".npz":
-        raise refuse(str(path), "the matrices are written as an NPZ file", "Choose a name that ends in .npz")
+        raise refuse(str(path), "the matrix file must be an NPZ file", "Choose a name that ends in .npz")
     shape = with_drawn_parts(mechanism)
     whole = _free(_component(components(shape), name))
     sound_components(shape, cache)
     ((_, element),) = reduce_parts((whole,), replace(reduction, residual=True), Ways(cache, progress, Limits(memory=memory)))
     if element.strokes:
-        raise refuse(name, "a stack's stroke is not in its stiffness and mass", "Export the bodies on both of its sides")
+        raise refuse(name, "stiffness and mass cannot represent the stroke of a stack", "Export the bodies on both sides of the stack")
     with atomic_write(target) as place, place.open("wb") as stream:
         np.savez(stream, K=sum(element.stiffness.values()), M=sum(element.inertia.values()))
     return superelement(Superelement(FileUnits.SI, _ports(whole), file=str(target), source=f"flexstage, {reduction.modes} modes"))
@@ -78,7 +78,9 @@ def _free(part: Component) -> Component:
     """The component without neighbours, all its joints ports that remain plane."""
     joints = [item.joint for item in part.interfaces]
     if len(joints) + len(part.fixed) < 2:
-        raise refuse(part.name, f"it has only {len(joints) + len(part.fixed)} interface", "A superelement has two or more ports")
+        raise refuse(
+            part.name, f"too few ports (got {len(joints) + len(part.fixed)}, expected 2 or more)", "Choose a solid that meets several links"
+        )
     interfaces = (*(replace(item, yields=False) for item in part.interfaces), *(Interface(joint) for joint in part.fixed))
     return replace(part, interfaces=interfaces, fixed=())
 

@@ -87,7 +87,7 @@ _PLACE = 5
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A solid of the STEP file, in mm; `name` is its address: a link (`B1/front`) or body, with the material if a body has several."""
+    """A solid of the STEP file, in mm; `name` is the address of a link (`B1/front`) or body, with the material if the body has several."""
 
     name: str
     shape: occ.TopoDS_Shape
@@ -96,7 +96,7 @@ class Part:
 
 
 def stage_parts(stage: Stage) -> tuple[Part, ...]:
-    """Return the solids of a stage: one for each link, one for each body and material, one for each outline of the ground.
+    """Return the solids of a stage: one for each link, one for each material of each body, one for each outline of the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [part.name for part in stage_parts(stage_pieces(parallelogram()))]
@@ -114,13 +114,13 @@ def stage_parts(stage: Stage) -> tuple[Part, ...]:
 
 
 def step(mechanism: Mechanism) -> bytes:
-    """Write the bytes of the STEP file of a stage in its undeformed configuration.
+    """Return the content of the STEP file of a stage in its undeformed configuration.
 
-    Raises `DesignError` with the names of all links without a shape, and for a stage without any shape.
+    Raises `DesignError` with the names of links without a shape or a specified stiffness, and for a stage without any shape.
 
     >>> step(Mechanism("nothing"))
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: nothing: no body has outlines and no link a shape. ...
+    flexstage.base.finding.DesignError: nothing: no body has outlines, and no link has a shape. ...
     """
     stage = stage_pieces(mechanism)
     require_shapes(mechanism, stage)
@@ -133,7 +133,7 @@ def _fuse(pieces: Sequence[Piece]) -> occ.TopoDS_Shape:
 
 
 def step_text(name: str, parts: Sequence[Part]) -> str:
-    """Write parts as the text of a STEP file: one product each, all placed in an assembly of this name.
+    """Return the content of a STEP file: one product for each part, all placed in an assembly of this name.
 
     >>> step_text("nothing", ()).splitlines()[0]
     'ISO-10303-21;'
@@ -174,7 +174,7 @@ def _renumbered(entities: Mapping[int, str], offset: int) -> Iterator[str]:
 
 
 def quote(text: str) -> str:
-    r"""Quote a text for a STEP file: quotes are doubled, non-ASCII characters are written by code.
+    r"""Quote a string for a STEP file: quotes are doubled, non-ASCII characters are written as hexadecimal codes.
 
     >>> print(quote("d'Arc"), quote("Träger"))
     'd''Arc' 'Tr\X2\00E4\X0\ger'

@@ -1,7 +1,7 @@
 """VTU files: the meshes of all components of a stage as one unstructured grid of quadratic tetrahedra, in metres.
 
-Cells have the numbers of their piece, body or link, material and component; a comment at the start of the file lists the names of these
-numbers. Components have separate points at their interfaces: they are joined by coordinates, not by nodes.
+Each cell has the numbers of its piece, of its body or link, of its material and of its component. A comment at the start of the file lists
+the name of each number. Components do not share points at their interfaces: the model joins them by coordinates, not by nodes.
 """
 
 from __future__ import annotations
@@ -42,13 +42,13 @@ class StageMesh:
 
 
 def stage_mesh(mechanism: Mechanism, fineness: Fineness, limits: Limits = _LIMITS, progress: Progress | None = None) -> StageMesh:
-    """Mesh every distinct component once, in a separate process, and place it for every instance.
+    """Mesh every distinct component once, in a separate process, and place its mesh at every instance.
 
     Raises `DesignError` if the outlines do not form solids or cannot be meshed, and for a stage without any shape.
 
     >>> stage_mesh(Mechanism("nothing"), Fineness())
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: nothing: no body has outlines and no link a shape. ...
+    flexstage.base.finding.DesignError: nothing: no body has outlines, and no link has a shape. ...
     """
     stage, parts = stage_pieces(mechanism), components(mechanism)
     require_shapes(mechanism, stage)
@@ -66,7 +66,7 @@ def _place_mesh(part: Component, own: Grid, numbers: Mapping[str, int]) -> Grid:
 
 
 def vtu(mesh: StageMesh) -> bytes:
-    """Write the bytes of the VTU file of a stage's mesh.
+    """Return the content of the VTU file of a stage's mesh.
 
     Cell data are the numbers `piece`, `body`, `material` and `component`, and `young` [Pa] and `density` [kg/m^3].
     """
@@ -106,7 +106,7 @@ def _write_xml(grids: Sequence[Grid], data: Mapping[str, Array]) -> bytes:
 
 def _comment(content: bytes, names: Mapping[str, Sequence[str]]) -> bytes:
     """The file with a comment that lists the names of its numbers."""
-    lines = ["lengths in metres; numbers of the cell data:"]
+    lines = ["lengths in metres; names of the numbers in the cell data:"]
     lines += [f"{kind} {number}: {escape(printable(name))}" for kind, members in names.items() for number, name in enumerate(members)]
     comment = "\n".join(lines).replace("--", "- -")
     head, start, rest = content.partition(b"<VTKFile")

@@ -1,4 +1,4 @@
-"""Calibration: replaces hinges of beam theory by their 6x6 compliance from finite elements, for higher accuracy of the lumped model."""
+"""Calibration of the lumped model: the 6x6 compliance of hinges from finite elements replaces that of beam theory."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Calibration(InNotebook):
 
     @property
     def over_beam_theory(self) -> Annotated[Mapping[str, Array], VIEW]:
-        """Relative differences (6,) of the direct compliances by FEA and by beam theory, by part: along and about x, y, z."""
+        """Relative differences (6,) of the direct compliances, FEA over beam theory less one, by part: along and about x, y, z."""
         return {
             name: np.diag(stack(self.parts[name].compliance)) / np.diag(compliance(hinge.form.part, hinge.form.material)) - 1.0
             for name, hinge in self.hinges.items()
@@ -55,7 +55,7 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
     """Compute the 6x6 compliance of every distinct hinge in a design file's text and insert the results; comments are kept.
 
     Raises `DesignError` for hinges that are calibrated already, have overrides in single instances or are members of a compound. Raises it
-    also if FEA cannot compute a hinge with sufficient accuracy.
+    also if the error of a 6x6 by FEA is unknown or above 10 %.
     """
     mechanism = loads(text, where=where)
     require(_refuse_calibrated(mechanism))
@@ -70,8 +70,8 @@ def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "tex
 def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, ComplianceMatrix]:
     """Convert computed hinges to parts with compliance matrices, with the mass and the intended DOFs of the drawn hinges.
 
-    The matrix has the symmetry of the drawn hinge. If FEA cannot separate the compliance of a DOF from the adjacent blocks, the value of
-    beam theory is used. Raises `DesignError` if the error of a matrix is unknown or above 10 %.
+    The matrix has the symmetry of the drawn hinge. In a DOF in which FEA cannot separate the hinge from the adjacent blocks, it has the
+    value of beam theory. Raises `DesignError` if the error of a matrix is unknown or above 10 %.
 
     >>> stand_ins({})
     {}
@@ -97,15 +97,15 @@ def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, ComplianceMatrix]:
 
 def _doubt(name: str, error: float | None) -> Finding:
     if error is None:
-        return Finding(f"parts.{name}", f"the error of its 6x6 by FEA is not known: {NO_ESTIMATE}", LEAVE)
-    what = f"the error of its 6x6 by FEA is {100.0 * error:.2g} %, no better than beam theory's"
-    return Finding(f"parts.{name}", what, "Increase the accuracy")
+        return Finding(f"parts.{name}", f"the error of its 6x6 by FEA is unknown: {NO_ESTIMATE}", LEAVE)
+    what = f"the error of its 6x6 by FEA is {100.0 * error:.2g} % (expected at most 10 %)"
+    return Finding(f"parts.{name}", what, "Require a smaller relative error (--accuracy)")
 
 
 def substitute_parts(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Mechanism:
     """Replace the hinges of a stage by their computed compliance matrices, except members of compounds.
 
-    Raises `DesignError` for a link that overrides a shared part.
+    Raises `DesignError` for a link that overrides its shared part.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> substitute_parts(double_triangle(), {}) == double_triangle()
@@ -128,19 +128,23 @@ def _rename_parts(links: Mapping[str, Link], names: Mapping[str, str], owner: st
 
 def _refuse_calibrated(mechanism: Mechanism) -> Iterator[Finding]:
     for name in calibrated_parts(mechanism):
-        yield Finding(f"parts.{name}", "its 6x6 is from FEA already", "Calibrate the original file")
+        yield Finding(f"parts.{name}", "its 6x6 is from FEA already", "Calibrate the original design file")
 
 
 def _refuse_members(mechanism: Mechanism) -> Iterator[Finding]:
     for name in {link.link.part: link for link in expand(mechanism).links.values() if link.of is not None}:
         what = "it consists of several hinges, which cannot be calibrated separately"
-        yield Finding(f"parts.{name}", what, "Define them as separate links")
+        yield Finding(f"parts.{name}", what, "Define the hinges as separate links")
 
 
 def _refuse_overrides(mechanism: Mechanism) -> Iterator[Finding]:
     for link in expand(mechanism).links.values():
         if link.described.part != mechanism.parts[link.link.part]:
-            yield Finding(link.name, f"overrides its part {link.link.part}, whose 6x6 is shared", "Define a separate part for that link")
+            yield Finding(
+                link.name,
+                f"overrides its part {link.link.part}, but all links of this part share one 6x6",
+                "Define a separate part for this link",
+            )
 
 
 _TURN = spatial_rotation(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))

@@ -1,7 +1,7 @@
 """Compliance (6x6) of every distinct hinge of a stage, computed for the isolated solid with the roots that it has in the stage.
 
-A root is the block at which an end of the hinge is attached. The roots are part of the hinge, because models with rigid bodies have no
-other compliance of the blocks. A part used with different roots is several hinges.
+A root is the elastic block to which an end of the hinge is attached. The compliance of the roots belongs to the hinge, because models with
+rigid bodies contain no other compliance of the blocks. A part used with different roots counts as several hinges.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 _MOST_STUB = 0.9
 
 Hinges: TypeAlias = Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]]
-"""Function that computes hinges by name: directly, or from a cache with progress reports."""
+"""Function that returns the 6x6 of hinges by name: computed, or from a cache with progress reports."""
 
 
 @dataclass(frozen=True, eq=False)
 class DistinctHinge:
-    """A distinct hinge: the name of its part, `shared` by links, its form, and the drawn `links` that are equal to it."""
+    """A distinct hinge: `shared` is the name of its part, `form` the input of its FEA, and `links` the drawn links that are equal to it."""
 
     shared: Annotated[str, INNER]
     form: Annotated[HingeForm, INNER]
@@ -70,17 +70,18 @@ class SolidHinge(DistinctHinge, InNotebook):
 
     @property
     def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
-        """Whether each direct compliance is separable from the compliance of the adjacent stubs: stubs have at most 90 % of the sum.
+        """Whether each direct compliance can be separated from that of the adjacent stubs: stubs have at most 90 % of the sum.
 
-        The solid has stubs next to the hinge, whose compliance as beams with restrained warping (Vlasov) is subtracted. In torsion a wide
-        notch is stiffer than its stubs. The result is then a small difference of two large numbers, for which beams are too inaccurate.
+        The solid contains stubs (pieces of the blocks) next to the hinge. Their compliance as beams with restrained warping (Vlasov) is
+        subtracted. In torsion a wide notch is stiffer than its stubs. The result is then a small difference of two large numbers, and the
+        compliance of beams is too inaccurate for it.
         """
         whole, own = (np.diag(each) for each in (self.found.whole, self.found.compliance))
         return tuple(bool(value) for value in own >= (1.0 - _MOST_STUB) * whole)
 
     @property
     def error(self) -> Annotated[float | None, RATIO]:
-        """Estimated relative error of the compliance at the hinge's end, for any entry; null if unknown."""
+        """Largest estimated relative error of any entry of the compliance at the hinge's end; null if unknown."""
         return self.found.error if np.isfinite(self.found.error) else None
 
     @property
@@ -112,9 +113,9 @@ class SolidHinge(DistinctHinge, InNotebook):
 
 
 def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS) -> Hinges:
-    """Return a function that computes hinges to a relative accuracy, with elements of at most this `order`, but at least three.
+    """Return a function that computes the 6x6 of hinges to a relative accuracy, with elements up to this `order` (at least three).
 
-    `ways` states cache, progress and processes. Every hinge is computed once, in parallel.
+    `ways` specifies cache, progress and processes. Every hinge is computed once, in parallel with others.
     """
     required = accuracy_of(accuracy, order)
 
@@ -125,7 +126,7 @@ def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDA
 
 
 def accuracy_of(accuracy: float, order: int | None) -> Accuracy:
-    """Return the accuracy requirements of hinges: relative error, and orders of the elements up to `order`, but at least three.
+    """Return the accuracy requirements of hinges: relative error, and orders of the elements up to `order` (at least three).
 
     >>> accuracy_of(0.01, 2).orders
     (2, 3)
@@ -134,14 +135,14 @@ def accuracy_of(accuracy: float, order: int | None) -> Accuracy:
 
 
 STANDARD_HINGES = hinges()
-"""Function that computes hinges to 1 %, with the user's cache."""
+"""Function that computes the 6x6 of hinges to 1 %, with the user's cache."""
 
 
 def distinct_hinges(mechanism: Mechanism) -> dict[str, DistinctHinge]:
-    """Find every distinct hinge of a stage, by name.
+    """Return every distinct hinge of a stage, by name.
 
-    The name is the name of the part, or `part-link` if the part is used with several roots. For an instance with an override it is the
-    name of the link.
+    A hinge has the name of its part, or `part-link` if the part is used with different roots. A hinge of a link that overrides its part has
+    the name of the link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = distinct_hinges(double_triangle())
@@ -212,7 +213,7 @@ def as_drawn(hinge: DistinctHinge, solved: HingeSolid) -> SolidHinge:
 
 
 def turned_forms(found: Mapping[str, DistinctHinge]) -> dict[str, HingeForm]:
-    """Return the forms of hinges to compute: a hinge with a single root is mirrored, if necessary, to have it at its second end.
+    """Return the forms of hinges to compute: a hinge with a single root is mirrored, if necessary, to have the root at its second end.
 
     >>> turned_forms({})
     {}

@@ -1,4 +1,4 @@
-"""Modes by finite elements for a comparison: computed if requested, else from the cache if it has all components of the stage."""
+"""Modes by finite elements for comparisons: computed on request, else from the cache if it contains all components of the stage."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def fea_modes(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids 
 
 
 def fea_modes_from_cache(mechanism: Mechanism, cache: Cache) -> FeaModes | None:
-    """Return the modes of a stage as a solid from the cache, at the highest order for which the cache has all components, or `None`.
+    """Return the modes of a stage as a solid from the cache, at the highest order with all components, or `None` if there is none.
 
     >>> from pathlib import Path
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -64,7 +64,7 @@ def _from_cache(mechanism: Mechanism, cache: Cache, reduction: Reduction) -> Fea
         wholes.append((job.component, element))
     parts = as_joined(own, wholes)
     order = reduction.fineness.order
-    provenance = f"solid model of {digest(shape, physics=True)[:16]}, order {order}, {reduction.modes} modes a component"
+    provenance = f"solid model of {digest(shape, physics=True)[:16]}, order {order}, {reduction.modes} modes per component"
     model = linear_model(shape, expand(shape), parts, provenance)
     return FeaModes(platform_modes(mechanism, model), model, order) if parts else None
 

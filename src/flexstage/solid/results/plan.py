@@ -1,4 +1,4 @@
-"""Jobs of a study of solids, known before the computation."""
+"""Plans: the jobs of a study of solids that are known before the computation."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from flexstage.solid.results.resolution import Resolution, first_reductions
 
 @dataclass(frozen=True)
 class Plan:
-    """The minimum jobs of a computation. Failed jobs of `needed` (keys) prevent any result."""
+    """Jobs that a computation needs in any case. Without a result of each job in `needed` (keys), the computation has no result."""
 
     jobs: tuple[StoredJob, ...]
     needed: frozenset[str] = frozenset()
@@ -35,10 +35,10 @@ class Plan:
 
 
 def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hinges: Accuracy | None = None) -> Plan:
-    """The minimum jobs of `verify`: hinges, the stage and its isolated units at two orders.
+    """Return the jobs that `verify` needs in any case: hinges, the stage and its isolated units at two orders.
 
-    The accuracy of hinges is by default the required one. Outlines are checked. Raises `DesignError` if the stage cannot be read as a
-    solid, or has no hinge.
+    `of_hinges` is the accuracy of hinges (default: from `asked`). Outlines are checked. Raises `DesignError` if the stage cannot be
+    modelled as a solid or has no hinge.
     """
     shape, alone = with_drawn_parts(mechanism), units_alone(mechanism)
     check_together([shape, *alone], ways.cache, ways.pool)
@@ -59,9 +59,9 @@ def verification_plan(mechanism: Mechanism, asked: Resolution, ways: Ways, of_hi
 
 
 def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *, bare: bool = False) -> Plan:
-    """The minimum jobs of `solid` for stages as drawn: their components at two orders, without modes if `bare`.
+    """Return the jobs that `solid` needs in any case for stages as drawn: their components at two orders, without modes if `bare`.
 
-    Outlines are checked. Raises `DesignError` if a stage cannot be read as a solid.
+    Outlines are checked. Raises `DesignError` if a stage cannot be modelled as a solid.
     """
     check_together(stages, ways.cache, ways.pool)
     parts = [part for stage in stages for part in sound_components(stage, ways.cache)]
@@ -73,7 +73,7 @@ def reduction_plan(stages: Sequence[Mechanism], asked: Resolution, ways: Ways, *
 def work_ahead(plan: Plan, ways: Ways) -> None:
     """Run the planned jobs in one queue, so that hinges, stage and units find their results in the pool of `ways`.
 
-    Raises `DesignError` for failures of needed jobs; those of a single isolated unit are reported in its phase.
+    Raises `DesignError` if a needed job fails. The failure of another job, of an isolated unit, is reported when the units are computed.
     """
     try:
         obtain(plan.jobs, ways)
@@ -84,7 +84,7 @@ def work_ahead(plan: Plan, ways: Ways) -> None:
 
 
 def units_alone(mechanism: Mechanism) -> list[Mechanism]:
-    """Every distinct isolated unit as drawn; none if the strokes do not determine the platform, which is reported in its phase.
+    """Return every distinct isolated unit as drawn; none if the strokes do not determine the platform, which is reported later.
 
     >>> units_alone(Mechanism("nothing"))
     []

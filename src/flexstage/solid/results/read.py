@@ -46,7 +46,7 @@ class SolidRead:
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Number of unknowns of every distinct component, by the key that selects components for a raised order."""
+        """Number of unknowns of every distinct component, by the keys that `Reduction.raised` contains."""
         return {content_in_stage(item.component): item.element.freedoms for item in self._distinct}
 
     @property
@@ -55,7 +55,7 @@ class SolidRead:
 
 
 def solids(ways: Ways = STANDARD_WAYS) -> Solids:
-    """Return a function that checks outlines and reduces components; `ways` states cache, progress and processes.
+    """Return a function that checks outlines and reduces components; `ways` specifies cache, progress and processes.
 
     >>> solids()(Mechanism("nothing"), Reduction())
     ()
@@ -64,7 +64,7 @@ def solids(ways: Ways = STANDARD_WAYS) -> Solids:
 
 
 def remember(reduce: Solids) -> Solids:
-    """Return the same function with its results stored. If results of two orders are known, their parts are combined as required.
+    """Return the same function with stored results. A reduction with `raised` components is combined from stored results of two orders.
 
     >>> remember(solids())(Mechanism("nothing"), Reduction())
     ()
@@ -102,12 +102,13 @@ def model(
 ) -> LinearModel:
     """Model a stage as 3-D elastic solids: finite elements of each distinct component, reduced by the Craig-Bampton method and joined.
 
-    Names of inputs and outputs equal those of `lumped`. Every distinct component is meshed and reduced once, in a separate process, and
-    stored in the `cache` (`None`: no cache). `progress` receives the step, the fraction and the seconds left. `memory` [bytes] limits the
-    planned memory (default: the free memory of the machine).
+    Inputs and outputs have the same names as in `lumped`. Every distinct component is meshed and reduced once, in a separate process, and
+    stored in the `cache` (`None`: no cache). `progress` receives the step, the completed fraction and the remaining seconds. `memory`
+    [bytes] limits the planned memory (default: the free memory of the machine).
 
-    Before meshing, raises `DesignError` with the names of links without a shape, and of gaps, overlaps and slivers of outlines. Raises it
-    also for failed meshes, insufficient memory or time, and stages with rigid-body motions. Warnings report problems of the cache.
+    Before meshing, raises `DesignError` for links without a shape or a specified stiffness, and for gaps, overlaps and slivers of outlines.
+    Raises it also for failed meshes, insufficient memory or time, and stages with rigid-body motions. Warnings report problems of the
+    cache.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> model(parallelogram(), memory=1e6, cache=None)
@@ -121,8 +122,8 @@ def model(
 def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> SolidRead:
     """Model a stage as solids; calibrated hinges have the shapes that their matrices replace.
 
-    `reduce` is the function that reduces the components. Raises `DesignError` for parts without a shape, for gaps, overlaps and slivers of
-    outlines, and if the stage has a rigid-body motion.
+    `reduce` is the function that reduces the components. Raises `DesignError` for links without a shape or a specified stiffness, for gaps,
+    overlaps and slivers of outlines, and if the stage has a rigid-body motion.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.restrict import restrict
@@ -137,8 +138,8 @@ def read_solid(mechanism: Mechanism, reduction: Reduction, reduce: Solids) -> So
     parts = reduce(shape, reduction)
     order = reduction.fineness.order
     orders = f"{order} and {order + 1}" if reduction.raised else f"{order}"
-    bare = f", none in those of order {order + 1}" if reduction.raised and reduction.static else ""
-    provenance = f"solid model of {digest(shape, physics=True)[:16]}, order {orders}, {reduction.modes} modes a component{bare}"
+    bare = f", 0 in components of order {order + 1}" if reduction.raised and reduction.static else ""
+    provenance = f"solid model of {digest(shape, physics=True)[:16]}, order {orders}, {reduction.modes} modes per component{bare}"
     return SolidRead(shape, linear_model(shape, assembly, parts, provenance), place_parts(assembly, parts))
 
 

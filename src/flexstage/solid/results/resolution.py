@@ -24,12 +24,12 @@ _AT_ORDER_TWO = 0.25
 """Order one is inaccurate: on hinges and blocks order two had a tenth of its error, never a quarter."""
 _LOCKED = 0.5
 """Change from order one above which it does not estimate order two: elements of order one lock in bending of thin parts."""
-NOT_ESTIMATED = "FEA's error is not estimated: order one, the reference of order two, locks in bending of thin parts. Use --order 3"
+NOT_ESTIMATED = "the error of FEA is unknown: order one, the reference of order two, locks in bending of thin parts. Use --order 3"
 
 
 @dataclass(frozen=True)
 class Resolution(CheckedFields):
-    """Requirement: the relative error of stiffnesses, gains and frequencies, or instead a fixed `order` of elements."""
+    """Required relative error of stiffnesses, gains and frequencies, or instead a fixed `order` of elements."""
 
     accuracy: float = 0.01
     order: int | None = None
@@ -40,11 +40,11 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Converged(Generic[_Result]):
-    """A result with the estimated relative error of each of its figures. An estimate, no bound; absent figures are unknown.
+    """A result with the estimated relative error of each figure. It is an estimate, not a bound; absent errors are unknown.
 
-    It is the change from the previous order, at order two a quarter of it, and unknown for the `unestimated` figures, which changed
-    by more than half. `stopped` states why the order was not raised further without the required accuracy; `raised` is the number of
-    components with elements of one order more.
+    The error is the change from the previous order; at order two it is a quarter of this change. The errors of the `unestimated` figures,
+    which changed by more than half, are unknown. `stopped` is the reason why the order was not raised further, although the required
+    accuracy was not reached. `raised` is the number of components with elements of one order more.
     """
 
     result: Annotated[_Result, INNER]
@@ -56,7 +56,7 @@ class Converged(Generic[_Result]):
 
     @property
     def error(self) -> float:
-        """The largest of the errors; infinite if one is not estimated, or none is known."""
+        """Largest error; infinite if a figure is `unestimated` or no error is known."""
         return float("inf") if self.unestimated else max(self.errors.values(), default=float("inf"))
 
 
@@ -67,10 +67,10 @@ def converge(
     sizes: Callable[[_Result], Mapping[str, float]] | None = None,
     measure: Callable[[Reduction], Mapping[str, float]] | None = None,
 ) -> Converged[_Result]:
-    """Compute at rising orders (2, 3, 4) until the figures change by less than the accuracy, or at one order and the coarser one.
+    """Compute at rising orders (2, 3, 4) until the estimated errors are within the accuracy, or only at a fixed order and the one below.
 
-    With `sizes`, the unknowns of the components of a result, only components with a large share of the change get a higher order.
-    `measure` computes the figures without the other parts of a result.
+    `sizes` returns the number of unknowns of each component: then only components with a large share of the change get a higher order.
+    `measure` computes only the figures of a result.
 
     >>> found = converge(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))
     >>> found.order, round(found.error, 4)
@@ -149,7 +149,7 @@ def _next_part(shares: Mapping[str, Array], sizes: Mapping[str, float], raised: 
 
 
 def orders_of(asked: Resolution) -> tuple[int, ...]:
-    """Orders to try, in sequence.
+    """Return the orders to compute, in sequence.
 
     >>> orders_of(Resolution()), orders_of(Resolution(order=2))
     ((3, 4), (2,))
@@ -158,7 +158,7 @@ def orders_of(asked: Resolution) -> tuple[int, ...]:
 
 
 def first_reductions(asked: Resolution) -> tuple[Reduction, Reduction]:
-    """The two reductions needed in any case: the one for the error estimate, and the lowest required order.
+    """Return the two reductions that are always needed: the one for the error estimate, and the one of the lowest order to compute.
 
     >>> [way.fineness.order for way in first_reductions(Resolution())]
     [2, 3]
@@ -177,9 +177,9 @@ def reduction_of_order(order: int) -> Reduction:
 
 
 def estimates(before: Mapping[str, float], after: Mapping[str, float], order: int) -> dict[str, float]:
-    """Estimated relative errors of the figures at an order, from those of the order below.
+    """Estimate the relative errors of the figures at an order from the figures at this order and at the one below.
 
-    None at order two if order one differs by more than half.
+    At order two, a figure that differs from order one by more than half has no estimate.
 
     >>> estimates({"a": 1.0, "b": 4.0}, {"a": 2.0, "b": 1.0}, order=2)
     {'a': 0.125}
@@ -189,7 +189,7 @@ def estimates(before: Mapping[str, float], after: Mapping[str, float], order: in
 
 
 def changes(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:
-    """Relative changes of the common figures that are numbers.
+    """Relative changes of figures that are finite in both results.
 
     >>> changes({"a": 1.0, "b": 1.0, "c": float("nan")}, {"a": 2.0, "c": 1.0})
     {'a': 0.5}

@@ -36,7 +36,7 @@ _BODY = " (body)"
 
 @dataclass(frozen=True, eq=False)
 class BodyCost:
-    """Strain-energy fraction of elastic bodies by platform mode (k,), and the resulting change of the frequency."""
+    """Strain-energy fraction of elastic bodies in each platform mode (k,), and the resulting change of the frequency."""
 
     strain_energy_share: Annotated[Array, RATIO, Heading("strain energy in bodies", digits=3, unit="%")]
     cost_in_frequency: Annotated[Array, RATIO, Heading("frequency change", digits=3, unit="%")]
@@ -46,10 +46,10 @@ class BodyCost:
 class SolidStage(InNotebook):
     """Results of a stage by the solid model.
 
-    `statics` and `modes` are as for any model. `stress` is the highest stress at every link and body over all corners of the strokes from
-    zero, permanent load included. It is `None` without strokes or with too many corners. `worst` (N,) are the model's coordinates at the
-    corner with the highest stress of the weakest link. `blocks` (k,) is the strain-energy fraction of the bodies, which are rigid in other
-    models, in each mode.
+    `statics` and `modes` are as for any model. `stress` is the highest stress at every link and body over all corners of the strokes,
+    measured from zero voltage, with permanent load. It is `None` without strokes or with too many corners. `worst` (N,) are the model's
+    coordinates at the corner with the highest stress of the weakest link. `blocks` (k,) is the strain-energy fraction of the bodies, which
+    are rigid in other models, in each mode.
     """
 
     statics: Annotated[Statics, Called("stiffness")]
@@ -61,12 +61,12 @@ class SolidStage(InNotebook):
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """Values with an estimated error, by name in SI: stiffness and platform frequencies."""
+        """Values with an estimated error, by name, in SI units: stiffness and platform frequencies."""
         return _figures(self.statics, self.modes)
 
     @property
     def flexible(self) -> Array:
-        """Relative change (k,) of each frequency by the elasticity of bodies, to first order: sqrt(1 - strain-energy fraction) - 1."""
+        """Relative change (k,) of each frequency due to elastic bodies, to first order: sqrt(1 - strain-energy fraction) - 1."""
         return np.sqrt(1.0 - self.blocks) - 1.0
 
     @property
@@ -77,7 +77,7 @@ class SolidStage(InNotebook):
 
     @property
     def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
-        """Links without a shape, with the kind of the part; they have the specified stiffness and mass, as in any model."""
+        """Links without a shape, with the kind of their part. As in any model, they have the specified stiffness and mass."""
         return stated_links(expand(self.read.mechanism))
 
     @property
@@ -134,7 +134,8 @@ def stiffness_figures(found: Statics) -> dict[str, float]:
 def solid_stage(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> SolidStage:
     """Model a whole stage as a solid, and compute its stiffness, modes and stress.
 
-    Raises `DesignError` for parts without a shape, outlines that do not touch, and if the stage has a rigid-body motion.
+    Raises `DesignError` for links without a shape or a specified stiffness, for outlines that do not touch, and if the stage has a
+    rigid-body motion.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.restrict import restrict

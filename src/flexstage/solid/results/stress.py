@@ -19,9 +19,9 @@ from flexstage.solid.fea.solver.assemble import Placed
 from flexstage.solid.fea.solver.surface import element_coordinates, piece_vertices, stresses, von_mises
 from flexstage.solid.results.read import SolidRead
 
-SHARP_CORNERS = "At sharp inner corners the true stress has no limit: there it grows with the resolution."
+SHARP_CORNERS = "At sharp inner corners the true stress is infinite: the computed stress grows with the resolution."
 SILENT = 1e3
-"""Stress limit [Pa]; lower stress counts as zero."""
+"""Stress [Pa] below which stress counts as zero."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,7 @@ _SHOWN = 0.06
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Surface of triangles (t, 3) between `places` (v, 3) [m] in the stage's frame, with a value (v,) at each place."""
+    """Surface of `triangles` (t, 3) between `places` (v, 3) [m] in the stage's frame, with a value (v,) at each place."""
 
     places: Array
     triangles: Array
@@ -27,7 +27,7 @@ class Surface:
 
 
 def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
-    """Return the surfaces of a stage displaced by a mode's coordinates (N,), magnified; values are relative displacements, 0 to 1."""
+    """Return the surfaces of a stage with magnified displacements of a mode (N,); values are relative displacements, 0 to 1."""
     factor, largest = magnification(read, shape)
     return tuple(
         Surface(vertex_places(item, shape, factor), item.element.skin.triangles, _displacement(item, shape) / largest)
@@ -36,7 +36,7 @@ def mode_surfaces(read: SolidRead, shape: Array) -> tuple[Surface, ...]:
 
 
 def stress_surfaces(read: SolidRead, motion: Array, strokes: Mapping[str, float]) -> tuple[Surface, ...]:
-    """Return the surfaces of a stage displaced by static coordinates `motion` (N,), magnified; values are von Mises stress [Pa].
+    """Return the surfaces of a stage with magnified static displacements `motion` (N,); values are von Mises stress [Pa].
 
     `strokes` [m] are the strokes by input for this motion.
     """

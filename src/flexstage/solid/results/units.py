@@ -1,4 +1,4 @@
-"""Results of isolated units as solids: output stiffness, gain and lost motion (Table 2 of Shin & Moon), stress at the full stroke."""
+"""Results of isolated units as solids: output stiffness, gain, lost motion (Table 2 of Shin & Moon) and stress at full stroke."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _STEPS = 5
 
 @dataclass(frozen=True, eq=False)
 class SolidUnit(UnitOutput, InNotebook):
-    """Results of one isolated unit by the linear solid model, with its output guided along the direction and not loaded.
+    """Results of one isolated unit by the linear solid model, with its output guided along `direction`, without load.
 
     `strokes` (k,) [m] are steps up to the full stroke, with `outputs` (k,) [m]. `stress` is the stress at every link at the full stroke.
     `motion` (N,) are the coordinates of the model `read` at the full stroke, for pictures.
@@ -45,9 +45,9 @@ class SolidUnit(UnitOutput, InNotebook):
         "copy axial lateral gain ideal_gain loss stress.weakest stress.peak stress.least_safety",
         head="unit",
         notes=(
-            "Each unit isolated, output on a rigid face.",
+            "Each unit is isolated; its output is a rigid face.",
             "Axial (K_a) and lateral (K_l) stiffness: actuators fixed, all other motions of the output prevented.",
-            f"Gain and stress: output guided along its direction and not loaded, full stroke. {SHARP_CORNERS}",
+            f"Gain and stress: full stroke, with the output guided along its direction, without load. {SHARP_CORNERS}",
         ),
     )
 
@@ -77,7 +77,7 @@ class SolidUnit(UnitOutput, InNotebook):
         return 1.0 / self.axial
 
     @property
-    def commands(self) -> Annotated[Array, LENGTH, Heading("commanded output", unit="um")]:
+    def commands(self) -> Annotated[Array, LENGTH, Heading("ideal output", unit="um")]:
         """Commanded outputs (k,) [m]: the ideal outputs for the strokes."""
         return self.ideal_gain * self.strokes
 
@@ -88,29 +88,29 @@ class SolidUnit(UnitOutput, InNotebook):
 
     @property
     def lost(self) -> Annotated[Array, INNER, LENGTH, Heading("lost motion", unit="um")]:
-        """Lost motion (k,) [m]: commanded outputs less outputs; differences within rounding are zero."""
+        """Lost motion (k,) [m]: commanded outputs less outputs; differences within rounding error are zero."""
         found = self.commands - self.outputs
         return np.where(np.abs(found) < NOISE * np.abs(self.commands), 0.0, found)
 
 
 @check_arguments
 def solid_units(mechanism: Mechanism, reduction: Reduction = STANDARD_REDUCTION, reduce: Solids = STANDARD_SOLIDS) -> dict[str, SolidUnit]:
-    """Model every unit that drives its output by exactly one actuator as an isolated solid, by name of the unit.
+    """Model every unit that drives its own output by exactly one actuator as an isolated solid; results by name of the unit.
 
-    The first instance of the unit is used. Outlines of other bodies are left out. The output is the end face of the link to the platform,
-    which remains plane. Raises `DesignError` if the stage has no such unit.
+    The first instance of the unit is used. Outlines of other bodies are left out. The output is the end face of the link to the platform;
+    this face remains plane. Raises `DesignError` if the stage has no such unit.
 
     >>> from flexstage.cases.registry import case
     >>> solid_units(case("bridge"))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: units: none of the stage's units drives an output of its own by one actuator. ...
+    flexstage.base.finding.DesignError: units: no unit of the stage drives its own output by one actuator. ...
     """
     found = driven_units(mechanism)
     if not found:
         raise refuse(
             "units",
-            "none of the stage's units drives an output of its own by one actuator",
+            "no unit of the stage drives its own output by one actuator",
             "Use --scope stage",
         )
     return {unit: _unit(mechanism, unit, copy, direction, reduction=reduction, reduce=reduce) for unit, (copy, direction) in found.items()}

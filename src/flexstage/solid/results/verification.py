@@ -65,12 +65,12 @@ _SHOWN = UnitIn("shown_unit")
 
 @dataclass(frozen=True)
 class Row:
-    """One figure by theory and by FEA, in SI.
+    """One figure by theory and by FEA, in SI units.
 
-    `theory` is the value of the lumped model, for hinges of beam theory. `mapped` is the value of the paper's model with axial springs, if
-    it applies. `calibrated` is the value of the lumped model with hinges from FEA. `fea_error` is the estimated relative error of FEA.
-    `calibration` names the parts in the theory that are from FEA. `modal_assurance` is the assurance of paired modes. Absent values are
-    unknown, for a `reason`. A verdict requires `theory` and `fea_error`.
+    `theory` is the value of the lumped model, or of beam theory for a hinge. `mapped` is the value of the paper's model with axial springs,
+    if it applies. `calibrated` is the value of the lumped model with the 6x6 of hinges from FEA. `fea_error` is the estimated relative
+    error of FEA. `calibration` names the parts in the theory that are from FEA. `modal_assurance` is the MAC of paired modes. `reason`
+    explains unknown values, which are absent. Without `calibration`, a verdict requires `theory` and `fea_error`.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -151,7 +151,7 @@ class Verification(InNotebook):
 
     @property
     def headline(self) -> str:
-        """Text on the last group, the stage: largest differences of theory and finite elements, and number of agreeing figures."""
+        """Summary of the last group, the stage: largest differences between theory and finite elements, and number of agreeing figures."""
         name, rows = list(self.groups.items())[-1]
         good = sum(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows)
         words = departures(rows)
@@ -159,7 +159,7 @@ class Verification(InNotebook):
 
     @property
     def as_stated(self) -> Annotated[Mapping[str, str], VIEW]:
-        """Links without a shape, with the kind of the part; theory and FEA both use the specified stiffness and mass."""
+        """Links without a shape, with the kind of their part; theory and FEA both use the specified stiffness and mass."""
         return stated_links(expand(with_drawn_parts(self.mechanism)))
 
     @property
@@ -190,9 +190,9 @@ def verify(
 ) -> Verification:
     """Compare theory with finite elements for every distinct hinge and unit and for the whole stage.
 
-    Theory uses the description unchanged; FEA uses the drawn shapes. Hinges are computed first, then the stage, then units. The function
-    `tell` is called with the rows of each group when they are known. Without `reduce` and `compute`, all jobs run in one queue. Raises
-    `DesignError` if the stage cannot be modelled as a solid.
+    Theory uses the design as it is, including calibrated hinges; FEA uses the drawn shapes. Hinges are computed first, then the stage, then
+    units. The function `tell` is called with the rows of hinges, stage and units when they are known. Without `reduce` and `compute`, all
+    jobs run in one queue. Raises `DesignError` if the stage cannot be modelled as a solid.
     """
     if reduce is STANDARD_SOLIDS and compute is STANDARD_HINGES:
         with Pool() as pool:
@@ -212,7 +212,7 @@ def verify(
     except DesignError as error:
         alone, missing["units"] = None, str(error)
     if alone is None:
-        missing.setdefault("units", "none of the stage's units drives an output of its own by one actuator")
+        missing.setdefault("units", "no unit of the stage drives its own output by one actuator")
     of_units = () if alone is None else tuple(unit_rows(mechanism, units_with_calibrated_hinges(mechanism, compute), alone))
     notify(of_units)
     return Verification(mechanism, (*of_hinges, *of_units, *of_stage), found, alone, stage, missing)
@@ -236,10 +236,10 @@ def stage_solid(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solid
 
 @check_arguments
 def required_values(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS) -> Estimate:
-    """Compute the values of a stage's requirements by finite elements, with estimated errors. Unknown values are left out.
+    """Compute the quantities that a stage's requirements limit, by finite elements, with estimated errors. Unknown values are left out.
 
     Strokes, stresses and frequencies are computed from the reduced solid model in the same way as from the lumped model. Stress at fillets
-    is computed with the stress concentration factors of hinges. Raises `DesignError` if the stage cannot be modelled as a solid.
+    is computed with the stress concentration factors of hinges.
     """
     again = remember(reduce)
     found = converge(
@@ -251,10 +251,10 @@ def required_values(mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: S
 def units_solid(
     mechanism: Mechanism, asked: Resolution = DEFAULT, reduce: Solids = STANDARD_SOLIDS, *, bare: bool = False
 ) -> Converged[dict[str, SolidUnit]]:
-    """Compute the results of every distinct isolated unit as a solid, to the required accuracy `asked`; errors by `unit: figure`.
+    """Compute the results of every distinct isolated unit as a solid, to the required accuracy `asked`; keys of errors are `unit: figure`.
 
-    Components are reduced with modes, so that the same components of the stage need no further computation. With `bare` they have no
-    modes; static figures are equal.
+    Components are reduced with modes, so that the same components of the stage need no further computation. With `bare` they are reduced
+    without modes; static figures are equal.
     """
 
     def figures(found: dict[str, SolidUnit]) -> dict[str, float]:
@@ -272,7 +272,7 @@ def units_solid(
 
 
 def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterator[Row]:
-    """Yield the rows of hinges: the six direct compliances, by beam theory (or from the design file) and by FEA.
+    """Yield the rows of hinges: each separable direct compliance, by beam theory (or from the design file) and by FEA.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> list(hinge_rows(double_triangle(), {}))
@@ -295,9 +295,9 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
 
 
 def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
-    """Compute isolated units with the FEA compliance of their hinges, computed for the isolated unit.
+    """Compute isolated units by theory with the 6x6 of their hinges from FEA, computed with the roots in the isolated unit.
 
-    If the output has no outlines in the isolated unit, the end of the hinge at the output is fixed.
+    If the output has no outlines in the isolated unit, the end of the hinge at the output is rigid.
     """
     found: dict[str, UnitResult] = {}
     for unit, (copy, direction) in driven_units(mechanism).items():
@@ -378,7 +378,7 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Converged[SolidS
         extra = {name: table[figure] for name, table in tables.items() if np.isfinite(table[figure])}
         error = _finite(found.errors.get(figure))
         values = (extra.get("theory"), value, error, extra.get("mapped"), extra.get("calibrated"))
-        reason = _why_unestimated(error, figure, found) if "theory" in extra else "theory gives no finite value"
+        reason = _why_unestimated(error, figure, found) if "theory" in extra else "the value of theory is not finite"
         yield Row("stage", figure, unit, *values, touched, reason=reason)
     own = Moving(fea.modes, fea.read.model)
     pairs = {name: pair_modes(own, Moving(platform_modes(mechanism, model), model)) for name, model in known.items()}
@@ -405,8 +405,8 @@ def stage_rows(mechanism: Mechanism, matched: Mechanism, found: Converged[SolidS
 
 def _why_unpaired(best: Pair | None) -> str:
     if best is None:
-        return "theory has fewer modes"
-    return f"no paired mode of theory: best assurance {best.assurance:.2f}, at {best.frequency:.4g} Hz (required {RELIABLE})"
+        return "theory has fewer modes than FEA"
+    return f"no mode of theory matches: the best modal assurance is {best.assurance:.2f}, at {best.frequency:.4g} Hz ({RELIABLE} required)"
 
 
 def _finite(error: float | None) -> float | None:
@@ -418,7 +418,7 @@ def _why_unestimated(error: float | None, figure: str = "", found: Converged[Any
     if error is not None:
         return None
     is_locked = found is not None and figure in found.unestimated
-    return NOT_ESTIMATED if is_locked else "FEA's error is not estimated: no coarser result has this figure"
+    return NOT_ESTIMATED if is_locked else "the error of FEA is unknown: no coarser result has this figure"
 
 
 def _mapped_model(mechanism: Mechanism) -> LinearModel | None:
@@ -432,7 +432,7 @@ def verdict(rows: tuple[Row, ...]) -> str:
     """Format the verdict on theory from the rows of one group.
 
     >>> verdict((Row("stage", "mode 1", "Hz", 105.0, 100.0, 0.001, calibrated=100.5),))
-    'Lumped theory is up to 5 % off (mode 1); with calibrated hinges 0.5 %: calibrate, then trust the lumped model.'
+    'Lumped theory is up to 5 % off (mode 1); with calibrated hinges, up to 0.5 %. Calibrate, then trust the lumped model.'
     """
     open_rows = [row for row in rows if row.difference is None or (row.fea_error is None and not row.calibration)]
     judged = [row for row in rows if row not in open_rows]
@@ -454,7 +454,7 @@ def departures(rows: Iterable[Row]) -> str:
 
     >>> row = Row("stage", "in-plane stiffness (softest), others free", "N/m", 2.14e6, 0.48e6, 0.01, calibrated=2.1e6)
     >>> departures([row, Row("stage", "mode 1", "Hz", 99.0, 100.0, 0.001)])
-    'in-plane stiffness (softest), others free: theory 4.5 times too stiff (rigid bodies bend)'
+    'in-plane stiffness (softest), others free: theory 4.5 times too stiff (its bodies are rigid)'
     """
     worst: dict[str, Row] = {}
     for row in rows:
@@ -474,7 +474,7 @@ def _departure(row: Row) -> str:
     more, less = _WORDS.get(row.unit, ("large", "small"))
     size = f"{factor:.2g} times" if factor >= _TIMES else _percent(_size_of_difference(row))
     rigid = above and more in {"stiff", "high"} and row.trust is TheoryCheck.FEA and row.calibrated is not None
-    return f"{size} too {more if above else less}{' (rigid bodies bend)' if rigid else ''}"
+    return f"{size} too {more if above else less}{' (its bodies are rigid)' if rigid else ''}"
 
 
 def _verdict_of_known(rows: tuple[Row, ...]) -> str:
@@ -484,22 +484,22 @@ def _verdict_of_known(rows: tuple[Row, ...]) -> str:
     off = f"up to {_percent(_size_of_difference(worst))} off ({worst.figure})"
     if any(row.calibration for row in rows):
         names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))
-        return f"Not independent: the theory contains the FEA 6x6 of {names}. It is {off}: the residual is not from the hinges."
+        return f"Not independent: the theory contains the 6x6 of {names} from FEA. It is {off}, but not due to these hinges."
     name = "Beam theory" if worst.group.startswith("hinge") else "Lumped theory"
     if all(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows):
-        return f"{name} is {off}, FEA's own error {_percent(least)}: trust the theory."
+        return f"{name} is {off}, the error of FEA up to {_percent(least)}: trust the theory."
     known = departures(rows)
     if any(row.trust is TheoryCheck.UNCLEAR for row in rows):
-        text = f"{name} is {off}, but FEA's own error is up to {_percent(least)}: increase the accuracy."
+        text = f"{name} is {off}, but the error of FEA is up to {_percent(least)}: increase the accuracy."
         return f"{known[:1].upper()}{known[1:]}. {text}" if known else text
     better = [abs(row.calibrated_difference) for row in rows if row.calibrated_difference is not None]
     if not better:
-        return f"{name} is {off}, FEA's own error {_percent(least)}: trust FEA, or calibrate."
-    after = f"with calibrated hinges {_percent(max(better))}"
+        return f"{name} is {off}, the error of FEA up to {_percent(least)}: trust FEA, or calibrate."
+    after = f"with calibrated hinges, up to {_percent(max(better))}"
     if all(row.trust is not TheoryCheck.FEA for row in rows):
-        return f"{name} is {off}; {after}: calibrate, then trust the lumped model."
-    rest = "the residual is the elasticity of bodies and joints, only in the solid model. Trust FEA."
-    return f"{known[:1].upper()}{known[1:]}; {after}: {rest}"
+        return f"{name} is {off}; {after}. Calibrate, then trust the lumped model."
+    rest = "The remaining difference is the elasticity of bodies and joints, which only the solid model includes. Trust FEA."
+    return f"{known[:1].upper()}{known[1:]}; {after}. {rest}"
 
 
 def _size_of_difference(row: Row) -> float:

@@ -1,4 +1,4 @@
-"""A stage of rigid bodies and bending links as a GLB file with its modes as animations, from theory without finite elements."""
+"""GLB file of a stage of rigid bodies and bending links, with its modes as animations, by theory without finite elements."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _RIGID = (Kind.PLATFORM, Kind.BODY, Kind.GROUND)
 
 @check_arguments
 def to_glb(mechanism: Mechanism, *, modes: int = 12) -> bytes:
-    """Write a stage as the bytes of a GLB file (glTF 2.0): a node for each body, link and gauge, an animation for each lowest mode.
+    """Return the content of a GLB file (glTF 2.0) of a stage: a node for each body, link and gauge, an animation for each lowest mode.
 
     `modes` is the number of modes. Bodies move rigidly and links bend between them, as in the lumped model and in `flexstage.view`. For
     modes of elastic solids use `flexstage cad --gltf`. The largest displacement of an animation is 5 % of the stage's diagonal. Raises
@@ -39,7 +39,7 @@ def to_glb(mechanism: Mechanism, *, modes: int = 12) -> bytes:
 
 
 def glb_of(data: StageData, modes: int = 12) -> bytes:
-    """Write a GLB file as `to_glb`, from a stage's viewer data."""
+    """Return the content of a GLB file, as `to_glb`, from a stage's viewer data."""
     if find_spec("pygltflib") is None:
         raise refuse("GLB", "the package pygltflib is not installed", "Install it with: pip install 'flexstage[solid]'")
     from flexstage.solid.exchange.gltf import Motion as Animation

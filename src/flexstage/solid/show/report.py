@@ -23,10 +23,10 @@ def solid_report(
     warnings: tuple[Finding, ...] = (),
     more: tuple[Motion, ...] = (),
 ) -> str:
-    """Write sections of the solid model as an HTML page: headline, stage, first section, warnings, other sections.
+    """Return sections of the solid model as an HTML page: headline, stage, first section, warnings, other sections.
 
-    `warnings` are about the result and precede the warnings about the description. `None` among the sections is left out. `more` are
-    motions of the viewer in addition to the motions of theory.
+    `warnings` about the result precede the warnings about the description. Sections that are `None` are left out. `more` are motions of the
+    viewer in addition to the motions of theory.
 
     >>> solid_report(Mechanism("stage"), Headline(""), [None])[:15]
     '<!doctype html>'

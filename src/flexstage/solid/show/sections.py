@@ -54,7 +54,7 @@ def hinge_section(found: Mapping[str, SolidHinge]) -> Section | None:
     if not found:
         return None
     matrices = tuple(hinge_matrices(found))
-    return section("Hinges", [hinge_table(found), Folded("The full 6x6", matrices)])
+    return section("Hinges", [hinge_table(found), Folded("Full compliance matrices (6x6)", matrices)])
 
 
 def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
@@ -63,7 +63,7 @@ def unit_section(found: Converged[dict[str, SolidUnit]]) -> Section | None:
     for name, unit in found.result.items():
         stroke = float(unit.strokes[-1])
         surfaces = _in_megapascals(stress_surfaces(unit.read, unit.motion, {unit.copy: stroke}))
-        caption = f"The {name} unit at its full stroke, output guided: von Mises stress; motion magnified."
+        caption = f"Von Mises stress of the {name} unit at full stroke, with its output guided. Displacements are magnified."
         picture = Picture(to_svg(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), f"unit-{name}", caption), caption)
         stress = stress_table(f"Stress in the {name} unit at full stroke", unit.stress)
         tables = (command_table(name, unit), *(() if stress is None else (stress,)))
@@ -83,7 +83,7 @@ def stage_solid_section(found: Converged[SolidStage]) -> Section | None:
     worst = max(found.errors, key=lambda name: found.errors[name], default=None)
     error = "unknown without a coarser result" if worst is None else f"{100.0 * found.errors[worst]:.2g} % ({worst})"
     if found.unestimated:
-        error += f"; of {', '.join(found.unestimated)} {NOT_ESTIMATED}"
+        error += f". For {', '.join(found.unestimated)}, {NOT_ESTIMATED}"
     text = (
         f"Finite elements of order {found.order}: {stage.read.elements} elements and {stage.read.freedoms} unknowns in the distinct "
         f"components, {len(stage.read.model.coordinates)} coordinates after reduction. Largest estimated error, from a coarser "
@@ -118,7 +118,7 @@ def _mode_pictures(stage: SolidStage) -> Iterator[Picture]:
 def _stress_picture(stage: SolidStage) -> Picture:
     assert stage.worst is not None  # noqa: S101  every stress has a worst corner
     surfaces = _in_megapascals(stress_surfaces(stage.read, stage.worst, worst_strokes(stage)))
-    caption = "Von Mises stress at the worst corner of the strokes for the weakest link, with permanent load; motion magnified."
+    caption = "Von Mises stress at the strokes that are worst for the weakest link, with permanent load; displacements are magnified."
     return Picture(to_svg(skin_figure(surfaces, "MPa", exponent=_STRESS_EXPONENT), "stress", caption), caption)
 
 
@@ -129,7 +129,7 @@ def verification_headline(found: Verification) -> Headline:
 
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """Convert the platform's modes by finite elements to motions of a viewer, with remarks on their paired modes of `theory`, by index."""
+    """Convert the platform's modes by finite elements to motions of a viewer; remarks describe the paired modes of `theory`, by index."""
     return fea_motions(still_data(mechanism).bones, Moving(stage.modes, stage.read.model), theory)
 
 
@@ -140,7 +140,7 @@ def fea_motions(bones: Skeleton, moving: Moving, theory: Mapping[int, Pair] = Ma
         twists = body_twists(moving.model, None, moving.modes.shapes[:, index], tuple(bones.references))
         frequency = float(moving.modes.frequencies[index])
         pair = theory.get(index)
-        theory_text = "" if pair is None else f"; theory {number(pair.frequency)} Hz, assurance {pair.assurance:.3f}"
+        theory_text = "" if pair is None else f"; theory {number(pair.frequency)} Hz, modal assurance {pair.assurance:.3f}"
         label = f"FEA {index + 1}  {number(frequency)} Hz  {moving.modes.names[index]}"
         found.append(Motion(Group.MODE, f"fea {index + 1}", label, bones.at_origin(twists), f"by finite elements{theory_text}", frequency))
     return tuple(found)
@@ -152,7 +152,7 @@ def paired_with_theory(mechanism: Mechanism, stage: SolidStage) -> tuple[Mapping
     pairs = pair_modes(Moving(stage.modes, stage.read.model), Moving(platform_modes(mechanism, model), model))
     alike = {index: pairs[index] for index in stage.modes.platform if index in pairs and pairs[index].reliable}
     partners = [(f"mode {pair.index + 1}", f"mode fea {index + 1}") for index, pair in alike.items()]
-    text = "Left theory, right finite elements: a chosen mode plays next to its counterpart. Bodies move rigidly; signs are arbitrary."
+    text = "A chosen mode plays next to its counterpart: theory left, finite elements right. Bodies move rigidly; signs are arbitrary."
     joined = joined_viewers(partners)
     return pairs, None if joined is None else section("Modes side by side", [joined, Prose(text)])
 

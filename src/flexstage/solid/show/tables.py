@@ -48,12 +48,12 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
     ]
     heads = [*(Column(axis, form.unit) for axis, form in zip(_AXES, forms, strict=True)), Column("error")]
     note = (
-        "Compliance about the centre of the hinge between the ends of its arcs, in its link frame. Error: of any entry, estimated. "
-        "The root at a block is included; the ground and bodies without outlines are rigid. "
-        f"{NO_VALUE}: not separable from the adjacent blocks."
+        "Compliance about the centre of the hinge between the ends of its arcs, in its link frame. Error: largest estimate of any entry. "
+        "The compliance of roots at blocks is included; the ground and bodies without outlines are rigid. "
+        f"{NO_VALUE}: cannot be separated from the adjacent blocks."
     )
     notes = [note, *([f"Error {NO_VALUE}: {NO_ESTIMATE}."] if any(hinge.error is None for hinge in found.values()) else [])]
-    return make_table("Hinges as solids", ["part", "links", "ends on", *heads], rows, notes=notes)
+    return make_table("Compliance of hinges as solids", ["part", "links", "ends on", *heads], rows, notes=notes)
 
 
 def hinge_matrices(found: Mapping[str, SolidHinge]) -> Iterator[Table]:
@@ -86,17 +86,17 @@ def solid_unit_table(found: Converged[dict[str, SolidUnit]]) -> Table | None:
 
 
 def command_table(name: str, unit: SolidUnit) -> Table:
-    """Tabulate the output of a unit by command, and the lost motion (as in the paper's Table 2)."""
-    return array_table(f"Output of the {name} unit by command", unit, "strokes", "commands", "outputs", "lost")
+    """Tabulate the output and the lost motion of a unit over its stroke (as in the paper's Table 2)."""
+    return array_table(f"Output and lost motion of the {name} unit over its stroke", unit, "strokes", "commands", "outputs", "lost")
 
 
 def stress_table(title: str, stress: LinkStress | None, listed: int = _LISTED) -> Table | None:
     """Tabulate the highest von Mises stress of links and bodies, highest first; `None` without significant stress."""
     if stress is None or not np.max(stress.highest) >= SILENT:
         return None
-    notes = [f"Von Mises stress on the surface, stacks left out. {SHARP_CORNERS}"]
+    notes = [f"Von Mises stress on the surface; stacks are left out. {SHARP_CORNERS}"]
     if len(stress.names) > listed:
-        notes.append(f"{len(stress.names) - listed} more with less stress are not listed.")
+        notes.append(f"Not listed: {len(stress.names) - listed} more, with lower stress.")
     return row_table(title, stress.largest(listed), "highest", "yield_stress", "safety", head="link or body", notes=notes)
 
 
@@ -104,7 +104,7 @@ def block_table(stage: SolidStage) -> Table:
     """Tabulate the effect of the elasticity of bodies on each platform mode; bodies are rigid in all other models."""
     found = stage.modes
     names = {"platform mode": range(1, len(found.platform) + 1), "name": [found.names[index] for index in found.platform]}
-    notes = ["Frequency change: to first order, relative to bodies of infinite stiffness.", *_stated_note(stage.as_stated)]
+    notes = ["Frequency change: to first order, relative to rigid bodies.", *_stated_note(stage.as_stated)]
     return array_table("Elasticity of the bodies", stage.bodies, "strain_energy_share", "cost_in_frequency", names=names, notes=notes)
 
 
@@ -133,8 +133,8 @@ def verdict_table_of(found: Verification) -> Table:
     rows = [(Cell(name, Mark.STRONG), text) for name, text in found.verdicts.items()]
     notes = [
         "Theory: beam theory for hinges, the lumped model for units and stage.",
-        "Calibrated: the same with the 6x6 of its hinges from FEA, and so not independent of it.",
-        "FEA's error is estimated from two resolutions, and is not a bound.",
+        "Calibrated: the lumped model with the 6x6 of its hinges from FEA; it is therefore not independent of FEA.",
+        "The error of FEA is an estimate from two resolutions, not a bound.",
         *_stated_note(found.as_stated),
         *(f"Not compared: {name}: {reason}" for name, reason in found.reasons.items()),
     ]
@@ -142,7 +142,7 @@ def verdict_table_of(found: Verification) -> Table:
 
 
 def calibration_table(found: Calibration) -> Table:
-    """Tabulate the relative difference of the compliance by FEA and by beam theory, one column for each axis."""
+    """Tabulate the relative difference in compliance between FEA and beam theory, one column for each axis."""
     rows = [
         (
             Cell(name, Mark.STRONG),
@@ -152,5 +152,5 @@ def calibration_table(found: Calibration) -> Table:
         )
         for name, values in found.over_beam_theory.items()
     ]
-    heads = ["part", "links", *(Column(axis) for axis in _AXES), Column("FEA's error")]
-    return make_table("Compliance by FEA over beam theory", heads, rows, notes=["Positive: softer than beam theory."])
+    heads = ["part", "links", *(Column(axis) for axis in _AXES), Column("FEA error")]
+    return make_table("Difference in compliance between FEA and beam theory", heads, rows, notes=["Positive: FEA is softer."])

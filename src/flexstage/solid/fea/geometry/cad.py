@@ -1,4 +1,4 @@
-"""The CAD of a component: its pieces as one conforming solid (or several, one for each medium), with named interface faces."""
+"""CAD of a component: its pieces as one conforming solid (or several, one for each medium), with named interface faces."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _PLATE = 0.22
 
 @dataclass(frozen=True)
 class Cad:
-    """A drawn component: the shape [mm] with the names `faces` on its faces, and the names `medium 0`, ... of `media` on its solids.
+    """A drawn component: `shape` [mm], whose faces have the names `faces`, and whose solids are named `medium 0`, ... after `media`.
 
     If cut at `mirrors`, the shape is the positive side.
     """
@@ -47,8 +47,8 @@ class Cad:
 def cad(component: Component) -> Cad:
     """Draw a component: pieces of one medium are fused, those of different media glued over their common faces.
 
-    Faces are named after joints: interfaces and grounded ones. Raises `DesignError` for joints without a matching flat face and
-    for pieces that do not form one solid.
+    Faces are named after the joints at interfaces and at the ground. Raises `DesignError` for joints without a matching flat face and for
+    pieces that do not form one solid.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> drawing = cad(bar())
@@ -80,12 +80,12 @@ def cut_component(component: Component, drawing: Cad) -> Cad:
 
 @SESSION.keep(1)
 def mirrors_of(component: Component) -> Mirrors:
-    """The planes across y and z about which a component of one medium is symmetric and can be cut.
+    """The planes normal to y and z about which a component of one medium is symmetric and can be cut.
 
-    Every joint, link and body must be its own mirror image. Leaves are not cut, except thin ones across their width: their flat elements
-    would become flatter, or fewer across the leaf, with larger error estimates. Stacks, rods, cylinders, spheres and round holes are
-    not cut either, except plates. Their curvature sets the size of elements, and the mesher divides arcs less finely than circles,
-    which would reduce their mass.
+    Every joint, link and body must be its own mirror image. Leaves are cut only if thin, and only across their width: otherwise their flat
+    elements would become flatter, or fewer across the leaf, with larger error estimates. Stacks, rods, cylinders, spheres and round holes
+    are not cut either, except round plates. Their curvature sets the size of elements, and the mesher divides arcs less finely than
+    circles, which would reduce their mass.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> mirrors_of(bar())
@@ -151,7 +151,7 @@ def _pieces_of(component: Component, shape: occ.TopoDS_Shape) -> Iterator[Findin
         groups = [group for group in groups if not group & faces] + [set.union(faces, *touching)]
     if len(groups) > 1:
         names = ", ".join(piece.name for piece in component.pieces)
-        yield Finding(component.name, f"its pieces ({names}) fall into {len(groups)} separate solids", "Make their outlines touch")
+        yield Finding(component.name, f"its pieces ({names}) form {len(groups)} separate solids", "Make their outlines touch")
 
 
 def _name_solids(shape: occ.TopoDS_Shape, interfaces: Sequence[Interface]) -> occ.TopoDS_Shape:
@@ -178,7 +178,7 @@ def _name_face(shape: occ.TopoDS_Shape, joint: Joint) -> Finding | None:
         likeliest = "" if nearest is None else f"the likeliest face there has {nearest.mass:.4g} mm^2 instead of {area:.4g}"
         found = "no flat face there" if nearest is None else f"{likeliest}, its centre {_distance(nearest, origin):.3g} mm away"
         what = f"the end face of {joint.link} does not meet {joint.body}: {found}"
-        return Finding(joint.name, what, "Move the outline to touch it fully")
+        return Finding(joint.name, what, "Move the outline so that it covers the end face")
     nearest.name = joint.name
     return None
 
@@ -197,7 +197,7 @@ def _is_flat(face: occ.Face, origin: Array, normal: Array) -> bool:
 
 
 def region(piece: Piece, points: Array) -> Array:
-    """Distance-like measure (n,) of points (n, 3) [m] from a piece: their distance from its bounding box, 0 inside [m].
+    """Measure of the distance (n,) [m] of points (n, 3) [m] from a piece: largest component of that from its bounding box, 0 inside.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> region(bar().pieces[0], np.array([[0.05, 0.0, 0.0], [0.05, 0.0, 0.007]])).round(9).tolist()
@@ -209,7 +209,7 @@ def region(piece: Piece, points: Array) -> Array:
 
 @SESSION.keep(KEPT)
 def half_extents(piece: Piece) -> Array:
-    """Half sizes (3,) of a piece's bounding box in its own frame [m], from one drawing.
+    """Half sizes (3,) of a piece's bounding box in its own frame [m].
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> half_extents(bar().pieces[0]).round(9).tolist()

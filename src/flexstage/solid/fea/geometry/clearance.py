@@ -18,9 +18,9 @@ _NO_VOLUME = 1e-6
 
 
 def clearance_questions(stage: Stage, clearance: float) -> Iterator[Question]:
-    """A question for every near pair of outlines of different bodies or links, except links and the bodies they join.
+    """Yield a question for every pair of near outlines of different bodies or links, except a link and a body that it joins.
 
-    `clearance` is the required distance [m]; instances share the question.
+    `clearance` is the required distance [m]; equal pairs of several instances share one question.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.solid.fea.geometry.stage_pieces import stage_pieces
@@ -58,7 +58,7 @@ def _answers(first: Piece, second: Piece, clearance: float) -> Iterator[Answer]:
     elif away > (clearance + TOUCHING) * MILLIMETRES:
         return
     elif away <= TOUCHING * MILLIMETRES:
-        yield f"it touches {second.name}, which no joint connects it to", _advice(first, second)
+        yield f"it touches {second.name}, but no joint connects them", _advice(first, second)
     else:
         required = distance_text(clearance * MILLIMETRES)
         yield f"it is {distance_text(away)} from {second.name}, less than the clearance of {required}", _advice(first, second)
@@ -67,4 +67,4 @@ def _answers(first: Piece, second: Piece, clearance: float) -> Iterator[Answer]:
 def _advice(first: Piece, second: Piece) -> str:
     if GROUND in {first.body, second.body}:
         return "Trim one of the two outlines"
-    return "Trim one of the two outlines, or move one without moving an axis"
+    return "Trim or move one of the two outlines without moving an axis"

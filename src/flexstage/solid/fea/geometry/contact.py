@@ -1,6 +1,6 @@
-"""Contact: whether links meet their bodies, bodies form one solid each, and all other outlines have clearance.
+"""Contact checks: links must meet their bodies, each body must form one solid, and all other outlines must have clearance.
 
-Checked together before meshing; lengths within this file are in mm, as in CAD.
+All checks are made together before meshing; lengths within this file are in mm, as in CAD.
 """
 
 from __future__ import annotations
@@ -34,9 +34,10 @@ _NEAR = 2e-3
 def contact_findings(mechanism: Mechanism, clearance: float = 0.0) -> tuple[Finding, ...]:
     """Errors that prevent the outlines of a stage from forming the described solids; empty for a sound stage.
 
-    For links with a shape, each end face must be entirely on the outline of its body. A body without outline is not checked, the ground
-    only if it is drawn in the link's unit. Outlines of one body must form one solid, joined over faces. All others must have a distance
-    above `clearance` [m] (contact, within 1 um, is an error). No step, gap, edge or face may be much smaller than the local geometry.
+    Each end face of a link with a shape must be entirely on the outline of its body. A body without outline is not checked; the ground is
+    checked only if it is drawn in the link's unit. Outlines of one body must form one solid, joined over faces. All other outlines must be
+    farther apart than `clearance` [m]; contact, within 1 um, is an error. No step, gap, edge or face may be much smaller than the local
+    geometry.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> contact_findings(parallelogram())
@@ -149,7 +150,7 @@ def _end_answers(end: _End, meeting: _Meeting) -> Iterator[Answer]:
         deep = distance_text(meeting.depth)
         yield (
             f"it runs {deep} into {end.body}",
-            f"Trim the outline of {end.body} by {deep}, or move it: end faces meet, solids do not overlap",
+            f"Trim the outline of {end.body} by {deep}, or move it: end faces must touch without overlap",
         )
     if meeting.share < 1.0 - _SHARE:
         yield (
@@ -192,7 +193,7 @@ def _slot_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape], n
         away = float(shapes[one].Distance(shapes[other]))
         if _GAP < away < SLIVER * min(thin[one], thin[other]) * MILLIMETRES:
             what = f"a slot of {distance_text(away)} is left between {pieces[one].name} and {pieces[other].name}"
-            yield what, "Close it, or make it wider: a mesh would have to follow it"
+            yield what, "Close the slot, or widen it: its width sets the size of elements"
 
 
 def _gap_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape]) -> Iterator[Answer]:
@@ -206,7 +207,7 @@ def _gap_answers(pieces: Sequence[Piece], shapes: Sequence[occ.TopoDS_Shape]) ->
             yield f"{names} is {distance_text(away)} away from {pieces[other].name}", "Make the outlines of one body touch over a face"
         else:
             what = f"{names} meets {pieces[other].name} along an edge or at a point only ({pieces[one].name})"
-            yield what, "Make them touch over a face, or overlap"
+            yield what, "Make the outlines touch over a face, or overlap"
 
 
 def _connected_groups(shapes: Sequence[occ.TopoDS_Shape]) -> list[list[int]]:

@@ -1,7 +1,7 @@
 """Drawing: forms as CAD solids, in millimetres (required by the CAD kernel's absolute tolerances).
 
-Every hinge is drawn at the origin and then moved: cuts far from the origin fail to mesh. Arcs perpendicular to an end face are
-shortened by 3 % of their radius: a face tangent to another leaves a wedge without an angle, which cannot be meshed.
+Every hinge is drawn at the origin and then moved: cuts far from the origin fail to mesh. Arcs that would be tangent to an end face are
+shortened by 3 % of their radius: tangent faces form a wedge without an angle, which cannot be meshed.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ Curve = list[occ.TopoDS_Shape]
 
 
 def draw_form(form: Form) -> occ.Solid:
-    """A form as a CAD solid at the origin [mm]: links along x, thin along y, width along z.
+    """A form as a CAD solid at the origin [mm]: links are along x, with their thickness along y and their width along z.
 
     >>> from flexstage.parts.body import Block
     >>> round(draw_form(Block("steel", (0.01, 0.02, 0.03))).mass, 6)  # mm^3
@@ -76,7 +76,7 @@ def _shape(part: Shaped) -> Shape:
 
 
 def move_solid(solid: occ.TopoDS_Shape, frame: Frame) -> occ.TopoDS_Shape:
-    """A solid drawn at the origin, moved into a frame in metres.
+    """Move a solid [mm], drawn at the origin, into a frame [m].
 
     >>> from flexstage.parts.body import Block
     >>> there = move_solid(draw_form(Block("steel", (0.01, 0.01, 0.01))), Frame(np.eye(3), np.array([0.1, 0.0, 0.0])))
@@ -225,17 +225,17 @@ def _spline(at: Callable[[float], tuple[float, float]], largest: float) -> occ.T
 
 
 def prism(form: Shaped) -> occ.Solid:
-    """A part of one section, drawn from the corners of its outline [mm]."""
+    """Draw a prismatic part from the corners of its section [mm]."""
     half = 0.5 * millimetres(form.span)
     return _prism([occ.Pnt(-half, millimetres(y), millimetres(z)) for y, z in form.throat.outline(np.zeros(0))], occ.Vec(2.0 * half, 0, 0))
 
 
 @dataclass(frozen=True)
 class Shape:
-    """A kind of part as a CAD solid in millimetres: functions that draw it at the origin, and as a specimen with stubs at its ends.
+    """Functions that draw a kind of part as a CAD solid in millimetres: at the origin, and as a specimen with stubs at its ends.
 
-    By default, a specimen is the drawn part with blocks at its ends. Parts with a profile of cuts require `specimen.cut`:
-    shortened arcs meet rigid faces at angles that cannot be meshed.
+    By default, a specimen is the drawn part with blocks at its ends. Parts with a profile of cuts require `specimen.cut`: shortened arcs
+    meet rigid faces at angles that cannot be meshed.
     """
 
     draw: Callable[[Any], occ.Solid]
@@ -252,4 +252,4 @@ _OWN: Mapping[type[Shaped], Shape] = {
     Piezo: Shape(lambda form: _round(form.diameter, form.length)),
 }
 SHAPES: Register[Shape] = Register("flexstage.shapes", {part.kind: shape for part, shape in _OWN.items()})
-"""Parts as solids, by their kind."""
+"""Shapes by kind of part."""

@@ -22,12 +22,12 @@ from flexstage.solid.fea.geometry.piece import MILLIMETRES, coordinates
 _DIGITS = 6
 """Digits of a box [mm]: the kernel widens it by 1e-7."""
 TOLERANCE = 1e-3
-"""Largest relative difference between specified values and the file: of mass and inertia, and of positions over the longest side."""
+"""Largest permitted difference between specified values and the file, relative to mass, inertia, and longest side (for positions)."""
 
 
 @dataclass(frozen=True, eq=False)
 class ImportedProperties:
-    """Properties of a file's solid, in its own axes: `sha256` of the file, sides and middle of its box [m], volume [m^3], centre [m].
+    """Properties of a file's solid in its axes: `sha256` of the file, sides and middle of the bounding box [m], volume [m^3], centre [m].
 
     `inertia` (3, 3) is for unit density, about the centre [m^5].
     """
@@ -41,9 +41,9 @@ class ImportedProperties:
 
 
 def imported_shape(form: Imported) -> occ.TopoDS_Shape:
-    """The file's solid [mm], the middle of its box at the origin.
+    """The file's solid [mm], with the middle of its bounding box at the origin.
 
-    Raises `DesignError` for a missing file, a file other than STEP or with another digest, or without exactly one solid.
+    Raises `DesignError` for a missing file, a file other than STEP or with another digest, or without exactly one matching solid.
     """
     path = Path(form.file)
     require(_version_findings(path, form.sha256))
@@ -57,7 +57,7 @@ _ACROSS = occ.Axes(occ.Pnt(0, 0, 0), n=occ.Y, h=occ.X)
 
 
 def measure(path: Path, name: str | None = None) -> ImportedProperties:
-    """Measure the solid in a STEP file; if there are several, that of this name or number (`#2`).
+    """Measure the solid in a STEP file; if there are several, the one with this name or number (`#2`).
 
     Raises `DesignError` for a missing file, or one without exactly one such solid.
 
@@ -80,7 +80,7 @@ def _inertia(solid: occ.TopoDS_Shape) -> Array:
 
 
 def with_properties(found: ImportedProperties, file: str, material: str, density: float, solid: str | None = None) -> Imported:
-    """The description of a measured solid of a `density` [kg/m^3], with the name `solid` if its file contains several.
+    """The description of a measured solid with a `density` [kg/m^3], and with the name `solid` if its file contains several.
 
     >>> cube = ImportedProperties("", np.ones(3), np.zeros(3), 1.0, np.zeros(3), np.eye(3) / 6.0)
     >>> round(with_properties(cube, "cube.step", "steel", 6.0).inertia.zz, 12)
@@ -160,8 +160,8 @@ def _text(values: Array) -> str:
 def _version_findings(path: Path, sha256: str) -> Iterator[Finding]:
     found = _sha256(path)
     if found != sha256:
-        what = f"the file {path} has another content than stated (sha256 {found[:12]}..., stated {sha256[:12]}...)"
-        yield Finding(str(path), what, 'Restore the file, or describe the new one (see "flexstage import")')
+        what = f"the content of the file has changed (got sha256 {found[:12]}..., expected {sha256[:12]}...)"
+        yield Finding(str(path), what, 'Restore the file, or import the new one (see "flexstage import")')
 
 
 def _sha256(path: Path) -> str:
@@ -177,9 +177,9 @@ def _solid(path: Path, name: str | None) -> occ.TopoDS_Shape:
     with path.open("rb") as stream:
         start = stream.read(200)
     if not start.lstrip().startswith(b"ISO-10303-21"):
-        raise refuse(str(path), "this is no STEP file (it does not begin with ISO-10303-21)", "Export the solid as STEP")
+        raise refuse(str(path), "not a STEP file (it does not begin with ISO-10303-21)", "Export the solid as STEP")
     if path.suffix.lower() not in {".step", ".stp"}:
-        raise refuse(str(path), f'its name ends in "{path.suffix}"', "Name it .step or .stp")
+        raise refuse(str(path), f'its name ends in "{path.suffix}" (expected .step or .stp)', "Rename the file")
     try:
         solids = list(occ.OCCGeometry(str(path)).shape.solids)
     except Exception as error:  # noqa: BLE001 (the CAD kernel raises what it likes)
@@ -190,8 +190,8 @@ def _solid(path: Path, name: str | None) -> occ.TopoDS_Shape:
         raise refuse(str(path), what, f'Select one: solid = "{next(iter(names), "")}"; a body may have several')
     place = int(name[1:]) if name is not None and re.fullmatch(r"#[0-9]{1,9}", name) else 0
     if name is not None and names.count(name) != 1 and not 0 < place <= len(names):
-        what = f'{names.count(name) or "none"} of its solids is called "{name}": they are {", ".join(names)}'
-        raise refuse(str(path), what, f'{suggest_nearest(name, names)}; or name it by its place among them, "#1" to "#{len(names)}"')
+        what = f'{names.count(name)} of its solids have the name "{name}" (expected 1); the names are {", ".join(names)}'
+        raise refuse(str(path), what, f'{suggest_nearest(name, names)}; or use the number of the solid, "#1" to "#{len(names)}"')
     return solids[0 if name is None else names.index(name) if name in names else place - 1]
 
 

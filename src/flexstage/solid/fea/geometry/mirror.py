@@ -1,6 +1,6 @@
 """Planes of symmetry: the positive side of symmetric components, and motions that are even or odd about each plane.
 
-A symmetric component responds evenly to even loads and oddly to odd ones, so one side with matching constraints suffices.
+The response of a symmetric component is even for even loads and odd for odd loads, so one side with matching constraints suffices.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from netgen import occ
 from flexstage.base.number import Array
 
 MIRRORS = {1: "across y", 2: "across z"}
-"""Names of the faces in the planes y = 0 and z = 0 that a drawing is cut at, by the axis across them."""
+"""Names of the faces in the planes y = 0 and z = 0 at which a drawing is cut, by the normal axis."""
 
 _NEAR = 1e-6
 """Relative to the drawing's size: tolerance for points in a plane."""
@@ -24,9 +24,9 @@ _FAR = 4.0
 
 @dataclass(frozen=True)
 class Mirrors:
-    """Planes through the origin, by the axes across them (1: y, 2: z), with a drawing on the positive side; empty without symmetry.
+    """Planes through the origin, by their normal axes (1: y, 2: z), with a drawing on the positive side; empty without symmetry.
 
-    Motions have a kind, a number: its bits identify the axes, in order, across which they are odd.
+    The kind of a motion is a number. Its bits, one for each axis in sequence, are set if the motion is odd across this axis.
 
     >>> both = Mirrors((1, 2))
     >>> both.copies, both.twist_kinds(np.eye(3)).tolist()  # x, y, z, rx, ry, rz
@@ -51,20 +51,20 @@ class Mirrors:
         return (kinds >> self.axes.index(axis)) % 2 == 1
 
     def twist_kinds(self, rotation: Array) -> Array:
-        """The kinds (6,) of translations along the columns of `rotation`, each along a plane or across it, and rotations about them."""
+        """The kinds (6,) of translations along and rotations about the columns of `rotation`, each parallel to a plane or normal to it."""
         translations = self.kinds(np.abs(rotation[list(self.axes)]) > 0.5)
         return np.concatenate([translations, translations ^ (self.copies - 1)])
 
     def kinds(self, odd: Array) -> Array:
-        """The kinds (k,) of motions that are `odd` or not, axis by axis (m, k)."""
+        """The kinds (k,) of motions; `odd` (m, k) contains a row for each axis."""
         return np.sum(odd.astype(np.int64) << np.arange(len(self.axes))[:, None], axis=0)
 
     def whole(self, side: Array, rows: Array, columns: Array) -> Array:
-        """Products (n, k) of motions over the whole, from those over a `side`; zero for motions of different kinds (n,) and (k,)."""
+        """Products (n, k) of motions over the whole, from those over a `side`; zero where kinds `rows` (n,) and `columns` (k,) differ."""
         return np.where(rows[:, None] == columns, self.copies * side, 0.0)
 
     def within(self, points: Array) -> Array:
-        """The points (n, 3) on the positive side."""
+        """Those of the points (n, 3) that are on the positive side."""
         return points[np.all(points[:, list(self.axes)] >= 0.0, axis=1)]
 
 
@@ -85,7 +85,7 @@ def cut_at_mirrors(solid: occ.TopoDS_Shape, mirrors: Mirrors) -> occ.TopoDS_Shap
 
 
 def is_symmetric(solids: Iterable[occ.TopoDS_Shape], axis: int) -> bool:
-    """Whether every face of some solids has a mirror image: equal area, and its centre mirrored in the plane across an axis.
+    """Whether every face of some solids has a mirror image in the plane normal to an axis: a face of equal area, centre mirrored.
 
     >>> is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 1), is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 2)
     (True, False)

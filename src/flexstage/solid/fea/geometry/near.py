@@ -1,4 +1,4 @@
-"""Questions to CAD about outlines close to one another, evaluated once for all instances."""
+"""Geometric tests of near outlines by CAD, evaluated once for all instances."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Answer = tuple[str, str]
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """A geometric test, `ask`, about `where`; questions with one `key` have one answer and are evaluated once."""
+    """A geometric test, `ask`, about the item `where`. Questions with equal `key` have the same answer and are evaluated once."""
 
     key: str
     where: str
@@ -40,7 +40,7 @@ def findings_of(questions: Iterable[Question]) -> Iterator[Finding]:
 
 
 def relative_frame(frame: Frame, base: Frame) -> Frame:
-    """A frame in the axes of another one, rounded, so that instances are equal.
+    """A frame relative to another one, rounded so that instances have equal frames.
 
     >>> relative_frame(Frame(np.eye(3), np.ones(3)), Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))).position.tolist()
     [0.0, 1.0, 1.0]
@@ -51,7 +51,7 @@ def relative_frame(frame: Frame, base: Frame) -> Frame:
 
 
 def frame_key(frame: Frame) -> str:
-    """A frame as text, equal for instances that differ by rounding.
+    """A frame as a string, equal for frames that differ only by rounding error.
 
     >>> frame_key(Frame(np.eye(3), np.zeros(3))) == frame_key(Frame(np.eye(3), np.full(3, 1e-13)))
     True
@@ -61,7 +61,7 @@ def frame_key(frame: Frame) -> str:
 
 
 def distance_text(millimetres: float) -> str:
-    """A length as text: in um below a millimetre.
+    """Format a length [mm] as text, in um below a millimetre.
 
     >>> distance_text(0.012), distance_text(2.5)
     ('12 um', '2.5 mm')

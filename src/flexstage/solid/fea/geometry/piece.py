@@ -33,16 +33,16 @@ OFFERED_SHAPES: Register[object] = Register("flexstage.shapes", {})
 """Shapes from other packages, without those of `draw`: their versions are available without the CAD kernel."""
 
 Form: TypeAlias = Shaped | Solid
-"""Forms with a shape: compliance matrices and ideal joints have none."""
+"""Description of a shape; compliance matrices and ideal joints have none."""
 
 
 @dataclass(frozen=True)
 class Medium:
     """An elastic medium: Young's modulus [Pa], Poisson's ratio, density [kg/m^3].
 
-    For a crystal, `tensor` contains the rows of its stiffness [Pa] in the axes of the drawing (xx, yy, zz, yz, xz, xy, engineering
-    shear strains). Its modulus is then that along x, and its ratio makes the shear modulus a mean of the planes xy and xz; only hinge stubs
-    use both.
+    For a crystal, `tensor` contains the rows of its stiffness [Pa] in the axes of the drawing (xx, yy, zz, yz, xz, xy, engineering shear
+    strains). `young` is then the modulus along x, and `poisson` gives the mean shear modulus of the planes xy and xz; only hinge stubs use
+    both.
     """
 
     young: float
@@ -73,7 +73,7 @@ class Medium:
 class Piece:
     """One solid to draw: its address (`B1/front`, `platform.plate`), form, medium and frame.
 
-    A link's form is drawn at its frame's origin, x along it; a body's solid at its centre. `body` names its body (absent for
+    The form of a link is drawn at the origin of its frame, along x, the solid of a body at its centre. `body` names its body (absent for
     links).
     """
 
@@ -85,14 +85,14 @@ class Piece:
 
     @property
     def owner(self) -> str:
-        """Its body, or a link itself."""
+        """Name of its body, or of the link."""
         return self.name if self.body is None else self.body
 
 
 def medium(material: Material, rotation: Array | None = None) -> Medium:
-    """The medium of a material; for a crystal, in a drawing whose axes are the columns of `rotation` (3, 3) in the stage.
+    """The medium of a material; for a crystal, the axes of the drawing are the columns of `rotation` (3, 3) in the stage.
 
-    Without `rotation`, the axes belong to the part that defines the crystal, or else the stage's.
+    Without `rotation`, they are the axes of the part that orients the crystal, or else those of the stage.
 
     >>> medium(Material(young=200e9, poisson=0.3, density=7750.0)).density
     7750.0
@@ -113,7 +113,7 @@ def medium(material: Material, rotation: Array | None = None) -> Medium:
 
 
 def is_mirrored(own: Medium, axis: int) -> bool:
-    """Whether a medium is its own mirror image across an axis (0, 1, 2) of its drawing; always for isotropic media.
+    """Whether a medium is its own mirror image across an axis (0, 1, 2) of its drawing; true for isotropic media.
 
     >>> is_mirrored(Medium(1.0, 0.3, 1.0), 0)
     True
@@ -141,7 +141,7 @@ def stack_medium(stack: Piezo) -> Medium:
 
 
 def form_of(link: PlacedLink) -> Form | Finding | None:
-    """The form of a link's part, or the reason for its absence; `None` for a part without a shape that specifies its behaviour.
+    """The form of a link's part, or the error if it has none; `None` for a part without a shape whose behaviour is specified.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -157,8 +157,8 @@ def form_of(link: PlacedLink) -> Form | Finding | None:
         return part
     if not isinstance(part, Joint) and part.stated(link.material) is not None:
         return None
-    what = f"a part of kind {part.kind} has no shape, and specifies no stiffness"
-    return Finding(link.name, what, 'Use a part with a shape, or its 6x6 (kind = "compliance_matrix")')
+    what = f"a part of kind {part.kind} has neither a shape nor a specified stiffness"
+    return Finding(link.name, what, 'Use a part with a shape, or specify its 6x6 (kind = "compliance_matrix")')
 
 
 def form_digest(form: Form) -> str:

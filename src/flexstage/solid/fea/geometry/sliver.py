@@ -1,4 +1,4 @@
-"""Slivers: steps, gaps, edges and faces of a component much smaller than the local geometry; they break or refine meshes.
+"""Slivers: steps, gaps, edges and faces of a component that are much smaller than the local geometry; meshes fail or become too fine.
 
 Lengths within this file are in mm, as in CAD.
 """
@@ -21,7 +21,7 @@ from flexstage.solid.fea.jobs.content import content
 from flexstage.solid.fea.solver.component import Component
 
 SLIVER = 0.05
-"""Largest size of slivers over the thinnest piece there."""
+"""Largest size of slivers over the thickness of the thinnest piece there."""
 _OWN = 0.5
 """Largest size of slivers over the smallest edge or width of an isolated piece."""
 _NOTHING = 1e-7
@@ -39,7 +39,7 @@ class _Sliver:
 
 
 def sliver_findings(parts: Sequence[Component], *, coarse: bool = False) -> Iterator[Finding]:
-    """Slivers of every distinct component drawn as one; also errors of drawing, unless found before (`coarse`).
+    """Slivers of every distinct component, drawn as one solid; also errors of drawing, unless `coarse` errors were found before.
 
     >>> list(sliver_findings([]))
     []
@@ -72,7 +72,7 @@ def _finding(sliver: _Sliver, pieces: Sequence[Piece]) -> tuple[str, str]:
     thin = min(there, key=lambda piece: thinnest(piece.form))
     names = " and ".join(dict.fromkeys(piece.name for piece in there))
     scale = distance_text(thinnest(thin.form) * MILLIMETRES)
-    what = f"{sliver.kind.format(distance_text(sliver.size))} is left at {names}; the thinnest of them is {thin.name} with {scale}"
+    what = f"{sliver.kind.format(distance_text(sliver.size))} is left at {names}; the thinnest piece there, {thin.name}, is {scale} thick"
     return what, "Make their faces flush, or the step between them larger"
 
 

@@ -21,7 +21,8 @@ from flexstage.solid.fea.solver.component import Component, Cut, components
 def sound_components(mechanism: Mechanism, cache: Cache | None, cut: Cut = Cut.UNITS, pool: Pool | None = None) -> tuple[Component, ...]:
     """Cut a stage into components, after a check of its outlines.
 
-    Raises `DesignError` with the names of links without a shape, and with the sizes of gaps, overlaps and slivers (`contact_findings`).
+    Raises `DesignError` with the names of links without a shape or a specified stiffness, and with the sizes of gaps, overlaps and slivers
+    (`contact_findings`).
 
     >>> sound_components(Mechanism("nothing"), None)
     ()
@@ -33,7 +34,7 @@ def sound_components(mechanism: Mechanism, cache: Cache | None, cut: Cut = Cut.U
 
 
 def stage_findings(mechanism: Mechanism, cache: Cache | None, pool: Pool | None = None) -> tuple[Finding, ...]:
-    """Errors that prevent a stage's outlines from forming solids. The cache stores sound stages by their content.
+    """Errors that prevent a stage's outlines from forming solids. The cache records sound stages by their content.
 
     Stages with imported solids are always checked, because their files may change.
     """
@@ -45,7 +46,7 @@ def stage_findings(mechanism: Mechanism, cache: Cache | None, pool: Pool | None 
 
 
 def solid_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Errors that prevent finite elements of a stage with outlines; none without the solver, or without a solid.
+    """Errors that prevent finite elements of a stage with outlines; none without the solver, or if a link cannot be a solid.
 
     >>> solid_findings(Mechanism("nothing"))
     ()
@@ -61,7 +62,7 @@ def solid_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
 
 
 def check_together(mechanisms: Sequence[Mechanism], cache: Cache | None, pool: Pool | None = None) -> None:
-    """Check stages in parallel and store the sound ones; errors of the others are reported at their use.
+    """Check stages in parallel and record the sound ones; errors of the others are reported when these are used.
 
     >>> check_together((), None)
     """
@@ -86,6 +87,6 @@ def _key(mechanism: Mechanism) -> str:
 
 
 def has_imports(mechanism: Mechanism) -> bool:
-    """Whether some of a stage's solids are in separate files."""
+    """Whether a stage contains imported solids."""
     bodies = [*mechanism.bodies.values(), *(body for unit in mechanism.units.values() for body in unit.bodies.values())]
     return any(isinstance(solid, Imported) for body in bodies for solid in body.solids.values())

@@ -16,9 +16,9 @@ from flexstage.solid.fea.solver.component import Joint, link_joints
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """The pieces of a stage in its own axes by address, those of the ground with `body` "ground".
+    """The pieces of a stage by address, in the axes of the stage; pieces of the ground have the `body` "ground".
 
-    `boxes` are their outlines, `joints` the two ends of every link, `materials` names each piece's material (for a stack its part).
+    `boxes` are their outlines, `joints` the two ends of every link, `materials` the names of each piece's material (for a stack its part).
     """
 
     assembly: Assembly
@@ -37,7 +37,7 @@ class Stage:
 
 
 def stage_pieces(mechanism: Mechanism) -> Stage:
-    """The pieces of a stage, without parts that specify their stiffness and have no shape.
+    """The pieces of a stage; parts with a specified stiffness and no shape are left out.
 
     Raises `DesignError` with the names of links that have neither.
 
@@ -76,4 +76,4 @@ def require_shapes(mechanism: Mechanism, stage: Stage) -> None:
     """
     if not stage.pieces:
         advice = "Add solids to bodies, or use parts with a shape"
-        raise refuse(mechanism.name or "stage", "no body has outlines and no link a shape", advice)
+        raise refuse(mechanism.name or "stage", "no body has outlines, and no link has a shape", advice)

@@ -1,8 +1,9 @@
-"""A hinge by three-dimensional elasticity: its 6x6 between the ends of its arcs, with an estimate of its error.
+"""The 6x6 of a hinge by three-dimensional elasticity, between the ends of its arcs, with an error estimate.
 
-The hinge is between rigid outer faces, with a stub of the block on each side with a root. The stubs are then subtracted as beams,
-so that the compliance of the roots remains with the hinge. An end without a root is rigid at the end of its arcs. A symmetric hinge is
-cut at its planes: the six motions are even or odd about each, so a quarter with matching constraints suffices.
+The outer faces of the model are rigid. At each end with a root, a stub of the block is between the hinge and the outer face. The stubs are
+then subtracted as beams, so that the compliance of the roots remains with the hinge. An end without a root is rigid at the end of its arcs.
+A symmetric hinge is cut at its planes of symmetry: each of the six motions is even or odd about each plane, so a quarter with matching
+constraints suffices.
 """
 
 from __future__ import annotations
@@ -128,17 +129,18 @@ def hinge_compliance(
     *,
     roots: Roots | None = None,
 ) -> HingeSolid:
-    """The 6x6 of a hinge by finite elements, to the required accuracy (default 1 %).
+    """Compute the 6x6 of a hinge by finite elements, to the required accuracy (default 1 %).
 
-    Energies: with one outer face fixed and the other moved rigidly by e_i about the centre, K_ij = u_i . K u_j; C = K^-1 - sum over
-    stubs of X C_stub X^T. The order is raised, then the mesh refined, until the error estimated from the last changes
-    (`estimate.remaining`) is within `accuracy.error`. `roots` selects the ends that grow on blocks (default: both for a profile that rises,
-    none for other hinges). `stub` [m] is the length of a stub: by default the hinge's full height, or five times its `grain` at a block
-    wider than itself.
+    With one outer face fixed and the other moved rigidly by e_i about the centre, the displacements u_i have the energies K_ij = u_i . K_FE
+    u_j. Then C = K^-1 - sum over stubs of X C_stub X^T. The order is raised, then the mesh refined, until the error estimated from the last
+    changes (`estimate.remaining`) is within `accuracy.error`.
 
-    Linear elasticity; the stubs' outer faces remain plane. The depth of the root is a convention. C_x depends on the stub's
-    length by 1-3 %, C_y by some 10 %, and C_rx of a hinge several times wider than high by a factor. Raises `DesignError` for a part
-    without a shape, for a batch, and if no mesh can be made. `told` is called for every mesh and solve.
+    `roots` selects the ends that are on blocks (default: both ends of a profile that rises to its blocks, else none). `stub` [m] is the
+    length of a stub: by default the hinge's full height, or five times its `grain` if the block is wider than the hinge.
+
+    The depth of the root is a convention: C_x depends on the stub's length by 1-3 %, C_y by about 10 %, and C_rx of a hinge several
+    times wider than high by a multiple. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made.
+    `told` is called for every mesh and solve.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight
@@ -161,7 +163,7 @@ def hinge_compliance(
             break
     if last is None:
         what = f"its coarsest mesh has more than the {required.freedoms} DOFs allowed"
-        raise refuse(_label(part), what, "Use --order 3, which begins with order two, or in Python increase freedoms of its Accuracy")
+        raise refuse(_label(part), what, "Use --order 3, which starts at order two, or in Python increase freedoms of the Accuracy")
     alone, error = found[-1], blunt + _error(part, found)
     return HingeSolid(
         compliance=alone,
@@ -187,11 +189,19 @@ def _refusals(part: Shaped) -> Iterator[Finding]:
         for name, value in vars(owner).items() if owner is not None else ():
             sizes = [np.size(each) for each in (value if isinstance(value, tuple) else (value,)) if np.ndim(each) > 0]
             if sizes:
-                yield Finding(f"{_label(part)}'s {name}", f"is a batch of {max(sizes)}", "Compute them separately: a solid is one design")
+                yield Finding(
+                    f"{_label(part)}'s {name}",
+                    f"is a batch of {max(sizes)}",
+                    "Compute the designs separately: a solid model has one design",
+                )
     if isinstance(profile, Filleted) and np.ndim(profile.length) == np.ndim(profile.radius) == 0:
         total, radius = float(np.real(profile.length)), float(np.real(profile.radius))
         if 2.0 * radius > total:
-            yield Finding(_label(part), f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m", "Use 2 r <= l")
+            yield Finding(
+                _label(part),
+                f"its fillets of {radius:.4g} m do not fit into its length of {total:.4g} m",
+                "Use a radius of at most half the length",
+            )
 
 
 def _error(part: Shaped, found: Sequence[Array]) -> float:
@@ -252,10 +262,10 @@ def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
 
 
 def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
-    """A mesh [mm] of a hinge with its stubs, faces `start` and `end` named; no element is inverted at any order up to `order`.
+    """Return a mesh [mm] of a hinge with stubs and the faces `start` and `end`; no element is inverted at any order up to `order`.
 
-    For an isotropic material only the computed part is meshed: the quarter on the positive sides of y and z, the half of a leaf. Elements
-    are `factor` times the usual size. If the mesher fails or an element is inverted, other sizes are tried, a few times. Raises
+    For an isotropic material only one symmetric portion is meshed: the quarter on the positive sides of y and z, the half of a leaf.
+    Elements are `factor` times the usual size. If the mesher fails or an element is inverted, other sizes are tried, a few times. Raises
     `DesignError` if all fail.
 
     >>> from flexstage.parts.neck import Neck
@@ -281,7 +291,7 @@ def _mesh(subject: _Subject, factor: float, order: int) -> _Mesh:
         if isinstance(outcome, ngsolve.Mesh):
             return _Mesh(outcome, drawn.mirrors)
         reason = outcome
-    raise refuse(_label(subject.part), f"no mesh could be made: {reason}", "Check its proportions")
+    raise refuse(_label(subject.part), f"no mesh could be made: {reason}", "Check the proportions of the hinge")
 
 
 def _attempt(drawn: Specimen, sizes: Mapping[str, Any], order: int) -> ngsolve.Mesh | str:
@@ -327,16 +337,16 @@ def _require_symmetric(part: Shaped, law: Array) -> None:
     if skew > _SYMMETRY:
         raise refuse(
             _label(part),
-            f"its stiffness is unsymmetric by {skew:.1e}, {_SYMMETRY:.0e} is allowed",
+            f"its stiffness is not symmetric (relative difference {skew:.1e}, expected at most {_SYMMETRY:.0e})",
             "Its mesh is ill-conditioned: check the proportions",
         )
 
 
 def _not_reached(part: Shaped, error: float, accuracy: Accuracy) -> Finding:
     if not np.isfinite(error):
-        return Finding(_label(part), f"the error of its 6x6 is not known: {NO_ESTIMATE}", LEAVE)
+        return Finding(_label(part), f"the error of its 6x6 is unknown: {NO_ESTIMATE}", LEAVE)
     return Finding(
         _label(part),
-        f"the error of its 6x6 is {100.0 * error:.2g} %, {100.0 * accuracy.error:.2g} % required, within {accuracy.freedoms} DOFs",
-        "Allow more DOFs, or less accuracy",
+        f"the error of its 6x6 with {accuracy.freedoms} DOFs is {100.0 * error:.2g} %, but {100.0 * accuracy.error:.2g} % is required",
+        "Allow more DOFs or a larger error",
     )

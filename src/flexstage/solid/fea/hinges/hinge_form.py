@@ -1,4 +1,4 @@
-"""Input and result of a hinge computation: its 6x6. Does not import the solver."""
+"""Input and result of the computation of a hinge's 6x6. This module does not import the solver."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from flexstage.parts.material import Material
 from flexstage.parts.shape import Shaped
 from flexstage.solid.fea.hinges.roots import Roots
 
-NO_ESTIMATE = "an estimate needs two solves, and the second would exceed the allowed number of unknowns"
+NO_ESTIMATE = "an estimate needs two solutions, and the second would exceed the allowed number of unknowns"
 LEAVE = "Compare it with beam theory (flexstage verify), or in Python increase freedoms of the Accuracy of hinge_compliance"
 
 
 class HingeForm(NamedTuple):
-    """Input of a hinge computation: its shape, its material, and its ends that grow on blocks."""
+    """Input of a hinge computation: the shape of the hinge, its material, and its ends that are attached to blocks."""
 
     part: Shaped
     material: Material
@@ -27,11 +27,11 @@ class HingeForm(NamedTuple):
 class HingeSolid:
     """The 6x6 of a hinge by three-dimensional elasticity, about its centre in the link frame, between the ends of its arcs [SI].
 
-    `compliance` and `stiffness` (6, 6): twist of the second side against the first, (x, y, z, rx, ry, rz). `error` estimates the largest
-    relative error of the compliance *at the hinge's end*, each entry ij against sqrt(C_ii C_jj) there. `changes` (6,) are the last
-    relative changes of the diagonal about the centre: those of y and z are larger, as small differences of lever arms.
-    `whole` (6, 6) is the compliance with the stubs of length `stub` [m]. `freedoms`, `elements` and `order` belong to the last solve;
-    `finding` reports a missed accuracy.
+    `compliance` and `stiffness` (6, 6) are for the twist (x, y, z, rx, ry, rz) of the second end relative to the first. `error` estimates
+    the largest relative error of the compliance *at the hinge's end*, with each entry ij relative to sqrt(C_ii C_jj) there. `changes` (6,)
+    are the last relative changes of the diagonal about the centre. Those of y and z are larger, as differences of lever-arm terms. `whole`
+    (6, 6) is the compliance including the stubs of length `stub` [m]. `freedoms`, `elements` and `order` belong to the last solution;
+    `finding` is the warning if the accuracy was not reached.
     """
 
     compliance: Array

@@ -1,9 +1,9 @@
 """A hinge as a specimen: drawn at the origin, with a stub of its block at each elastic end.
 
 If a profile rises to a block, the stub has the hinge's full height, and hinge and stub are one outline. Half-circle arcs are drawn
-completely: they end perpendicular to the stub's flank, without tangent faces. At a rigid face, to which an arc would be tangent, the
-arc ends at its true end with a blunted wedge. It carries almost no load, and could not be meshed. All other
-hinges end on a stub wider than themselves on all sides.
+completely: they end perpendicular to the stub's flank, without tangent faces. At a rigid face, to which an arc would be tangent, the arc
+ends at its true end with a blunted wedge. A sharp wedge could not be meshed, and would carry almost no load. All other hinges end on a stub
+wider than themselves on all sides.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ START, END = "start", "end"
 """Names of the specimen's two outer faces, towards -x and +x."""
 
 BLUNTED = 0.06
-"""Thickness of the wedge between an arc and a rigid face at its end, over the arc's smaller axis."""
+"""Thickness of the blunted wedge between an arc and a rigid face, over the arc's smaller semi-axis."""
 
 _NEAR = 1e-6
 """Relative to the hinge's length: tolerance for points in a plane."""
@@ -48,14 +48,14 @@ _Curve = list[occ.TopoDS_Shape]
 
 @dataclass(frozen=True)
 class Specimen:
-    """A drawn hinge with its stubs [mm]: the solid with faces `start` and `end`, sizes set on its edges, and the `largest` element."""
+    """A drawn hinge with stubs [mm]: the solid with faces `start` and `end`, element sizes on its edges, and the `largest` size."""
 
     solid: occ.TopoDS_Shape
     largest: float
     mirrors: Mirrors = Mirrors()
 
     def cut(self, across: Iterable[int]) -> Specimen:
-        """Its positive side across those of some axes (1: y, 2: z) with symmetry."""
+        """Return its positive side, cut at the symmetry planes normal to some axes (1: y, 2: z)."""
         mirrors = Mirrors(tuple(axis for axis in across if is_symmetric([self.solid], axis)))
         return replace(self, solid=cut_at_mirrors(self.solid, mirrors), mirrors=mirrors)
 
@@ -101,7 +101,7 @@ class _Side:
 
 
 def grain(part: Shaped) -> float:
-    """Length scale of the root's compliance [m]: the thickness at the hinge's ends, geometric mean for bending in both directions.
+    """Length scale of the root's compliance [m]: thickness at the hinge's ends; geometric mean with the width if it bends both ways.
 
     >>> from flexstage.parts.neck import Neck
     >>> grain(Neck("steel", 1e-3, Straight(0.01), width=4e-3))
@@ -112,7 +112,7 @@ def grain(part: Shaped) -> float:
 
 
 def own_stub(part: Shaped) -> tuple[Section, float]:
-    """Section and length [m] of the stub at a hinge's end: as high as a profile that rises; else wider on all sides.
+    """Section and length [m] of the stub at a hinge's end: as high as the end of a profile that rises, else wider on all sides.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> section, depth = own_stub(Leaf("steel", 0.01, 1e-3, 5e-3))
@@ -128,7 +128,7 @@ def own_stub(part: Shaped) -> tuple[Section, float]:
 
 
 def cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specimen:
-    """A hinge with a profile and stubs of these lengths [mm], its arcs complete at a stub; one of a straight profile as a `bar`.
+    """Draw a hinge with a profile, with stubs of these lengths [mm]; arcs are complete at a stub. A straight profile is drawn as a `bar`.
 
     A notch is thin along y and wide along z; a round neck is revolved about x.
     """
@@ -151,7 +151,7 @@ def _draw_cut(part: Profiled, stubs: tuple[float, float], size: float) -> Specim
 
 
 def bar(part: Shaped, stubs: tuple[float, float], size: float, drawn: occ.TopoDS_Shape | None = None) -> Specimen:
-    """A part as `drawn` [mm] (absent: of one section), with its end blocks of these lengths [mm]."""
+    """Draw a part with end blocks of these lengths [mm]; `drawn` [mm] is its solid (default: a prism of its section)."""
     side = _Side(0.5 * millimetres(part.end.height), Straight(part.span), stubs)
     solid = _prism(part) if drawn is None else drawn
     thin = _thinness(part)

@@ -1,8 +1,8 @@
-"""The stubs of a specimen: prismatic beams, subtracted from the specimen's compliance.
+"""Compliance of the stubs of a specimen: prismatic beams, subtracted from the specimen's compliance.
 
-Independent of the beam theory of hinges (`flexstage.beams`), which is compared with the solid model: both share only the
-description's sections. The shear factor does not depend on Poisson's ratio (one that does, Cowper 1966, would change a hinge's shear
-compliance by 1 %: it is part of the convention).
+This is independent of the beam theory of hinges (`flexstage.beams`), which is compared with the solid model: both share only the
+description's sections. The shear factor does not depend on Poisson's ratio. A factor that does (Cowper 1966) would change a hinge's shear
+compliance by 1 %: the choice is part of the convention.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ def beam(section: Section, length: float, medium: Medium) -> Array:
     """Compliance (6, 6) of a prismatic Timoshenko beam about its centre, axis along x, one end fixed plane and the other free to warp.
 
     C = diag(L/EA, L^3/12EI_z + k L/GA, L^3/12EI_y + k L/GA, C_rx, L/EI_y, L/EI_z): bending and shear about the centre do not couple.
-    Torsion by Vlasov: C_rx = L/GJ (1 - tanh(m)/m), m^2 = G J L^2/(E C_w): Saint-Venant's torsion alone would subtract more than the
-    total for a wide hinge.
+    Torsion is by Vlasov's theory: C_rx = L/GJ (1 - tanh(m)/m), m^2 = G J L^2/(E C_w). For a wide hinge, Saint-Venant torsion would give the
+    stubs more compliance than the specimen.
 
     >>> from flexstage.parts.section import circle
     >>> beam(circle(2.0), np.pi, Medium(1.0, 0.0, 1.0)).diagonal()[[0, 3, 4, 5]].round(9).tolist()

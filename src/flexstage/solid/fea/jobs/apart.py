@@ -52,7 +52,7 @@ class _Checking(_Drawing):
 def contacts_apart(
     mechanisms: Sequence[Mechanism], clearance: float = 0.0, limits: Limits = _LIMITS, pool: Pool | None = None
 ) -> list[tuple[Finding, ...]]:
-    """Results of `contact_findings` for stages, in parallel in separate processes, or those of a `pool`.
+    """Return the results of `contact_findings` for stages, computed in parallel in separate processes or in those of a `pool`.
 
     Raises `DesignError` after a crash or a timeout.
     """

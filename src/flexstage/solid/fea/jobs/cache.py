@@ -1,6 +1,6 @@
-"""The cache of superelements and hinges: files by content; each is computed once on a machine, and a stopped run resumes.
+"""Cache of superelements and hinges, as files by content: each is computed once on a machine, and a stopped command resumes.
 
-Unreadable or unwritable files are reported and not fatal: the result is computed again, or not stored.
+Files that cannot be read or written cause warnings, not errors: the result is computed again, or not stored.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ from flexstage.solid.fea.solver.component import Component
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of files in the cache: the ending of their names, and their content."""
+    """A kind of file in the cache: the ending of its name, and a noun for its content."""
 
     suffix: str
     noun: str
 
 
-SUPERELEMENTS, HINGES, SOUND = Kind(".superelement", "superelement"), Kind(".hinge", "6x6"), Kind(".sound", "mark of sound outlines")
+SUPERELEMENTS, HINGES, SOUND = Kind(".superelement", "superelement"), Kind(".hinge", "6x6"), Kind(".sound", "record of checked outlines")
 
 
 @dataclass(frozen=True)
 class Cache(CheckedFields):
-    """Folder of superelements, and its size limit in bytes: the least recently used are removed first.
+    """Folder of superelements and hinges, and size `limit` [bytes] of each kind of file: the least recently used are removed first.
 
-    Without a `folder`: that of the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.
+    The default `folder` is that of the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.
     """
 
     folder: Path | None = None
@@ -49,7 +49,7 @@ class Cache(CheckedFields):
 
 
 Notice: TypeAlias = Callable[[Finding], None]
-"""Called with warnings: a file of the cache is damaged, or could not be written."""
+"""Function called with a warning if a file of the cache is damaged or could not be written."""
 
 
 def warn(finding: Finding) -> None:
@@ -67,7 +67,7 @@ def folder_of(cache: Cache) -> Path:
 
 
 def key_of(component: Component, reduction: Reduction, springs: Array | None = None) -> str:
-    """Digest of a superelement's inputs, without versions: the component's content and the options of its reduction.
+    """Digest of the inputs of a superelement: the component's content and the options of its reduction; program versions are excluded.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.solid.fea.solver.component import components
@@ -82,7 +82,7 @@ def key_of(component: Component, reduction: Reduction, springs: Array | None = N
 
 
 def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> Any:
-    """Return the superelement or the 6x6 of a key, `None` if it is absent. `where` names it in the notice of a damaged file.
+    """Return the superelement or the 6x6 stored for a key, `None` if there is none. `where` names it in warnings about a damaged file.
 
     >>> find(Cache(Path("/nowhere")), "key", "lever") is None
     True
@@ -103,7 +103,7 @@ def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, noti
 
 
 def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
-    """Whether a file exists for a key; its validity is checked at reading.
+    """Whether a file exists for a key; its validity is checked only when it is read.
 
     >>> holds(Cache(Path("/nowhere")), "key")
     False
@@ -112,7 +112,7 @@ def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
 
 
 def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> None:
-    """Store a superelement, a 6x6 or a mark in a file, completely or not at all.
+    """Store a superelement, a 6x6 or a record of checked outlines in a file, completely or not at all.
 
     >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", None, notice=lambda finding: print(finding.where))
     lever
@@ -124,7 +124,7 @@ def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELE
         write(path, data)
     except (OSError, DesignError) as error:
         why = error.strerror if isinstance(error, OSError) else error.findings[0].what
-        what = f"its {kind.noun} of {len(data) / 1e6:.3g} MB could not be kept in {path.parent} ({why})"
+        what = f"its {kind.noun} of {len(data) / 1e6:.3g} MB could not be stored in {path.parent} ({why})"
         advice = f"The result is complete, but not cached: free space there, or set {FOLDER_VARIABLE} to another folder"
         notice(Finding(where, what, advice))
 

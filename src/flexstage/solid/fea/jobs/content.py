@@ -13,7 +13,7 @@ from flexstage.solid.fea.solver.component import Component
 from flexstage.spatial.frame import Frame
 
 KEPT = 512
-"""Components whose content is cached in memory."""
+"""Number of components whose content is cached in memory."""
 
 
 @SESSION.keep(KEPT)

@@ -1,4 +1,4 @@
-"""The cache of hinges: their 6x6 by content, so that each is computed once on a machine."""
+"""Cache of the 6x6 of hinges by content: each is computed once on a machine."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SECONDS, _PER_WIDTH, _WIDEST = 0.3, 0.04, 50.0
 
 @dataclass(frozen=True, eq=False)
 class HingeJob(StoredJob):
-    """A hinge to compute in a separate process, under its name for the user."""
+    """Job that computes the 6x6 of a hinge in a separate process; `called` is the user's name of the hinge."""
 
     called: str
     form: HingeForm
@@ -43,12 +43,12 @@ class HingeJob(StoredJob):
         return min(self.asked.orders[0] + 1, self.asked.orders[1])
 
     def seconds(self) -> float:
-        """Usual CPU time for a hinge [s]: several solves, more elements in a wide one."""
+        """Usual CPU time [s] of several solves; it increases with the width of the hinge."""
         throat = self.form.part.throat
         return _SECONDS + _PER_WIDTH * min(float(np.real(throat.area / throat.thinnest**2)), _WIDEST)
 
     def summary(self, found: HingeSolid) -> str:
-        """The solved hinge in one line."""
+        """One line about the computed hinge."""
         return f"hinge {self.name}: error {100.0 * found.error:.2g} %, {found.freedoms:,} unknowns of order {found.order}"
 
     def needed(self, counts: Counts) -> float:
@@ -56,11 +56,11 @@ class HingeJob(StoredJob):
         return needed(counts, self.order, 6)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Reason why its coarsest mesh does not fit."""
+        """Error if its coarsest mesh does not fit into the memory."""
         if self.needed(counts) <= limit:
             return None
-        what = f"its coarsest mesh needs about {self.needed(counts) / 1e9:.3g} GB at order {self.order}, {limit / 1e9:.3g} GB are available"
-        return Finding(self.name, what, "Free memory, or allow more")
+        what = f"its coarsest mesh needs about {self.needed(counts) / 1e9:.3g} GB at order {self.order} ({limit / 1e9:.3g} GB available)"
+        return Finding(self.name, what, "Free memory, or increase --memory")
 
     def work(self, call: Call) -> HingeSolid:
         """Compute the 6x6; errors name the hinge as the user does."""
@@ -74,9 +74,9 @@ class HingeJob(StoredJob):
 
 
 def hinges_from_cache(forms: Mapping[str, HingeForm], accuracy: Accuracy, ways: Ways) -> dict[str, HingeSolid]:
-    """The 6x6 of hinges by name, from the cache, else computed in separate parallel processes, each stored immediately.
+    """Return the 6x6 compliance of hinges by name. Missing ones are computed in parallel processes, and each is stored immediately.
 
-    Only missing ones need the solver. Raises `DesignError` with all failures.
+    The solver is needed only for missing ones. Raises `DesignError` with all failures.
 
     >>> hinges_from_cache({}, Accuracy(), Ways())
     {}

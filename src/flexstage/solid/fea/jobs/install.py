@@ -9,13 +9,13 @@ from importlib.metadata import PackageNotFoundError, version
 from flexstage.base.finding import Finding, require
 
 SOLVER_VERSION = "6.2.2608"
-"""The version of NGSolve and netgen the results were tested with. Meshes, and with them digits of the results, differ between versions."""
+"""Version of NGSolve and netgen with which results were tested. Meshes, and therefore last digits of results, differ between versions."""
 
 _INSTALL = f"Install {SOLVER_VERSION} with: pip install 'flexstage[solid]' (Python 3.11 to 3.14; Linux on x86-64, macOS, Windows)"
 
 
 def solver_findings() -> tuple[Finding, ...]:
-    """Problems that prevent NGSolve and netgen from working here; empty if they work. Imports them unless a problem is already known.
+    """Problems that prevent NGSolve and netgen from working; empty if they work. Imports them unless a version is missing or wrong.
 
     >>> solver_findings()
     ()
@@ -24,7 +24,7 @@ def solver_findings() -> tuple[Finding, ...]:
 
 
 def require_solver() -> None:
-    """Raise a `DesignError` with the remedy if NGSolve or netgen is missing, of another version or does not load.
+    """Raise a `DesignError` with the remedy if NGSolve or netgen is missing, has another version or does not load.
 
     >>> require_solver()
     """
@@ -32,9 +32,9 @@ def require_solver() -> None:
 
 
 def require_installed() -> None:
-    """Raise a `DesignError` with the remedy if NGSolve or netgen is missing or of another version; they are not loaded.
+    """Raise a `DesignError` with the remedy if NGSolve or netgen is missing or has another version, without loading them.
 
-    For computations in separate processes: they load it, and report loading errors.
+    Separate processes load the packages and report errors of loading.
 
     >>> require_installed()
     """

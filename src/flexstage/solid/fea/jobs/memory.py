@@ -1,7 +1,7 @@
 """Memory and CPU time of a reduction, estimated from the mesh before assembly; memory is compared with the free memory of the machine.
 
-Degrees of freedom and matrix entries are counted exactly from the mesh. The factor is measured: between 20 and 70 bytes an entry
-of the matrix on hinges, levers, plates and stacks of 2,000 to 440,000 degrees of freedom at orders two to four.
+Degrees of freedom and matrix entries are counted exactly from the mesh. The size of the factor is empirical: measurements are 20 to 70
+bytes for each matrix entry, on hinges, levers, plates and stacks of 2,000 to 440,000 degrees of freedom at orders two to four.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _COARSER, _COARSEST = 1.25, 12.0
 
 @dataclass(frozen=True)
 class Counts:
-    """Counts of a tetrahedral mesh, and the number of its mirror images in the whole."""
+    """Numbers of vertices, edges, faces and elements of a tetrahedral mesh; the whole consists of `sides` mirror images of the mesh."""
 
     vertices: float
     edges: float
@@ -53,7 +53,7 @@ class Counts:
         return Counts(0.3 * elements, 1.5 * elements, 2.2 * elements, elements, sides)
 
     def coarser(self, factor: float) -> Counts:
-        """Approximate counts with all sizes larger by a factor: graded meshes shrink with its square rather than its cube.
+        """Approximate counts if all sizes are larger by a factor: counts of graded meshes decrease with its square rather than its cube.
 
         >>> Counts(8.0, 8.0, 8.0, 8.0).coarser(2.0).elements
         2.0
@@ -61,7 +61,7 @@ class Counts:
         return self._times(1.0 / factor**2)
 
     def enriched(self, share: float, order: int) -> Counts:
-        """Counts with as many DOFs in elements of one order as this mesh has with a share of elements of one order more.
+        """Counts of a mesh of one `order` with as many DOFs as this mesh, in which a `share` of the elements has one order more.
 
         >>> Counts(4, 6, 4, 1).enriched(1.0, 1).vertices  # ten nodes instead of four
         10.0
@@ -73,7 +73,7 @@ class Counts:
 
 
 def freedoms(counts: Counts, order: int) -> float:
-    """Degrees of freedom of displacements of an order: 3 (n_v + (p-1) n_e + (p-1)(p-2)/2 n_f + (p-1)(p-2)(p-3)/6 n_t).
+    """Number of displacement DOFs at an order: 3 (n_v + (p-1) n_e + (p-1)(p-2)/2 n_f + (p-1)(p-2)(p-3)/6 n_t).
 
     >>> freedoms(Counts(4, 6, 4, 1), order=2)  # one tetrahedron: ten nodes
     30.0
@@ -84,7 +84,7 @@ def freedoms(counts: Counts, order: int) -> float:
 
 
 def entries(counts: Counts, order: int) -> float:
-    """Entries of the stiffness matrix: nine for every pair of nodal functions with a common element, counted at their common simplex.
+    """Number of entries of the stiffness matrix: nine for every pair of basis functions with a common element.
 
     >>> entries(Counts(4, 6, 4, 1), order=2)  # one tetrahedron: full
     900.0
@@ -97,10 +97,11 @@ def entries(counts: Counts, order: int) -> float:
 
 
 def needed(counts: Counts, order: int, columns: int) -> float:
-    """Highest memory of a reduction [bytes] to `columns` coordinates: process, mesh, matrices, their factors, basis.
+    """Peak memory of a reduction [bytes] to `columns` coordinates: process, mesh, matrices, their factors, basis.
 
-    One side of a symmetric component has a factor for every kind of motion, as many as mirror images. Within -15 and +40 % of
-    measurements at orders two to four with modes. Without modes only one factor exists at a time, and the estimate is up to 70 % too high.
+    One side of a symmetric component has a factor for every kind of motion, as many as mirror images. The estimate is within -15 and +40 %
+    of measurements at orders two to four with modes. Without modes only one factor exists at a time, and the estimate is up to 70 % too
+    high.
 
     >>> round(needed(Counts(1416, 7258, 10580, 4737), order=3, columns=24) / 1e6)  # a lever's foot: 967 MB measured
     1030
@@ -113,9 +114,9 @@ def needed(counts: Counts, order: int, columns: int) -> float:
 
 @dataclass(frozen=True)
 class ReductionWork:
-    """Work of a reduction, counted from its mesh: counts, unknowns, operations of its factors, and the pace of the machine.
+    """Computing effort of a reduction, from its mesh: counts, unknowns, operations of its factors, and the pace of the machine.
 
-    `pace` is the time of a small factorisation over its usual time.
+    `pace` is the time of a small factorisation relative to its usual time.
     """
 
     counts: Counts
@@ -150,7 +151,7 @@ def measure_pace() -> float:
 
 
 def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit: float) -> Finding | None:
-    """Reason why a component does not fit into `limit` bytes, with an order or a fineness that does; nothing if it fits.
+    """Error of a component that does not fit into `limit` bytes, with an order or a fineness that fits; `None` if it fits.
 
     >>> found = refusal("lever", Counts(1416, 7258, 10580, 4737), Fineness(), 24, 0.5e9)
     >>> found.what

@@ -1,4 +1,4 @@
-"""The reduced components of a stage: each distinct one once, from the cache if possible, else in a separate process."""
+"""Reduced components of a stage: each distinct one is read from the cache if possible, else computed in a separate process."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ _NO_SPRINGS: Mapping[str, Array] = MappingProxyType({})
 
 @dataclass(frozen=True)
 class Ways:
-    """Options of the jobs: the `cache` (`None`: none), the receiver of `progress` and of notices, and the `limits`.
+    """Options of the jobs: the `cache` (`None`: no cache), the receivers of `progress` and of warnings (`notice`), and the `limits`.
 
-    With a `pool`, processes and results remain for later calls. `note` receives lines of text: the work and its CPU time before it begins,
-    every result, and after an interruption the kept results.
+    With a `pool`, processes and results remain for later calls. `note` receives lines of text: the jobs and their CPU time before they
+    begin, every result, and after an interruption the number of stored results.
     """
 
     cache: Cache | None = Cache()
@@ -57,10 +57,10 @@ def reduce_parts(
     ways: Ways = Ways(),
     springs: Mapping[str, Array] = _NO_SPRINGS,
 ) -> Parts:
-    """Reduce components; `springs` between the interfaces of some, by name.
+    """Reduce components; `springs` connect the interfaces of some, by name.
 
-    Only components missing from the cache need the solver. Each is stored immediately, so an interrupted run resumes. Raises
-    `DesignError` with all failures.
+    Only components missing from the cache need the solver. Each is stored immediately, so that an interrupted computation can resume.
+    Raises `DesignError` with all failures.
 
     >>> reduce_parts((), Reduction())
     ()
@@ -71,9 +71,9 @@ def reduce_parts(
 
 
 def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mapping[str, Array] = _NO_SPRINGS) -> list[Reduce]:
-    """A job for each component: the ends of its links deform, so that a unit has one job isolated and in its stage.
+    """A job for each component. The ends of its links may deform, so that an isolated unit and the unit in its stage have the same job.
 
-    An encased stack has no modes between its end faces: there the ceramic would bend without its casing, which joins these faces only.
+    An encased stack has no fixed-interface modes: in them the ceramic would bend without its casing, which joins only the end faces.
 
     >>> reduce_jobs((), Reduction())
     []
@@ -90,7 +90,7 @@ def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mappi
 
 @SESSION.keep(KEPT)
 def content_in_stage(part: Component) -> str:
-    """The content of a component's reduction, the same for a unit isolated and in its stage.
+    """The content of a component's reduction, equal for an isolated unit and the unit in its stage.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> content_in_stage(bar()) == content(with_yielding_ends(bar()))
@@ -100,7 +100,7 @@ def content_in_stage(part: Component) -> str:
 
 
 def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Superelement]]) -> Parts:
-    """Components with the superelements of their `reduce_jobs`, faces on rigid bodies fixed; equal ones share one.
+    """Components with the superelements of their `reduce_jobs`, faces on rigid bodies kept plane; equal ones share a superelement.
 
     >>> as_joined((), ())
     ()
@@ -117,9 +117,10 @@ def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Sup
 
 
 def obtain(jobs: Sequence[StoredJob], ways: Ways) -> dict[str, Any]:
-    """Results of jobs by key, from the cache, else computed, each once and stored immediately.
+    """Results of jobs by key: from the cache, else computed, each once, and stored immediately.
 
-    The work of the missing ones is measured on their meshes and reported first. Raises `DesignError` if one exceeds memory or time.
+    First, the computing effort of missing results is estimated from their meshes and reported. Raises `DesignError` if a job fails or would
+    exceed memory or time.
 
     >>> obtain((), Ways())
     {}
@@ -187,18 +188,18 @@ def _measure(jobs: Sequence[StoredJob], ways: Ways) -> tuple[list[StoredJob], tu
 
 
 def announce(jobs: Sequence[StoredJob], lanes: int, cached: int) -> str:
-    """The work of jobs in a line: their number, the unknowns of the largest, and the CPU time in all.
+    """One line about the jobs: their number, the largest number of unknowns, and the total CPU time.
 
     >>> announce((), lanes=2, cached=3)
-    'to do: nothing, all 3 parts are in the cache.'
+    'to do: nothing, all 3 results are in the cache.'
     """
     if not jobs:
-        return f"to do: nothing, all {cached} parts are in the cache."
-    work = ", ".join(f"{number} {phase}" for phase, number in Counter(job.phase for job in sorted(jobs, key=lambda job: job.phase)).items())
+        return f"to do: nothing, all {cached} results are in the cache."
+    work = ", ".join(f"{phase} ({number})" for phase, number in Counter(sorted(job.phase for job in jobs)).items())
     unknowns = max((job.measured.freedoms for job in jobs if isinstance(job, Reduce) and job.measured is not None), default=0)
     sizes = f"up to {unknowns:,} unknowns, " if unknowns else ""
-    known = f" {cached} are in the cache." if cached else ""
-    return f"to do: {work} ({sizes}{lanes} at once), about {duration(sum(job.seconds() for job in jobs))} of CPU time.{known}"
+    known = f" {cached} more results are in the cache." if cached else ""
+    return f"to do: {work}; {sizes}{lanes} in parallel, about {duration(sum(job.seconds() for job in jobs))} of CPU time.{known}"
 
 
 def distinct(jobs: Iterable[AnyStored]) -> tuple[AnyStored, ...]:

@@ -1,4 +1,4 @@
-"""Stages of a solid model, reported by the computing process and summed over all components by the waiting one."""
+"""Stages of a solid model: the computing process reports them, and the waiting process sums them over all components."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _SHARES = {
 """Usual shares of a component's time, at orders two and three; the mesh was made before."""
 
 Report = Callable[[Stage, float], None]
-"""Called with a stage and its completed fraction."""
+"""Function called with a stage and its completed fraction."""
 
 
 def silent(_stage: Stage, _fraction: float) -> None:
@@ -41,7 +41,7 @@ def silent(_stage: Stage, _fraction: float) -> None:
 
 
 def fraction_done(stage: Stage, fraction: float) -> float:
-    """Completed fraction of a component from the fraction of a stage.
+    """Completed fraction of the computation of a component, from the completed fraction of a stage.
 
     >>> fraction_done(Stage.STARTING, 0.0), round(fraction_done(Stage.MESHING, 1.0), 2), round(fraction_done(Stage.PROJECTING, 1.0), 9)
     (0.0, 0.07, 1.0)

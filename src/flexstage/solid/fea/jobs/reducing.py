@@ -1,4 +1,4 @@
-"""The job of reducing one component."""
+"""Jobs that mesh and reduce one component."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ _TRIANGLE = 0.433
 
 
 def fewest_elements(component: Component, fineness: Fineness) -> float:
-    """Lower bound of a mesh's elements: one for each triangle of the lateral surface of the pieces' necks and blocks.
+    """Lower bound of the number of elements: one for each triangle of a mesh on the lateral surface of necks and blocks.
 
-    Meshes beyond the available memory are refused before meshing.
+    It serves to refuse meshes that exceed the available memory before meshing.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.solid.fea.solver.component import components
@@ -54,7 +54,7 @@ def _fewest_elements(piece: Piece, fineness: Fineness) -> float:
 
 @dataclass(frozen=True, eq=False)
 class StoredJob(Job):
-    """A job whose result is stored for `key`, in a file of a kind."""
+    """A job whose result is stored in the cache for `key`, in a file of the kind `stored`."""
 
     key: str
 
@@ -66,7 +66,7 @@ class StoredJob(Job):
         return "hinges"
 
     def summary(self, _found: Any) -> str:
-        """The result in one line."""
+        """One line about the result."""
         raise NotImplementedError
 
     @property
@@ -77,7 +77,7 @@ class StoredJob(Job):
 
 @dataclass(frozen=True, eq=False)
 class ComponentJob(StoredJob):
-    """A component to mesh."""
+    """Job that meshes a component."""
 
     component: Component
 
@@ -91,13 +91,13 @@ class ComponentJob(StoredJob):
 
     @property
     def kin(self) -> str:
-        """Its content: the mesh is the same at all orders."""
+        """The content of the component: its mesh is the same at all orders."""
         return content(self.component)
 
 
 @dataclass(frozen=True, eq=False)
 class Reduce(ComponentJob):
-    """A component to reduce; `springs` (6 m, 6 m) between its interfaces, for modes of a whole stage in one piece."""
+    """Job that reduces a component; `springs` (6 m, 6 m) connect its interfaces, for modes of a whole stage in one piece."""
 
     reduction: Reduction
     springs: Array | None = None
@@ -105,12 +105,12 @@ class Reduce(ComponentJob):
 
     @property
     def phase(self) -> str:
-        """Its order."""
-        return f"at order {self.reduction.fineness.order}"
+        """Its group in announcements, with the order."""
+        return f"components at order {self.reduction.fineness.order}"
 
     @property
     def columns(self) -> int:
-        """Upper bound of its superelement's coordinates."""
+        """Upper bound of the number of coordinates of its superelement."""
         part = self.component
         stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
         warps = WARPS * sum(item.yields for item in part.interfaces)
@@ -126,19 +126,19 @@ class Reduce(ComponentJob):
         return self.springs is None and self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
 
     def seconds(self) -> float:
-        """Usual CPU time of the reduction [s]: its measured work, or that of a small job."""
+        """Usual CPU time of the reduction [s]: from its measured work if known, else that of a small job."""
         return super().seconds() if self.measured is None else self.measured.seconds(self.columns)
 
     def summary(self, found: Superelement) -> str:
-        """The reduced component in one line."""
-        return f"{self.name} {self.phase}: {found.freedoms:,} unknowns"
+        """One line about the reduced component."""
+        return f"{self.name} at order {self.reduction.fineness.order}: {found.freedoms:,} unknowns"
 
     def needed(self, counts: Counts) -> float:
         """Memory of the reduction [bytes]."""
         return needed(counts, self.reduction.fineness.order, self.columns)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Reason why it does not fit, with an order or a fineness that does; for thin wide parts also with their size."""
+        """Error if it does not fit into the memory, with an order or a fineness that fits; for thin wide parts also with their size."""
         found = refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
         forms = ((piece.name, piece.form) for piece in self.component.pieces if is_leaf(piece.form) or is_notch(piece.form))
         wide = {name: form.throat for name, form in forms if isinstance(form, Shaped)}
@@ -151,23 +151,24 @@ class Reduce(ComponentJob):
         return Finding(found.where, f"{found.what}: {ratio}", f"{found.advice}, {more}")
 
     def excess(self, memory: float, seconds: float) -> Iterator[Finding]:
-        """Reasons why its measured work exceeds a memory [bytes] or a time."""
+        """Error if its measured work exceeds a memory [bytes] or a time [s]."""
         found = self.measured and self.refusal(self.measured.counts, memory)
         if found:
             yield found
         elif self.seconds() > seconds:
-            what = f"its reduction {self.phase} takes about {duration(self.seconds())}, {duration(seconds)} are allowed"
+            order = self.reduction.fineness.order
+            what = f"its reduction at order {order} takes about {duration(self.seconds())} (at most {duration(seconds)} allowed)"
             yield Finding(self.name, what, "Use a lower order (--order 2)")
 
     @property
     def sides(self) -> int:
-        """Mirror images of the meshed side."""
+        """Number of mirror images of the mesh that form the whole."""
         from flexstage.solid.fea.geometry.cad import mirrors_of
 
         return mirrors_of(self.component).copies if self._is_plain else 1
 
     def mesh(self, call: Call) -> tuple[PieceMesh, Counts]:
-        """Draw and mesh; also returns the counts of the mesh."""
+        """Draw and mesh the component; returns the mesh and its counts."""
         from flexstage.solid.fea.meshing.mesh import mesh_component
 
         fineness = self.reduction.fineness
@@ -178,7 +179,7 @@ class Reduce(ComponentJob):
         )
 
     def work(self, call: Call) -> Superelement:
-        """Request the memory of the surface, mesh, request the memory of the mesh, and reduce; returns the stored superelement."""
+        """Mesh and reduce the component, after requests for the memory of the surface and of the mesh; returns the stored superelement."""
         from flexstage.solid.fea.solver.reduce import reduce_mesh
 
         call.ask(Counts.of(fewest_elements(self.component, self.reduction.fineness) / self.sides, self.sides))
@@ -189,7 +190,7 @@ class Reduce(ComponentJob):
 
 @dataclass(frozen=True, eq=False)
 class MeasureWork(Job):
-    """Reductions of one component to mesh, so that their work is known before it begins; the process keeps the mesh for them."""
+    """Job that meshes one component to estimate the work of its reductions in advance; the process keeps the mesh for them."""
 
     reductions: tuple[Reduce, ...]
 
@@ -202,7 +203,7 @@ class MeasureWork(Job):
 
     @property
     def kin(self) -> str:
-        """That of its reductions."""
+        """The content of the component."""
         return self.reductions[0].kin
 
     def work(self, call: Call) -> tuple[ReductionWork, ...]:

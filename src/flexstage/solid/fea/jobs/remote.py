@@ -1,6 +1,6 @@
 """Jobs of the solid model in separate processes: as many at once as cores and memory allow, with time limits.
 
-One loop in the caller's thread starts, watches and ends them, so that an interruption ends every process.
+One loop in the caller's thread starts, watches and ends the processes, so that an interruption ends all of them.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ _TELL_EVERY = 0.5
 
 @dataclass(frozen=True)
 class Limits:
-    """Resources of jobs.
+    """Limits of the resources of jobs.
 
-    `memory` in all [bytes] (absent: the free memory of the machine), `seconds` each, `mesh_seconds` for one attempt at a mesh. There are
-    `workers` at once (absent: one for each core, at most two).
+    `memory` [bytes] is for all jobs (default: the free memory), `seconds` for each job, `mesh_seconds` for each attempt at a mesh.
+    `workers` is the number of simultaneous jobs (default: one for each core, at most two).
     """
 
     memory: float | None = None
@@ -46,9 +46,9 @@ AnyJob = TypeVar("AnyJob", bound=Job)
 
 
 class Pool:
-    """Processes kept between runs of jobs, as loading the solver takes longer than a small job; with their results by key.
+    """Processes kept between groups of jobs, because loading the solver takes longer than a small job; `results` are by key.
 
-    They end with its context.
+    The processes end with the context of the pool.
 
     >>> with Pool() as pool:
     ...     work_all([], print, Limits(), pool=pool)
@@ -68,7 +68,7 @@ class Pool:
             self.end(worker)
 
     def worker(self, job: Job) -> Worker:
-        """A process for a job: an idle one, preferably with a similar last job, else a new one. Raises `OSError` if none starts."""
+        """A process for a job: an idle one, preferably after a similar job, else a new one. Raises `OSError` if no process can start."""
         for each in self.idle:
             if each.process.poll() is not None:
                 self.end(each)
@@ -96,8 +96,8 @@ def work_all(
 ) -> None:
     """Run jobs in separate processes; `done` is called with each finished job and its result.
 
-    The processes remain in the `pool`, if any. Raises `DesignError` with all failures after the others are done: refused, crashed, out of
-    time, out of memory. An exception from `progress` or an interruption ends all.
+    The processes remain in the `pool`, if any. After all jobs, raises `DesignError` with those that were refused, crashed, or exceeded time
+    or memory. An exception from `progress` or an interruption ends all processes.
 
     >>> work_all([], print, Limits())
     """
@@ -298,8 +298,8 @@ def _failure(child: _Child[AnyJob], code: int) -> Finding:
     doing = child.stage.value
     if code == 1:
         return _fault(child, child.worker.last_words())
-    tried = f", at {child.attempt + 1} sizes of elements" if child.attempt else ""
-    advice = "Use elements of another size or order, and report it with the design if it happens again"
+    tried = f", with {child.attempt + 1} sizes of elements" if child.attempt else ""
+    advice = "Use elements of another size or order; if the crash recurs, report it with the design file"
     if child.stage in {Stage.DRAWING, Stage.MESHING}:
         advice = "Change the outline or the elements' sizes a little: slivers and nearly touching faces crash the mesher"
     elif code == -signal.SIGKILL:
@@ -308,7 +308,7 @@ def _failure(child: _Child[AnyJob], code: int) -> Finding:
 
 
 def _fault(child: _Child[AnyJob], message: str) -> Finding:
-    advice = "Report this fault of flexstage or its solver with the design; other sizes of elements may avoid it"
+    advice = "Report this fault of flexstage or its solver with the design file; other element sizes may avoid it"
     return Finding(child.job.name, f"its process failed while {child.stage.value} ({message})", advice)
 
 

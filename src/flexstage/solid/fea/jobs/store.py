@@ -1,4 +1,4 @@
-"""Storing superelements and the 6x6 of hinges: one line of JSON that describes the data, then the arrays as npz. No code is stored."""
+"""Files of superelements and of the 6x6 of hinges: one line of JSON that describes the data, then the arrays as NPZ; no code."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from flexstage.solid.fea.jobs.install import SOLVER_VERSION
 from flexstage.solid.fea.solver.superelement import Skin, Superelement
 
 FORMAT = 1
-"""Raise this number if the form of the file changes."""
+"""Number of the file format; increase it with every change of the format."""
 
 _RECORDS = {record.__name__: record for record in (Superelement, Skin, HingeSolid, Finding)}
 
 
 @functools.cache
 def program() -> str:
-    """Return the identity of the program: flexstage with a digest of its solid model's code, NGSolve, the form of the file.
+    """Return the identity of the program: flexstage with a digest of its solid model's code, NGSolve, and the file format.
 
-    Results of changed code are never reused.
+    Results of other code are therefore never used.
 
     >>> program().endswith(f"with NGSolve {SOLVER_VERSION}, format {FORMAT}")
     True
@@ -42,7 +42,7 @@ def program() -> str:
 
 
 def to_bytes(element: Superelement | HingeSolid | None, key: str) -> bytes:
-    """A superelement, a 6x6 or nothing as the bytes of a file, for the content `key`.
+    """Return the content of a file with a superelement, a 6x6 or nothing, stored for the content `key`.
 
     >>> small = Superelement(0, 0, {}, {}, {}, {}, {}, {}, {}, np.zeros((0, 6)), np.zeros((0, 6)), Skin(*[np.zeros(0)] * 5), 3, 1)
     >>> from_bytes(to_bytes(small, "key"), "key").freedoms
@@ -57,7 +57,7 @@ def to_bytes(element: Superelement | HingeSolid | None, key: str) -> bytes:
 
 
 def from_bytes(data: bytes, key: str) -> Any:
-    """The value of a file's bytes from `to_bytes`; else the problem as text: damaged, of another version, of other content.
+    """Return the value stored by `to_bytes`, or the problem as a string: damaged, of another version, of other content.
 
     >>> from_bytes(b"nonsense", "key")
     'it is damaged: unknown header'

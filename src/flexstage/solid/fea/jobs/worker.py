@@ -24,7 +24,7 @@ _PATIENCE = 60.0
 
 @dataclass(frozen=True, eq=False)
 class Call:
-    """Environment of a job: progress report, request for memory, first attempt at a mesh.
+    """Environment of a job: functions for progress and memory, and the number of the first attempt at a mesh.
 
     `ask` waits until memory for an expected or existing mesh is available.
     """
@@ -35,10 +35,10 @@ class Call:
 
 
 class Job(ABC):
-    """Work for a separate process: a value that can be pickled, with a result that can be pickled."""
+    """Work for a separate process; the job and its result can be pickled."""
 
     attempts: int = 1
-    """Number of numbered attempts at a mesh: if one crashes the process, the next follows."""
+    """Number of attempts at a mesh: if one crashes the process, the next follows."""
 
     @property
     @abstractmethod
@@ -52,7 +52,7 @@ class Job(ABC):
 
     @property
     def kin(self) -> str:
-        """Property shared with jobs that a process does faster after a similar one; empty if irrelevant."""
+        """Key of similar jobs, if a process does a job faster after a similar one; empty otherwise."""
         return ""
 
     def seconds(self) -> float:
@@ -68,12 +68,12 @@ class Job(ABC):
         return 0.0
 
     def refusal(self, _counts: Counts, _limit: float) -> Finding | None:
-        """Reason why it does not fit into memory, with a smaller suggestion."""
+        """Error if it does not fit into memory, with a smaller alternative."""
         return None
 
 
 def work(line: Line, job: Job, attempt: int, memory: float, seconds: float) -> Any:
-    """Run a job within a memory [bytes] and a time [s]: report stages and counts of meshes, and wait for memory for each mesh.
+    """Run a job within a memory [bytes] and a time [s]: report stages and counts of meshes, and wait for the memory of each mesh.
 
     Raises a `DesignError` with the remedy if the solver does not load.
     """

@@ -1,4 +1,7 @@
-"""Options of a solid model: fineness and order of the mesh, element sizes, and number of modes in each component. Loads no solver."""
+"""Options of a solid model: fineness and order of the mesh, element sizes, and number of modes in each component.
+
+This module does not load the solver.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ _NOTCH = 5.0 / 3.0
 _STRUT = 0.4
 """Share for straight necks: elements as wide as thick, at low cost."""
 THIN = 35.0
-"""A leaf or notch with width and length beyond this multiple of its thickness is thin: flat elements, of one order more."""
+"""A leaf or notch whose width and length exceed this multiple of its thickness is thin: its elements are flat, of one order more."""
 _FLAT = 2.0 / 9.0
 """Size of elements in thin parts over the smaller of width and length: strains vary slowly along the faces."""
 _MIDDLE, _SMOOTH = 0.7, 0.25
@@ -32,15 +35,15 @@ notches over the geometric mean of radius and thickness."""
 _MOST = 3e5
 """Largest number of elements in one link."""
 WARPS = 12
-"""Linear and quadratic motions of an interface face, without rigid ones."""
+"""Number of linear and quadratic motions of an interface face, without rigid ones."""
 
 
 @dataclass(frozen=True)
 class Fineness(CheckedFields):
-    """Mesh size and polynomial `order`, also of the curved geometry; elements in notches have one order more.
+    """Mesh size and polynomial `order`, also of the curved geometry; elements in notches and thin leaves have one order more.
 
-    Elements are `neck` times a link's smallest thickness on its faces, `block` times a body's smallest dimension elsewhere, and grow by
-    `grading` (0.1 slow to 0.9 fast).
+    The element size is `neck` times a link's smallest thickness on its faces, and `block` times a body's smallest dimension elsewhere. It
+    grows by `grading` (0.1 slow to 0.9 fast).
     """
 
     neck: float = 1.5
@@ -50,7 +53,7 @@ class Fineness(CheckedFields):
 
 
 class Hold(Enum):
-    """Motion of interface faces between elastic bodies: a twist and quadratic warps, or only the mean twist."""
+    """Constraint of interface faces between elastic bodies: to a twist with linear and quadratic warps, or only in the mean twist."""
 
     RIGID = "rigid"
     AVERAGED = "averaged"
@@ -60,9 +63,9 @@ class Hold(Enum):
 class Reduction(CheckedFields):
     """Options of a component's reduction: mesh and order, number of fixed-interface modes, constraint of its interface faces.
 
-    `residual`: also keep the static response, faces fixed, to the inertia of the faces' motions. It replaces the omitted modes to first
-    order in frequency squared. Components whose content is `raised` have elements of one order more than the others, and no
-    modes if `static`: the static response does not need them.
+    `residual` adds the static response, with faces fixed, to the inertia of the faces' motions. It replaces the omitted modes to first
+    order in frequency squared. Components whose content is in `raised` have elements of one order more than the others. With `static` these
+    have no modes, because static results do not need them.
     """
 
     fineness: Fineness = Fineness()
@@ -156,7 +159,7 @@ def middle_size(form: Shaped, neck: float) -> float:
 
 
 def thin_findings(pieces: Iterable[Piece], fineness: Fineness) -> Iterator[Finding]:
-    """Links too thin to be meshed over their length and width.
+    """Errors of links too thin to be meshed over their length and width.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> list(thin_findings(bar().pieces, Fineness()))
@@ -171,6 +174,6 @@ def thin_findings(pieces: Iterable[Piece], fineness: Fineness) -> Iterator[Findi
         count = sides[1] * sides[2] / size**2
         if count > _MOST:
             over = " x ".join(f"{side * MILLIMETRES:.4g}" for side in (sides[2], sides[1]))
-            what = f"its {thinnest(form) * MILLIMETRES:.3g} mm are too thin to mesh over {over} mm"
-            more = f"that takes some {count:.1g} elements of {size * MILLIMETRES:.3g} mm, {_MOST:.1g} are allowed"
+            what = f"its thickness of {thinnest(form) * MILLIMETRES:.3g} mm is too small to mesh over {over} mm"
+            more = f"it needs about {count:.1g} elements of {size * MILLIMETRES:.3g} mm (at most {_MOST:.1g} allowed)"
             yield Finding(piece.name, f"{what}: {more}", "Check the thickness, or use larger elements (Fineness.neck)")

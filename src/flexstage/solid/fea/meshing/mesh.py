@@ -63,10 +63,10 @@ _AT_HAND = 8
 
 @dataclass(frozen=True)
 class PieceMesh:
-    """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) each element belongs to.
+    """A component's mesh [mm], its media by name `medium 0`, ..., named faces, and the piece (index) of each element.
 
-    `finer` elements (mask) have one order more than the others: those of notches. If the mesh is the positive side of a component with
-    `mirrors`, `images` (copies - 1, elements) are the pieces of the mirror images of its elements.
+    `finer` elements (mask), in notches and thin leaves, have one order more than the others. If the mesh is the positive side of a
+    component with `mirrors`, `images` (copies - 1, elements) are the pieces of the mirror images of its elements.
     """
 
     mesh: ngsolve.Mesh
@@ -83,9 +83,9 @@ def mesh_component(
 ) -> PieceMesh:
     """Draw and mesh a component; with `by_symmetry` only the positive side of a symmetric one.
 
-    Elements near the ends of arcs that curving inverts get straight sides. If the mesher fails, or an element of a neck is inverted, sizes
-    and grading are varied, a few times. `first` is the first attempt, after a crash of an earlier one. Drawings and meshes are cached:
-    another order only needs a new curving. Raises `DesignError` if all attempts fail.
+    Elements near the ends of arcs get straight sides if curving would invert them. If the mesher fails, or an element of a neck is
+    inverted, sizes and grading are varied, a few times. `first` is the number of the first attempt, after a crash of an earlier one.
+    Drawings and meshes are cached: for another order, the mesh is only curved again. Raises `DesignError` if all attempts fail.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -153,7 +153,7 @@ def _curve(straight: ngsolve.Mesh, order: int) -> ngsolve.Mesh:
 def generate_mesh(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
     """A mesh [mm] of a drawing with these mesher options; else the reason of the failure.
 
-    Uses one thread: several may give different meshes from run to run, and mostly wait for one another.
+    One thread is used: with several, meshes may differ from run to run, and threads mostly wait for one another.
 
     >>> generate_mesh(occ.Box(occ.Pnt(0, 0, 0), occ.Pnt(1, 1, 1)), {"maxh": 2.0}).ne > 0
     True
@@ -227,9 +227,10 @@ def _middle_points(form: Shaped, size: float) -> Array:
 
 
 def core_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
-    """Points (n, 3) within a round neck with an arc, in its frame, and the element size there [m] for `neck` thicknesses on its faces.
+    """Points (n, 3) within a round neck with an arc, in its frame, and the element size there [m].
 
-    They are on its axis and halfway to its surface. None in other hinges.
+    `neck` is the element size on its faces over the thickness. The points are on its axis and halfway to its surface. Other hinges have
+    none.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> list(core_points(Leaf("steel", 0.01, 1e-3, 5e-3), 1.5))
@@ -300,13 +301,13 @@ def _refuse_mesh(component: Component, reason: str) -> Exception:
     thin = min(component.pieces, key=lambda piece: thinnest(piece.form))
     return refuse(
         component.name,
-        f"no mesh could be made ({reason}); its thinnest piece is {thin.name} with {thinnest(thin.form) * MILLIMETRES:.4g} mm",
-        "Use a finer mesh, or remove steps and slivers between outlines that are much smaller than the neck",
+        f"no mesh could be made ({reason}); its thinnest piece is {thin.name}, {thinnest(thin.form) * MILLIMETRES:.4g} mm thick",
+        "Use a finer mesh, or remove steps and slivers much smaller than the neck between outlines",
     )
 
 
 def centroids(mesh: ngsolve.Mesh) -> Array:
-    """Vertex means of all elements (n, 3) [m].
+    """Mean vertex positions (n, 3) of all elements [m].
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

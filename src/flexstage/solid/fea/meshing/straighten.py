@@ -1,7 +1,7 @@
-"""Straightening: elements inverted by curved sides get straight ones, where this is harmless.
+"""Straightening: elements that curved sides would invert get straight sides, where this is harmless.
 
-A concave arc bulges into its elements by h^2 / (8 R) and inverts flatter ones. They are few, all near the ends of arcs, where sections
-are thick: smaller elements everywhere would cost far more than these straight sides.
+A concave arc bulges into its elements by h^2 / (8 R), with element size h, and inverts flatter elements. They are few, all near the ends of
+arcs, where sections are thick: smaller elements everywhere would cost far more than these straight sides.
 """
 
 from __future__ import annotations
@@ -17,11 +17,10 @@ _ORDER = 4
 
 
 def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
-    """Give folded elements of a curved mesh straight sides, or return the reason of the failure.
+    """Give folded elements of a curved mesh straight sides; return the reason of a failure, else `None`.
 
-    Elements of `kept` (mask) keep their curved sides: the result names the lowest Jacobian if one of them is inverted. After a
-    straightening, the mesh is of order one and has the remaining curved shape as its deformation: call
-    `UnsetDeformation` before curving it again.
+    Elements of `kept` (mask) keep their curved sides; if one of them is inverted, the reason contains the lowest Jacobian. Afterwards, the
+    mesh has order one, and the remaining curved shape is its deformation: call `UnsetDeformation` before curving it again.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -102,10 +102,11 @@ class _Model:
 def linear_model(
     mechanism: Mechanism, assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...], provenance: str
 ) -> LinearModel:
-    """Join reduced components to a model.
+    """Join reduced components to one linear model.
 
-    Coordinates: twists of rigid bodies and of the joints between elastic components (stage axes, at the joint). Then warps of their faces
-    (in the joint's own axes), and each component's internal coordinates. Raises `DesignError` if the joined stage has a rigid-body motion.
+    The coordinates are the twists of rigid bodies and of the joints between elastic components (stage axes, at the joint). Then follow the
+    warps of the joints' faces (in the joint's own axes), and each component's internal coordinates. Raises `DesignError` if the joined
+    stage has a rigid-body motion.
     """
     model = _join(mechanism, assembly, parts)
     elastic, mass = dict(_stiffness(model)), dict(_inertia(model))
@@ -154,7 +155,7 @@ def _seats(placed: tuple[Placed, ...]) -> Iterator[tuple[str, tuple[Array, Array
 
 
 def place_parts(assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> tuple[Placed, ...]:
-    """The components with the operators from the coordinates of their `linear_model`, for fields within them.
+    """The components with the operators from the coordinates of their `linear_model` to their own, for displacement fields.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -302,8 +303,8 @@ def _require_support(model: _Model, elastic: Mapping[str, Contribution]) -> None
         moving = ", ".join(name for name in owners if name)
         raise refuse(
             "stage",
-            f"some motion has no stiffness (lowest scaled eigenvalue {values[0]:.2g}); it moves {moving}",
-            "Join it to the ground: check for links without contact, and units without a grounded link",
+            f"a motion has no stiffness (lowest scaled eigenvalue {values[0]:.2g}); it moves {moving}",
+            "Connect these parts to the ground: check for links without contact, and units without a grounded link",
         )
 
 

@@ -1,4 +1,4 @@
-"""Casings: the bending stiffness of an encapsulated stack beyond its ceramic's, as a sleeve that slides along the axis."""
+"""Casings of encapsulated stacks: sleeves that slide along the axis provide the bending stiffness that exceeds the ceramic's."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def is_encased(form: object) -> bool:
 def casing(link: PlacedLink) -> Array | None:
     """Stiffness (6, 6) of a stack's casing about its centre, in its frame: 12 B/L^3 across, B/L in bending, B/((1 + nu) L) in torsion.
 
-    B is the specified bending rigidity less the ceramic's E I; zero along the axis, where the casing slides. `None` without one.
-    Raises `DesignError` if the specified rigidity is below the ceramic's own.
+    B is the specified bending rigidity less E I of the ceramic. Along the axis the stiffness is zero, because the casing slides. Without a
+    casing, the result is `None`. Raises `DesignError` if the specified rigidity is below that of the ceramic.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -44,7 +44,7 @@ def casing(link: PlacedLink) -> Array | None:
         raise refuse(
             link.name,
             f"its bending rigidity {stated:.4g} N m^2 is below the {own:.4g} N m^2 of its ceramic alone",
-            "Use the rigidity of the encapsulated stack, or leave it out",
+            "Use the rigidity of the encapsulated stack, or remove bending_rigidity",
         )
     extra = stated - own
     across, bending = 12.0 * extra / length**3, extra / length
@@ -52,7 +52,7 @@ def casing(link: PlacedLink) -> Array | None:
 
 
 def end_face_twist(component: Component, link: PlacedLink) -> Array:
-    """Relative twist (6, 6 m) of a stack's end faces, second against first, at its centre in its frame, by the component's interfaces.
+    """Relative twist of a stack's end faces, second less first, at its centre in its frame: operator (6, 6 m) on twists of m interfaces.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand

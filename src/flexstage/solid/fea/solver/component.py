@@ -1,8 +1,9 @@
 """Components: a stage cut at interfaces of units with other bodies, at the ends of stacks and at rigid bodies.
 
-A body with outlines is elastic, one without is rigid. A component is a set of touching pieces of one instance (or of the stage): links
-and elastic bodies. Every other joint of a link with a body is an interface: a flat end face that remains plane.
-Stacks are separate, between rigid end caps. Components drawn in their unit's frame (a single link in its own) repeat, and are reduced once.
+A body with outlines is elastic, one without is rigid. A component is a set of touching pieces of one instance (or of the stage): links and
+elastic bodies. Every other joint of a link with a body is an interface: a flat end face, which remains plane at rigid bodies and stacks.
+Stacks are separate, between rigid end caps. Components are drawn in their unit's frame (a single link in its own), so that equal ones are
+reduced once.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from flexstage.spatial.frame import Frame, identity
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """End face of a link at a body: its name (`B1/front:platform`), frame, x along the link out of its end face, and area [m^2]."""
+    """End face of a link at a body: name (`B1/front:platform`), frame with x out of the end face, area [m^2]."""
 
     name: str
     link: str
@@ -37,7 +38,7 @@ class Joint:
 
 @dataclass(frozen=True, eq=False)
 class Interface:
-    """A joint of a component: on its own end face, or (`footprint`) imprinted on its body by another component's link.
+    """A joint at the boundary of a component: its own end face, or the imprint (`footprint`) of another component's link on its body.
 
     It `yields` if both sides are elastic: the face deforms, equally on both sides. End caps of stacks and rigid bodies keep it plane.
     """
@@ -50,10 +51,10 @@ class Interface:
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """One solid in its own axes: `pieces`, the `interfaces` to its neighbours, the joints `fixed` to the ground.
+    """One solid in its own axes: `pieces`, the `interfaces` with its neighbours, the joints `fixed` to the ground.
 
-    `bodies` maps each elastic body to the reference point (3,) of its mean twist. `place` is its frame in the stage. `seats` are the ends
-    of parts without a shape on it.
+    `bodies` maps each elastic body to the reference point (3,) of its mean twist. `place` is its frame in the stage. `seats` are the ends,
+    on the component, of parts without a shape.
     """
 
     name: str
@@ -66,7 +67,7 @@ class Component:
 
     @property
     def floats(self) -> bool:
-        """Whether no joint supports it: only parts without a shape do, and it can move as a whole."""
+        """Whether it has no joint: only parts without a shape support it, so that it can move as a whole."""
         return not self.interfaces and not self.fixed
 
 
@@ -89,7 +90,7 @@ class Cut(Enum):
 def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, ...]:
     """Cut a stage into components, each in its own axes.
 
-    Raises `DesignError` with the names of links without a shape.
+    Raises `DesignError` with the names of links without a shape or a specified stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [part.name for part in components(double_triangle())][:4]
@@ -107,7 +108,7 @@ def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, .
 
 
 def groups(component: Component) -> dict[str, tuple[int, ...]]:
-    """Pieces under one name, in order: every link separately, all solids of a body together.
+    """Pieces (by index) of each link and each body, in order.
 
     The order is the same in every instance, so that one superelement serves all.
 
@@ -122,9 +123,9 @@ def groups(component: Component) -> dict[str, tuple[int, ...]]:
 
 
 def with_yielding_ends(component: Component) -> Component:
-    """The same component with elastic link ends also on rigid bodies, as on elastic ones.
+    """The same component with link ends that deform on rigid bodies, as on elastic ones.
 
-    An isolated unit ends on a rigid output, but on an elastic platform in its stage; with all warps zero both are equal.
+    An isolated unit ends on a rigid output, but on an elastic platform in its stage. If all warps are zero, both are equal.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> bar().interfaces[0].yields, with_yielding_ends(bar()).interfaces[0].yields
@@ -140,7 +141,7 @@ def with_yielding_ends(component: Component) -> Component:
 
 
 def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
-    """The joints of a link: its first body at the end face towards -x of the link frame, its second at +x.
+    """The joints of a link: with its first body, at the end face towards -x of the link frame, and with its second, at +x.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> link = next(iter(expand(parallelogram()).links.values()))
@@ -156,7 +157,7 @@ def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
 
 
 def is_elastic(assembly: Assembly, body: str) -> bool:
-    """Whether a body has outlines: then it is a solid, else rigid.
+    """Whether a body has outlines: such bodies are elastic solids, others and the ground are rigid.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

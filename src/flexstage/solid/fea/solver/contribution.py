@@ -20,7 +20,8 @@ from flexstage.spatial.frame import Frame
 class Contribution:
     """Forces and momenta of a group of elements in k motions, on its degrees of freedom `rows` (m,).
 
-    `forces` (m, k) belong to the motions less their rigid part, `strained` (m, k); `momenta` (m, k) those of the `motions` (m, k).
+    `forces` (m, k) are the elastic forces of `strained` (m, k), the motions less their rigid part. `momenta` (m, k) belong to the `motions`
+    (m, k).
     """
 
     name: str
@@ -60,9 +61,9 @@ def assemble_groups(space: Field, groups: Mapping[str, Array]) -> tuple[Assemble
 
 
 def contributions(space: Field, sets: Sequence[Assembled], basis: Array) -> Iterator[Contribution]:
-    """Contributions of groups of elements to motions (n, k), unordered.
+    """Yield the contributions of groups of elements in motions (n, k), in any sequence.
 
-    Rigid parts are subtracted before computing elastic forces: their rounding would exceed the forces of a thin leaf.
+    Rigid parts are subtracted before elastic forces are computed: their rounding errors would exceed the forces of a thin leaf.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.solver.field import field

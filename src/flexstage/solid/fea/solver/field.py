@@ -1,4 +1,4 @@
-"""Elasticity on a mesh: u in metres over a mesh in millimetres; vectors of degrees of freedom are numpy arrays."""
+"""Elasticity on a mesh: displacements in metres on a mesh in millimetres; vectors of degrees of freedom are numpy arrays."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _BELL = 6
 
 @dataclass(frozen=True)
 class Field:
-    """The displacement space of a mesh, fixed on `held` faces, and the coefficients of its media."""
+    """The displacement space of a mesh with some faces fixed, and the coefficients of its media."""
 
     meshed: PieceMesh
     space: ngsolve.FESpace
@@ -47,14 +47,14 @@ class Field:
 
     @property
     def whole_size(self) -> int:
-        """Number of degrees of freedom of the whole, if the mesh is one side: those on a mirror are their own images."""
+        """Number of DOFs of the whole, if the mesh is one side: those on a mirror coincide with their images."""
         mirrors = self.meshed.mirrors
         own = sum((nodes_on(self, MIRRORS[axis]).astype(np.int64) for axis in mirrors.axes), np.zeros(self.size // 3, dtype=np.int64))
         return 3 * int(np.sum(mirrors.copies >> own))
 
     @cached_property
     def members(self) -> tuple[Array, Array]:
-        """The functions (m,) of one component of the space and their elements (m,), for all pairs, element by element."""
+        """All pairs of a function and its element, element by element: functions (m,) of one component of the space, elements (m,)."""
         scalar, count = self.space.components[0], self.meshed.mesh.ne
         nodes = [np.array(scalar.GetDofNrs(ngsolve.ElementId(ngsolve.VOL, number)), dtype=np.int64) for number in range(count)]
         return np.concatenate(nodes), np.repeat(np.arange(count), [len(each) for each in nodes])
@@ -94,7 +94,7 @@ class Field:
 
 
 def field(meshed: PieceMesh, held: Iterable[str], order: int) -> Field:
-    """The displacement space of `order`, and of one more in `finer` elements, on a mesh with named faces fixed.
+    """The displacement space on a mesh with the faces `held` fixed, of this `order`, and of one order more in `finer` elements.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -128,7 +128,7 @@ def field(meshed: PieceMesh, held: Iterable[str], order: int) -> Field:
 
 
 def hooke(medium: Medium) -> Array:
-    """The stiffness (6, 6) of a medium [Pa], of xx, yy, zz, yz, xz, xy with engineering shear.
+    """The stiffness (6, 6) of a medium [Pa] for the strains xx, yy, zz, yz, xz, xy, with engineering shear.
 
     >>> hooke(Medium(1.0, 0.25, 1.0))[0].round(9).tolist()
     [1.2, 0.4, 0.4, 0.0, 0.0, 0.0]
@@ -163,7 +163,7 @@ def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunc
 
 
 def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
-    """int stress(u) : strain(v) dV [N/m], over some elements (mask) or all; without `assemble` for application only.
+    """int stress(u) : strain(v) dV [N/m], over some elements (mask) or all; without `assemble` it can only be applied to vectors.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -181,12 +181,12 @@ def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = T
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """int rho u . v dV [kg] by the sum of `scalar` matrices (n / 3, n / 3): equal for each component, without coupling."""
+    """int rho u . v dV [kg] as the sum of `scalar` matrices (n / 3, n / 3), equal for the three components, without coupling."""
 
     scalar: tuple[Any, ...]
 
     def times(self, vectors: Array) -> Array:
-        """The momenta (n, k) of unit velocities (n, k)."""
+        """The momenta (n, k) of velocities (n, k)."""
         count, columns = len(vectors) // 3, vectors.shape[1]
         each = vectors.reshape(3, count, columns).transpose(1, 0, 2).reshape(count, 3 * columns)
         moved = functools.reduce(operator.iadd, (_symmetric_times(matrix, each) for matrix in self.scalar))
@@ -227,7 +227,7 @@ def _volume(elements: Array | None) -> object:
 
 
 def apply_form(form: ngsolve.BilinearForm, vectors: Array) -> Array:
-    """A form applied to columns (n, k), without a matrix.
+    """Apply a form to columns (n, k), without assembling its matrix.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -274,9 +274,9 @@ def stroke_force(space: Field, frame: Frame, length: float) -> Array:
 
 
 def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
-    """The six rigid motions (n, 6) in a frame's axes about its origin; on some faces only if named.
+    """The six rigid motions (n, 6) about a frame's origin in its axes; with `faces`, only on these faces.
 
-    Translations of 1 m and rotations of 1 rad.
+    They are translations of 1 m and rotations of 1 rad.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -296,9 +296,9 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
 
 
 def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array:
-    """The twelve motions (n, 12) of a face across a frame's x axis that are linear or quadratic over it, and not rigid.
+    """The twelve motions (n, 12) of a face normal to a frame's x axis that are linear or quadratic over it, and not rigid.
 
-    With y and z over `size` [m]: in-plane strains and shear; u_x, u_y and u_z as y^2, y z and z^2, in the frame's axes.
+    In the frame's axes, with y and z over `size` [m], they are in-plane strains and shear, then u_x, u_y and u_z equal to y^2, y z and z^2.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -319,7 +319,7 @@ def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array
 
 
 def warp_kinds(mirrors: Mirrors, frame: Frame) -> Array:
-    """The kinds (12,) of these motions of a face about a mesh's mirrors.
+    """The kinds (12,) of the motions of `warping_motion` about a mesh's mirrors.
 
     >>> warp_kinds(Mirrors((1,)), Frame(np.eye(3), np.zeros(3))).tolist()
     [0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0]
@@ -383,7 +383,7 @@ def nodes_on(space: Field, face: str) -> Array:
 
 
 def mean_motion(space: Field, frame: Frame, face: str) -> Array:
-    """Rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, R its rigid motions in a frame.
+    """Rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, and R the rigid motions in a frame.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -406,8 +406,8 @@ def mean_motion(space: Field, frame: Frame, face: str) -> Array:
 def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array:
     """Rows (6, n) of the mean twist about a point, in the field's axes, of the surface elements `faces` (mask) around it.
 
-    The weight of the surface is exp(-(d^2 - d0^2) / reach^2), d its distance from the point and d0 the smallest. On a flat face
-    it is a bell around the foot of the point, on a ball about its centre uniform.
+    The weight of the surface is exp(-(d^2 - d0^2) / reach^2), with d the distance from the point and d0 the smallest distance. On a flat
+    face the weight is a bell around the foot of the perpendicular; on a ball about the point it is uniform.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -436,11 +436,11 @@ def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array
 
 
 Forms = Sequence[ngsolve.BilinearForm]
-"""Assembled forms of some elements each; their sum is meant."""
+"""Assembled forms, each over some elements; they represent their sum."""
 
 
 def times(forms: Forms, vectors: Array) -> Array:
-    """The sum of assembled forms' matrices times columns (n, k).
+    """Multiply the sum of the matrices of assembled forms by columns (n, k).
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -464,7 +464,7 @@ def _matrix(form: ngsolve.BilinearForm) -> Any:
 
 
 def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
-    """Stiffness plus shift times inertia: positive definite without any support.
+    """Stiffness plus `shift` times inertia: positive definite without any support.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -482,7 +482,7 @@ def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
 
 
 def held_at_mirrors(space: Field, kind: int) -> Array:
-    """Mask (n,) of DOFs that motions of a kind keep zero at the mesh's mirrors: normal ones if even, tangential ones if odd.
+    """Mask (n,) of DOFs that are zero at the mesh's mirrors in motions of a kind: normal ones if even, tangential ones if odd.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -531,11 +531,11 @@ def concatenate(columns: Sequence[Columns]) -> Columns:
 
 
 KindSolver = Callable[[Columns], Array]
-"""Displacements (n, k) from forces."""
+"""Function that returns displacements (n, k) for forces."""
 
 
 def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
-    """Solve with the sum of forms' matrices for forces of all kinds, by one factor each.
+    """Return a solver with the sum of the forms' matrices for forces of all kinds, with one factor for each kind.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -549,7 +549,7 @@ def factorise_kinds(space: Field, forms: Forms) -> KindSolver:
 
 
 def solve_kinds(space: Field, forms: Forms, forces: Columns) -> Array:
-    """Solve with the sum of forms' matrices for forces of some kinds, once: kind after kind, without keeping a factor.
+    """Solve once with the sum of the forms' matrices for forces of some kinds: kind after kind, without keeping a factor.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -572,9 +572,9 @@ def _solve_each(forces: Columns, solver: Callable[[int], Solver]) -> Array:
 
 
 def factorise(space: Field, form: ngsolve.BilinearForm, kind: int = 0) -> Solver:
-    """Solve with a form's matrix on the free degrees of freedom: columns (n, k) of forces to columns of displacements, zero if fixed.
+    """Return a solver with a form's matrix on the free DOFs: from columns (n, k) of forces to displacements, zero at fixed DOFs.
 
-    DOFs that motions of a `kind` keep zero at the mirrors are fixed in addition to those of the field.
+    DOFs that are zero at the mirrors in motions of a `kind` are fixed in addition to those of the field.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -1,8 +1,8 @@
-"""Direct solution of finite elements, by fronts: nested dissection of the elements, dense Cholesky factors at each cut.
+"""Direct solution of finite-element equations by fronts: nested dissection of the elements, dense Cholesky factors at each cut.
 
-Elements of high order make large dense fronts, and hinges between blocks short cuts: LAPACK does nearly all of the work, also for many
-right-hand sides at once. The method is Duff and Reid's (ACM Trans. Math. Softw. 9, 302, 1983), the order George's (SIAM J.
-Numer. Anal. 10, 345, 1973). A node has three degrees of freedom: the three components of one scalar basis function.
+High-order elements result in large dense fronts, and hinges between blocks in small cuts. LAPACK therefore does nearly all of the work,
+also for many right-hand sides at once. The method is that of Duff and Reid (ACM Trans. Math. Softw. 9, 302, 1983), the order that of George
+(SIAM J. Numer. Anal. 10, 345, 1973). A node has three degrees of freedom: the three components of one scalar basis function.
 """
 
 from __future__ import annotations
@@ -89,14 +89,14 @@ class _Factor:
 
 @dataclass(frozen=True, eq=False)
 class Fronts:
-    """The elimination order: nodes by rank, and the fronts, children before their parent."""
+    """The elimination order: free nodes by rank, and the fronts, children before their parent."""
 
     nodes: Array
     fronts: tuple[_Front, ...]
 
     @property
     def size(self) -> int:
-        """Entries of the factor."""
+        """Number of entries of the factor."""
         return sum(9 * (front.last - front.first) * (front.last - front.first + len(front.beyond)) for front in self.fronts)
 
     @property
@@ -207,14 +207,14 @@ def _owners(grid: Grid, leaf: Array, spans: tuple[_Span, ...]) -> tuple[Array, A
 
 @dataclass(frozen=True, eq=False)
 class Factorised:
-    """A matrix factorised front by front; `order` defines the fixed nodes, `held` (m, 3) fixed degrees of freedom of the others."""
+    """A matrix factorised front by front; `order` contains the free nodes, `held` (m, 3) marks their fixed degrees of freedom."""
 
     order: Fronts
     held: Array
     factors: tuple[_Factor, ...]
 
     def solve(self, forces: Array) -> Array:
-        """Displacements (n, k) from forces (n, k), zero if fixed."""
+        """Displacements (n, k) from forces (n, k), zero at fixed degrees of freedom."""
         nodes, (size, columns) = self.order.nodes, forces.shape
         work = np.empty((len(nodes), 3, columns))  # by node, with its three components
         for axis, along in enumerate(forces.reshape(3, -1, columns)):
@@ -234,13 +234,12 @@ class Factorised:
 
 
 def factorise_fronts(order: Fronts, matrices: Sequence[Any], held: Array) -> Iterator[Factorised]:
-    """Factorise a sum of matrices, positive definite on the free nodes, for each of some sets of `held` degrees of freedom.
+    """Factorise a sum of matrices, positive definite on the free nodes, for each of several sets of `held` degrees of freedom.
 
-    Matrices are `scipy.sparse.csr_array` with both triangles. Degrees of freedom are ordered by components: those of all nodes along
-    x, then along y, then along z; every pair of nodes with an entry has all nine. Fronts of one set (masks (k, n)) are not coupled.
-    A front is shared if neither it nor its children meet any set. The sets are factorised one after another, when
-    needed: only results in use take additional memory.
-    Raises `numpy.linalg.LinAlgError` if a front is not positive definite.
+    Matrices are `scipy.sparse.csr_array` with both triangles. Degrees of freedom are ordered by components: those of all nodes along x,
+    then along y, then along z; every pair of nodes with an entry has all nine. Sets are rows of the masks `held` (k, n); held DOFs are
+    decoupled. Sets share a front if it and its children have no held DOFs. The sets are factorised one after another, when needed: only
+    results in use need additional memory. Raises `numpy.linalg.LinAlgError` if a front is not positive definite.
     """
     by_node = held.reshape(len(held), 3, -1)[:, :, order.nodes].transpose(0, 2, 1)
     parts, met = [_Entries.of(order, matrix) for matrix in matrices], np.any(by_node, axis=(0, 2))

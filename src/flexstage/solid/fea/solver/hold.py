@@ -40,7 +40,7 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """Motions (n, 6 m) for unit interface twists, (n, w) for unit warps of faces, and for loads `within` with fixed faces; the solver."""
+    """Motions for unit twists of `faces` (n, 6 m), for their unit `warps` (n, w), and for loads `within` with fixed faces; the solver."""
 
     faces: Columns
     warps: Columns
@@ -49,7 +49,7 @@ class Support:
 
 
 def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
-    """Whether an interface remains plane: by option, or as a stack's end cap.
+    """Whether an interface's motions, not only their mean, are constrained: by option, or as a stack's end cap.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> is_rigid(bar(), bar().interfaces[0], Hold.RIGID), is_rigid(bar(), bar().interfaces[0], Hold.AVERAGED)
@@ -62,7 +62,7 @@ def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
 def support(component: Component, space: Field, reduction: Reduction, *, elastic: Forms, mass: Inertia, loads: Columns) -> Support:
     """Constrain a component's interfaces; `elastic` and `mass` are its stiffness and inertia; `space` fixes its rigid and grounded faces.
 
-    The responses to `loads` within are solved for in the same call: without further requests, no factor is kept.
+    The same call computes the responses to `loads` within the component. If the factor is not needed later, it is not kept.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.solver.field import field, inertia, stiffness
@@ -113,7 +113,7 @@ def _held(plain: KindSolver, means: Array) -> tuple[Array, KindSolver]:
 
 
 def middle(component: Component) -> Array:
-    """The reference point (3,) for the motion of a floating component: that of its first body.
+    """The reference point (3,) for the motion of a floating component: the point of its first body.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The lowest modes of large models by block inverse iteration: one factor solves many vectors in the time of a few."""
+"""The lowest modes of large models by block Lanczos iteration: one factor solves many vectors in the time of a few."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Operator = Callable[[Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Pencil:
-    """A `mass` and the `inverse` of a stiffness, for vectors of this size."""
+    """Operators `mass` and `inverse` (of the stiffness) for vectors of this size."""
 
     mass: Operator
     inverse: Operator
@@ -29,9 +29,9 @@ class Pencil:
 
 
 def lowest_modes(pencils: Sequence[Pencil], count: int) -> list[Array]:
-    """The `count` lowest modes of some pencils together, (size, k) of each: block Lanczos with full orthogonalisation.
+    """The `count` lowest modes of several pencils together, as (size, k) for each: block Lanczos with full orthogonalisation.
 
-    Fewer if masses have a lower rank. Golub and Underwood, in Mathematical Software III (1977), 361.
+    There are fewer modes if the masses have a lower rank. Golub and Underwood, in Mathematical Software III (1977), 361.
 
     >>> stiffness = np.arange(1.0, 41.0)[:, None]
     >>> pencils = [Pencil(lambda x: x, lambda x: x / stiffness, 40), Pencil(lambda x: x, lambda x: x / (0.5 + stiffness), 40)]

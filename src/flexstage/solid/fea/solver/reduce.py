@@ -1,7 +1,8 @@
-"""Reduction of a component by Craig and Bampton's method (AIAA J. 6, 1313, 1968), with attachment motions for the loads within.
+"""Reduction of a component by Craig and Bampton's method (AIAA J. 6, 1313, 1968), with attachment modes for the loads within.
 
-u = static continuation of rigid motions and warps of the interface faces + fixed-interface modes + static response, faces
-fixed, to a wrench on each body and to each stroke. Statics under these loads is that of the full model, for any number of modes.
+The displacement is the sum of static responses to rigid motions and warps of the interface faces, fixed-interface modes, and static
+responses, with faces fixed, to a wrench on each body and to each stroke. For these loads, statics is that of the full model, for any number
+of modes.
 """
 
 from __future__ import annotations
@@ -82,9 +83,9 @@ def reduce_mesh(
 ) -> Superelement:
     """Assemble and reduce a meshed component, with progress reports.
 
-    With `springs` (6 m, 6 m) between its interfaces, the modes belong to the component with free interfaces joined by the
-    springs, in place of the fixed-interface modes. A whole stage in one piece then has its exact modes. Its statics is exact only
-    for strokes and wrenches on the platform, which saves most of the motions of so large a mesh.
+    If `springs` (6 m, 6 m) connect its interfaces, the modes are those of the component with free interfaces joined by the springs, instead
+    of the fixed-interface modes. A whole stage in one piece then has its exact modes. Its statics is exact only for strokes and wrenches on
+    the platform, which saves most of the static responses of so large a mesh.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -33,10 +33,10 @@ _NEAR = 1e-9
 
 
 def skin(space: Field, motions: Columns) -> Skin:
-    """The surface of a field's mesh with motions on it; of a mesh with mirrors the surface of the whole.
+    """The surface of a field's mesh with displacement and stress of motions; with mirrors, the surface of the whole.
 
     Stresses are evaluated within each triangle and extrapolated to its corners. At a vertex they are means over its triangles, weighted by
-    the Jacobian. Strains of a nearly folded element have no meaning.
+    the Jacobian, because strains of a nearly folded element have no meaning.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.solver.field import field

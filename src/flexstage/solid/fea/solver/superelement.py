@@ -15,7 +15,8 @@ from flexstage.solid.fea.meshing.fineness import WARPS
 class Skin:
     """The surface for pictures: `vertices` (v, 3) [m] and `triangles` (t, 3), with the piece (index) behind each triangle.
 
-    `motion` (v, 3, n) of the vertices and `stress` (v, 6, n) at them as xx, yy, zz, xy, yz, zx [Pa], per coordinate.
+    For each of n coordinates, `motion` (v, 3, n) contains the displacement of the vertices, `stress` (v, 6, n) the stress at them as xx,
+    yy, zz, xy, yz, zx [Pa].
     """
 
     vertices: Array
@@ -27,15 +28,14 @@ class Skin:
 
 @dataclass(frozen=True, eq=False)
 class Superelement:
-    """A reduced component, in its own axes: six coordinates for each interface (its twist, at its own point), `warps`, internal ones.
+    """A reduced component in its own axes. Its n coordinates are a twist of each interface (at its own point), `warps`, internal ones.
 
-    `stiffness` and `inertia` (n, n) are for each piece group (links and bodies by position in the component). `bodies` (6, n) are mean
-    twists and `body_inertia` (6, 6) their inertia (`inertia` then contains only elastic motion within the body).
-    `resultants` (6, n) are at links' centres in their frames. `strokes` (n,) are forces of a unit free stroke, with the `free` coordinates
-    of the unconstrained stroke and its `stroke_resultants` (6,) to subtract. `rigid` (n, 6) is a rigid motion about the component's origin
-    (only without fixed joints), `carried` (n, 6) the inertial forces of a unit rigid acceleration. `seats` (6, n) are the twists, at their
-    points, of the surface around the ends of parts without a shape. A floating component has one interface: itself, moved rigidly about
-    the reference of its first body.
+    `stiffness` and `inertia` (n, n) have an entry for each link and body, by position in the component. `bodies` (6, n) are mean twists of
+    bodies, `body_inertia` (6, 6) the inertia for these twists, which `inertia` includes. `resultants` (6, n) are wrenches at links' centres
+    in their frames. `strokes` (n,) are forces of a unit free stroke, `free_strokes` (n,) the coordinates of this stroke without constraint.
+    `rigid` (n, 6) is a rigid motion about the component's origin (only without fixed joints), `carried` (n, 6) the inertial forces of a
+    unit rigid acceleration. `seats` (6, n) are the twists, at their points, of the surface around the ends of parts without a shape. A
+    floating component has one interface: its own rigid motion about the reference of its first body.
     """
 
     interfaces: int
@@ -66,7 +66,7 @@ class Superelement:
 
 
 def hold_faces(element: Superelement, held: Sequence[bool]) -> Superelement:
-    """A superelement with zero warps of the `held` ones of its yielding faces, in order.
+    """A superelement with zero warps of some deformable faces; `held` marks these faces, in order.
 
     >>> bare = Skin(*[np.zeros((0, 20))] * 5)
     >>> whole = Superelement(1, 12, {"a": np.eye(20)}, {}, {}, {}, {}, {}, {}, np.zeros((20, 6)), np.zeros((20, 6)), bare, 3, 1)

@@ -12,7 +12,7 @@ from flexstage.solid.fea.solver.component import groups
 
 
 def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array] | None = None) -> Array:
-    """A component's coordinates (n, k) for its stress, from the model's (N, k), with the `strokes` (k,) [m] of its stacks, by link.
+    """A component's coordinates (n, k) for its stress, from the model's (N, k) and the `strokes` (k,) [m] of its stacks, by link.
 
     A freely expanding stack has no stress, so its free stroke is subtracted.
 
@@ -62,7 +62,7 @@ def von_mises(stress: Array) -> Array:
 
 
 def vertex_places(item: Placed, motion: Array, factor: float) -> Array:
-    """Positions (v, 3) [m] of a component's skin in the stage's frame, displaced by `factor` times the motion of coordinates (N,).
+    """Positions (v, 3) [m] of a component's skin in the stage's frame, displaced by `factor` times the motion with coordinates (N,).
 
     >>> from types import SimpleNamespace as Of
     >>> from flexstage.spatial.frame import identity
@@ -78,7 +78,7 @@ def vertex_places(item: Placed, motion: Array, factor: float) -> Array:
 
 
 def piece_vertices(item: Placed) -> Iterator[tuple[str, Array]]:
-    """Every link and body of a component in this instance's names, with the vertices (indices) of its skin.
+    """Every link and body of a component, by its name in this instance, with the vertices (indices) of its skin.
 
     >>> from types import SimpleNamespace as Of
     >>> skin = Of(triangles=np.array([[0, 1, 2], [2, 1, 3]]), owner=np.array([0, 1]))

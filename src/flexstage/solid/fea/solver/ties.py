@@ -1,7 +1,7 @@
 """Ties: effects of parts without a shape in a stage of solids, from their specified values.
 
-A spring, a force actuator, a compliance matrix, a contact or a superelement has no outline to mesh. Its stiffness and mass are data, the
-same for every model; its end on an elastic body moves with the surface around it (`field.seat_motion`).
+A spring, a force actuator, a compliance matrix, a contact or a superelement has no outline to mesh. Its stiffness and mass are specified,
+and equal in every model. Its end on an elastic body moves with the surface around it (`field.seat_motion`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from flexstage.spatial.frame import Frame, spatial_rotation, twist_transform
 
 @dataclass(frozen=True, eq=False)
 class End:
-    """End of a part without a shape: the `name` of the end (`motor:platform`, `frame.left:platform`), its body, the point (3,)."""
+    """End of a part without a shape: the `name` of the end (`motor:platform`, `frame.left:platform`), its body, and its point (3,)."""
 
     name: str
     body: str
@@ -35,10 +35,10 @@ class End:
 
 @dataclass(frozen=True, eq=False)
 class ShapelessContribution:
-    """Contribution of a part without a shape: stiffness over its `strain`, `inertia` over the motion of its ends and inner coordinates.
+    """Contribution of a part without a shape: stiffness for its `strain`, `inertia` for the motion of its ends and inner coordinates.
 
-    `carried` (r, 6) is that motion when everything moves rigidly about the stage's origin. `passed` (w, s) maps the forces (s,) of its
-    strain to the wrenches that are outputs; viscous `damping` over the strain.
+    `carried` (r, 6) is this motion when everything moves rigidly about the stage's origin. `passed` (w, s) maps the forces (s,) of its
+    strain to the output wrenches (w,). `damping` is its viscous damping for the strain.
     """
 
     strain: Contribution
@@ -61,7 +61,7 @@ def stated_of(link: PlacedLink) -> Stated | None:
 
 
 def ends(assembly: Assembly) -> Iterator[End]:
-    """The ends of all parts without a shape on bodies that move, in order.
+    """The ends, on bodies that move, of all parts without a shape, in order.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -90,7 +90,7 @@ Twist = Callable[[str, str, Frame], Array]
 
 
 def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float) -> ShapelessContribution:
-    """The tie of a link of two bodies.
+    """The tie of a link between two bodies.
 
     >>> spring = Stated(np.eye(6), np.zeros((12, 12)))
     >>> from flexstage.cases.registry import case
@@ -111,7 +111,7 @@ def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float)
 
 
 def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) -> ShapelessContribution:
-    """The tie of a superelement: the twists of its ports against the body of the first, and its modes, rows `inner` (m, N)."""
+    """The tie of a superelement: twists of its ports relative to the body of the first, and its modes with the rows `inner` (m, N)."""
     found = _condensed(element)
     names = [f"{element.name}.{name}:{port.body}" for name, port in element.ports.items()]
     ports = list(element.ports.values())
