@@ -186,7 +186,7 @@ BAD = {
     "bandwidth: it is -5 Hz": TuningSpec(PI_FAMILY, -5.0),
     "the highest peak of S allowed is 0.9": TuningSpec(PI_FAMILY, 5.0, 0.9),
     "modes are to be off by up to -0.1": TuningSpec(PI_FAMILY, 5.0, 2.0, -0.1),
-    "notch at 1200 Hz: it is at no mode: between those at 875": TuningSpec(PI_FAMILY, 5.0, notches=(Notch(1200.0),)),
+    "notch at 1200 Hz: no mode within 10 % (nearest: 875": TuningSpec(PI_FAMILY, 5.0, notches=(Notch(1200.0),)),
     "1 are given for LQG, whose observer knows the modes": TuningSpec(LQG_FAMILY, 5.0, notches=(Notch(875.0),)),
     "the observer's noise is missing": TuningSpec(LQG_FAMILY, 5.0),
 }
