@@ -195,7 +195,7 @@ def test_names_that_would_shadow_a_header_are_refused_before_anything_is_compute
     names = ("math.c", "plant.mat", "fmi2.c", "2.c", "a.txt")
     ended = guide("loop", "stage.toml", *(word for name in names for word in ("--export", name)))
     assert ended.code == 2
-    for text in ("math.h", "Call it stage_math.c", "Call it stage_fmi2.c", "Call it stage_2.c", '--export a.txt: unknown ending ".txt"'):
+    for text in ("math.h", "Use stage_math.c", "Use stage_fmi2.c", "Use stage_2.c", '--export a.txt: unknown ending ".txt"'):
         assert text in ended.err
     assert ended.err.count("error: ") == 4
     assert sorted(tmp_path.iterdir()) == before
