@@ -95,7 +95,7 @@ def test_every_case_closes_or_is_refused_with_the_reason(flexstage: Command, tmp
     ended = flexstage("loop", "stage.toml", "--controller", "pi", "--json", "-", *SMALL)
     if name == "xy-stage-floating":
         assert ended.code == 2
-        assert "1 actuators make 1 of the platform's 2 ideal motions; missing: y" in ended.err
+        assert "1 actuators produce 1 of the platform's 2 ideal motions; missing: y" in ended.err
         return
     assert ended.code == 0, ended.err
     assert ended.document["stability"]["stable"]
@@ -211,7 +211,7 @@ def test_exports_of_one_command_are_put_all_or_none(guide: Command, tmp_path: Pa
     words = ("--export", "plant.mat", "--export", "g.c", "--json", "loop.json", "--report", "loop.html", "--export", "g.fmu")
     ended = guide("loop", "stage.toml", *SMALL, *words)
     assert ended.code == 2
-    assert "refuses a functional mock-up unit" in ended.err
+    assert "cannot compile a functional mock-up unit" in ended.err
     assert "Wrote" not in ended.err
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
 
@@ -367,7 +367,7 @@ def test_a_stage_without_gauges_is_refused_with_the_reason(flexstage: Command, t
     dump(replace(case("parallelogram"), gauges=Table({}), requirements=Table({})), tmp_path / "stage.toml")
     ended = flexstage("loop", "stage.toml")
     assert ended.code == 2
-    assert "0 gauges tell 0 of the platform's 1 ideal motions; missing: x" in ended.err
+    assert "0 gauges measure 0 of the platform's 1 ideal motions; missing: x" in ended.err
 
 
 def test_all_findings_come_at_once(guide: Command, tmp_path: Path) -> None:
