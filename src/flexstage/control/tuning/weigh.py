@@ -83,7 +83,7 @@ class RegulatorSpace:
 def weigh(searched: RegulatorSpace, against: Outcome, begun: LQG, bandwidth: float) -> LQG:
     """Optimise the weights relative to a known outcome: maximise the smallest improvement of the objective's quantities.
 
-    Downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308; its coefficients by dimension after Gao & Han, Computational
+    Downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308), with coefficients for the dimension (Gao & Han, Computational
     Optimization and Applications 51 (2012) 259). It starts from the best point of a grid. The grid is around the first mode and includes
     the controller `begun`. If the crossover at `bandwidth` [Hz] of `begun` is above the modes, the grid is around `begun`. The search is
     deterministic.
