@@ -355,7 +355,7 @@ def test_an_unstable_loop_is_refused_with_what_makes_it_so(guide: Command, tmp_p
     assert ended.code == 2
     assert not ended.out
     assert "unstable loop" in ended.err
-    assert "grows by" in ended.err
+    assert "grows at" in ended.err
     assert "1674 Hz" in ended.err
 
 

@@ -137,7 +137,7 @@ def test_six_axes_are_six_times_one():
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: BoucWen([1.0], [0.1], [1.0], [1.1]), "gamma is 1.1 1/V, not above -1 and at most 1"),
+        (lambda: BoucWen([1.0], [0.1], [1.0], [1.1]), "gamma is 1.1 1/V (expected above -1 and at most beta, 1)"),
         (lambda: BoucWen([1.0], [0.1], [1.0], [-1.0]), "would not dissipate"),
         (lambda: BoucWen([1.0], [0.8], [1.0], [0.0]), "changes by 1.6 m/V, more than the gain 1 m/V"),
         (lambda: bouc_wen(1e-4, (0.0, 1000.0), 0.6), "Choose a smaller lag"),

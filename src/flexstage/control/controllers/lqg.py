@@ -23,8 +23,8 @@ DOUBLINGS, _SETTLED = 30, 1e-15
 class Weights:
     """Weights of the regulator's cost, the integral of w^2 |z|^2 + p |y|^2 + |u|^2, where z is the integral of the loop's error.
 
-    y is the pose in lengths (rotations times the stage's length), u the strokes. w = 2 pi `bandwidth` [Hz] and p = `pose` [1] are numbers
-    for all coordinates, or one number for each. With a static plant of gain 1 the gain crossover is exactly `bandwidth` (u' = w e).
+    y is the pose in lengths (rotations times the stage's length), u the strokes. w = 2 pi `bandwidth` [Hz] and p = `pose` [1] are equal for
+    all coordinates, or specified for each. With a static plant of gain 1 the gain crossover is exactly `bandwidth` (u' = w e).
     """
 
     bandwidth: float | tuple[float, ...]
@@ -45,9 +45,9 @@ class LQG:
 
     The estimate is x^ = x- + M (y - C x-) with x- = A x^ + B u of the sample before, the integral z+ = z + T e. The sampled `model` has
     inputs `command.<actuator>` and outputs `pose.<c>`. `regulator` is K (n, s), `integral` K_z (n, f), `observer` M (s, f). `feedforward`
-    (n, f) is the matrix of static strokes for a reference; default: no feedforward. `tracking` [s] is the anti-windup time of the
-    integrators; the observer uses the applied strokes directly. `weights` are the design weights, `expected` the disturbances assumed by
-    the observer, if known.
+    (n, f) is the matrix of static strokes for a reference, which determines N; default: no feedforward. `tracking` [s] is the anti-windup
+    time of the integrators; the observer uses the applied strokes directly. `weights` are the design weights, `expected` the disturbances
+    assumed by the observer, if known.
     """
 
     model: System

@@ -129,8 +129,8 @@ class Hardware:
     """Sampling chain between controller and stage, in both directions.
 
     `rate` [Hz] is the sampling rate (None: a continuous loop, for analysis only). `delay` [s] is the time from a sample to the resulting
-    output, not necessarily whole samples. `amplifiers` and `sensors` have names of actuators and gauges (omitted: ideal). Raises
-    `DesignError` for invalid numbers.
+    output, not necessarily whole samples. `amplifiers` and `sensors` are mappings by the names of actuators and gauges (omitted: ideal).
+    Raises `DesignError` for invalid numbers.
 
     >>> Hardware(rate=10e3).step
     0.0001

@@ -158,7 +158,7 @@ def coherence_findings(seen: Identification, margins: MeasuredMargins) -> Iterat
     for channel, share in zip(seen.spectra.outputs, shares, strict=True):
         if share < _COHERENT:
             what = f"low coherence from {low:.3g} to {high:.3g} Hz, near the crossover (got {share:.0%}, expected at least {_COHERENT:.0%})"
-            yield Finding(f"--record: {channel.name}", what, "Increase the drive there, record longer, or request another bandwidth")
+            yield Finding(f"--record: {channel.name}", what, "Increase the drive in this band, record longer, or request another bandwidth")
 
 
 def _ends(value: float, drawn: Array) -> tuple[float, float]:

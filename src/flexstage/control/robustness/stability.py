@@ -193,8 +193,8 @@ def _sentence(closed: Loop, least: Pole) -> str:
     where = f"{least.frequency:.4g} Hz" if least.frequency > 0.0 else "0 Hz (without oscillation)"
     comes = f"from {least.source} ({100.0 * least.share:.0f} % participation), with the largest error in {least.coordinate}"
     if _is_stable(closed, least):
-        return f"stable; the slowest pole, at {where}, decays by {-least.growth:.4g} 1/s, {comes}"
-    return f"a pole at {where} grows by {least.growth:.4g} 1/s, {comes}"
+        return f"stable; the slowest pole, at {where}, decays at {-least.growth:.4g} 1/s, {comes}"
+    return f"a pole at {where} grows at {least.growth:.4g} 1/s, {comes}"
 
 
 def _gain_words(low: float, high: float, *, stable: bool) -> str:

@@ -60,7 +60,7 @@ def peak(system: System) -> Peak:
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """System mapped to a continuous one, s = j nu: nu = 2 pi f / `unit`, or tan(pi f T) for a sampled one."""
+    """System mapped to a continuous one, s = j nu: nu = 2 pi f / `unit`, or tan(pi f T) for a sampled system."""
 
     system: System
     unit: float

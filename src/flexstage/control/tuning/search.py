@@ -31,7 +31,7 @@ from flexstage.control.tuning.view import View, first_alike, resonances
 from flexstage.experiment.progress import report
 
 _INSIDE = 0.97
-"""Share of the peak limit for a single loop: reserve for peaks between frequencies, and for coupling."""
+"""Fraction of the peak limit for a single loop: reserve for peaks between frequencies, and for coupling."""
 _FAR, _STABLE = 0.1, 2.5
 """Least shift of all modes up to which loops remain stable; for a larger spread this multiple of it. S is limited there, too."""
 _LOOSER, _LOOSEST, _LATER = 1.5, 4.0, 8.0
@@ -75,7 +75,7 @@ of one evaluation."""
 _NEARLY = 0.03
 """Excess of bounds up to which a start counts as well damped: only such starts bound the noise."""
 _LEFT = 0.015
-"""Share of the overshoot reserved for gauge rounding and for peaks between step samples."""
+"""Fraction of the overshoot reserved for gauge rounding and for peaks between step samples."""
 _LEAST = 0.02
 """Lowest k_p omega/k_i at the known crossover, for starts from a known controller."""
 _FIRST_DERIVATIVE = 0.01
@@ -93,9 +93,9 @@ _LAME = 0.7
 """Minimum rejection of quiet loops in a balance, relative to the best start. Without floor vibration the quietest loop is the slowest: such
 loops are made quiet again with nearly the same rejection."""
 _AMBITION, _BACK = 1.0, 0.8
-"""First target: 0.3 of the first mode's frequency, or this share of the start's rejection, with all bounds met."""
+"""First target: 0.3 of the first mode's frequency, or this fraction of the start's rejection, with all bounds met."""
 _SHARES = (0.98, 0.93, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2)
-"""Shares of the individual loops' results that all together must reach, tried in turn."""
+"""Fractions of the individual loops' results that all together must reach, tried in turn."""
 _SAME = 1e-6
 """Relative difference of plants below which loops are equal: symmetric models agree to about 1e-9."""
 _CORNER, _OF_RATE = 10.0, 0.4

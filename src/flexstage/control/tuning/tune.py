@@ -1,4 +1,4 @@
-"""Tuning: gains for a required bandwidth, or for the highest bandwidth, and the reason of a failure."""
+"""Tuning: gains for a required bandwidth, or for the highest bandwidth, and the reason for a failure."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _WITHIN = 1.003
 _NOTICED = 20.0
 """Phase lag of hold and delay [deg] above which faster sampling is advised."""
 _CALM = (0.9, 0.8, 0.7, 0.6)
-"""Shares of the peak limit for single loops while integrators are strengthened: reserve for coupling."""
+"""Fractions of the peak limit for single loops while integrators are strengthened: reserve for coupling."""
 
 
 def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:

@@ -18,7 +18,7 @@ from flexstage.control.systems.system import System
 _PLAIN, _PER_DECADE = 400, 60
 """Number of logarithmically spaced frequencies, and minimum per decade: 2 to 4 % apart."""
 _TURNED, _OF_RATE = 0.3, 0.4
-"""Highest bandwidth: a phase lag of hold and delay of 0.3 turns, 108 deg, beyond the lead of laws; at most this share of the rate."""
+"""Highest bandwidth: a phase lag of hold and delay of 0.3 turns, 108 deg, beyond the lead of laws; at most this fraction of the rate."""
 _OF_HIGHEST = 0.25
 """Highest bandwidth of a continuous loop, relative to the highest frequency: 5 times the plant's last mode."""
 _LOWEST, _BELOW_FASTEST = 1e-3, 0.01

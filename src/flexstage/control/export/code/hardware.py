@@ -21,7 +21,7 @@ from flexstage.control.simulation.result import Simulated
 
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
 """Compiler flags. Contraction (fused multiply-add) is off, so that every product and every sum is rounded."""
-NO_INVERSE = ("the inverse of this hysteresis model is not supported here", 'Remove "hysteresis" from compensate, or use --export')
+NO_INVERSE = ("the inverse of this hysteresis model is not supported for hardware", 'Remove "hysteresis" from compensate, or use --export')
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,7 @@ def _findings(model: BoucWen) -> Iterator[Finding]:
         if not np.all(np.isfinite([gain, lag, beta, gamma])) or lag <= 0.0:
             yield Finding(where, f"lag is {lag:g} m/V, or a value is not finite", "Use finite values and a positive lag")
         elif not -beta < gamma <= beta:
-            what = f"gamma is {gamma:g} 1/V, not above {-beta:g} and at most {beta:g} (beta): its loops would not dissipate energy"
+            what = f"gamma is {gamma:g} 1/V (expected above {-beta:g} and at most beta, {beta:g}): loops would not dissipate energy"
             yield Finding(where, what, "Choose -beta < gamma <= beta")
         elif 2.0 * lag * beta / (beta + gamma) > gain * (1.0 + 1e-12):
             what = f"just after a reversal h changes by {2.0 * lag * beta / (beta + gamma):g} m/V, more than the gain {gain:g} m/V"

@@ -54,7 +54,7 @@ def inverse_findings(model: PrandtlIshlinskii) -> list[Finding]:
     """Find the reasons why a model has no inverse: thresholds beyond which its output does not rise, and falling envelope pieces.
 
     >>> inverse_findings(PrandtlIshlinskii([0.0, 50.0, 100.0], [1e-7, 5e-8, -2e-7]))[0].what
-    'the weights up to 2 (threshold 100) sum to -5e-08: beyond it the output does not rise with the input, and no inverse exists'
+    'the weights up to 2 (threshold 100) sum to -5e-08: beyond it, the output does not rise with the input, and no inverse exists'
     """
     around = [*descent_findings(model.before, "envelope before the plays"), *descent_findings(model.after, "envelope after the plays")]
     return [*_slope_findings(model), *around]
@@ -65,7 +65,7 @@ def _slope_findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
     for axis, place in np.argwhere(~(partial > 0.0)):
         threshold = model.thresholds[axis, place]
         what = f"the weights up to {place} (threshold {threshold:g}) sum to {partial[axis, place]:g}"
-        reason = f"{what}: beyond it the output does not rise with the input, and no inverse exists"
+        reason = f"{what}: beyond it, the output does not rise with the input, and no inverse exists"
         advice = "Identify the model with weights of 0 or more and a positive first weight, or omit this play"
         yield Finding(f"hysteresis of axis {axis}", reason, advice)
 

@@ -12,9 +12,9 @@ from flexstage.show.page import Head, Headline, Picture, Prose, page, section
 from flexstage.show.tables.caveats import warning_table
 
 _METHOD = (
-    "Generalised Prandtl-Ishlinskii model: plays of fixed thresholds, weights of 0 or more by least squares, a monotonic envelope of the "
-    "voltage before them. Size: the smallest with a cross-validation error within 5 % of the best. Samples "
-    "before the plays are known are omitted. The inverse is exact; its deviation from the applied voltage is the model error."
+    "Generalised Prandtl-Ishlinskii model: a monotonic envelope of the voltage, then plays with fixed thresholds and weights of 0 or more, "
+    "by least squares. Its size is the smallest with a cross-validation error within 5 % of the best. Samples that "
+    "depend on the unknown history are omitted. The inverse is exact; its deviation from the applied voltage is the model error."
 )
 
 
