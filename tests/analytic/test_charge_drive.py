@@ -171,5 +171,5 @@ def test_what_cannot_be_is_said(told):
 def test_leakage_needs_a_capacitance():
     stage = case("parallelogram")
     bare = replace(stage, parts={**stage.parts, "stack": replace(stage.parts["stack"], capacitance=None)})
-    with pytest.raises(DesignError, match="leakage needs its stack's capacitance"):
+    with pytest.raises(DesignError, match="leakage needs the stack's capacitance"):
         sampling_chain(bare, amplifiers=AmplifierSettings(charge=ChargeHold(0.5, 0.2, leakage=1e6)))

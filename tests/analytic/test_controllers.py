@@ -224,7 +224,7 @@ BAD = {
     "proportional is -0.1": lambda: PID(-0.1, 3.0, 0.0, 100.0),
     "derivative filter without a positive corner (got 0 Hz)": lambda: PID(0.1, 3.0, 1e-3, 0.0),
     "half the sampling rate, 500 Hz": lambda: PID(0.1, 3.0, 1e-3, 700.0).system(1e-3),
-    "half the sampling rate is 100 Hz": lambda: Notch(110.9).system(5e-3),
+    "not below half the sampling rate, 100 Hz": lambda: Notch(110.9).system(5e-3),
     "tracking rate 4000 1/s is too high": lambda: PI(0.0, 4000.0, 1.0 / 4000.0).system(1e-3),
     "depth is -0.5": lambda: Notch(100.0, -0.5),
     "feed-through must be positive (got -2)": lambda: IntegralResonant(100.0, -2.0),

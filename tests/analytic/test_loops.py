@@ -266,11 +266,11 @@ def test_bandwidths_of_an_integrator():
 def test_what_cannot_be_controlled_is_refused():
     """Fewer strokes than motions, gauges that see too little, names that are not there: with numbers and directions."""
     floating = CASES["xy-stage-floating"].build()
-    with pytest.raises(DesignError, match=r"1 actuators make 1 of the platform's 2 ideal motions; missing: y"):
+    with pytest.raises(DesignError, match=r"1 actuators produce 1 of the platform's 2 ideal motions; missing: y"):
         plant(lumped(floating), ideal(floating), sampling_chain(floating))
     stage = double_triangle()
     blind = replace(stage, gauges={"S1-S3": stage.gauges["S1-S3"]})
-    with pytest.raises(DesignError, match=r"3 gauges tell 3 of the platform's 6 ideal motions; missing: "):
+    with pytest.raises(DesignError, match=r"3 gauges measure 3 of the platform's 6 ideal motions; missing: "):
         plant(lumped(blind), ideal(blind), sampling_chain(blind))
     whole = plant(lumped(stage), ideal(stage), sampling_chain(stage, rate=10e3), modes=6)
     with pytest.raises(
@@ -281,7 +281,7 @@ def test_what_cannot_be_controlled_is_refused():
         loop(whole, replace(integral(whole, 1.0), step=None))
     with pytest.raises(DesignError, match=r"missing output command\.B6"):
         loop(whole, select(integral(whole, 1.0), ["error.x"], [f"command.B{number}" for number in range(1, 6)]))
-    with pytest.raises(DesignError, match="resistance needs its stack's capacitance, which is missing"):
+    with pytest.raises(DesignError, match="resistance needs the stack's capacitance, which is missing"):
         sampling_chain(_without_capacitance(stage), amplifiers=AmplifierSettings(resistance=50.0))
     with pytest.raises(DesignError, match=r"the loop has no such pose"):
         open_at(loop(whole, integral(whole, 1.0)), LoopBreak.POSE, "w")

@@ -75,7 +75,7 @@ def test_units_can_be_stated(recorded: Command, tmp_path: Path) -> None:
     write(tmp_path / "bare.csv", bare)
     refused = recorded("hysteresis", "bare.csv")
     assert refused.code == 2
-    assert "of its channels, u [no unit], y [no unit], none is in volts" in refused.err
+    assert "none of the channels (u [no unit], y [no unit]) is in volts" in refused.err
     assert recorded("hysteresis", "bare.csv", "--units", "u=V", "--units", "y=um", "--json", "-").code == 0
 
 
@@ -94,13 +94,13 @@ def test_bad_input_ends_with_findings(recorded: Command, tmp_path: Path) -> None
     dead = in_memory(RECORD.channels, 100.0, values * np.array([1.0, 0.0]))
     for name, record in (("once", once), ("three", three), ("dead", dead)):
         write(tmp_path / f"{name}.csv", record)
-    assert "once.csv: volts: the voltage runs from 0 V to 1000 V without reversal" in ended_badly(recorded, "once.csv")
-    assert "2 are in a length" in ended_badly(recorded, "three.csv")
-    assert "dead.csv: stroke: all samples equal 0: the channel is dead" in ended_badly(recorded, "dead.csv")
+    assert "once.csv: volts: the voltage changes from 0 V to 1000 V without reversal" in ended_badly(recorded, "once.csv")
+    assert "of the channels (u [V], y [um], z [um]) are in a unit of length" in ended_badly(recorded, "three.csv")
+    assert "dead.csv: stroke: all samples equal 0: the channel has no signal" in ended_badly(recorded, "dead.csv")
     assert "there is no channel w" in ended_badly(recorded, "stack.csv", "--stroke", "w")
     exchanged = ended_badly(recorded, "stack.csv", "--volts", "y", "--stroke", "u")
     assert "y is in um (expected volts)" in exchanged
-    assert "u is in V (expected a length)" in exchanged
+    assert "u is in V (expected a unit of length)" in exchanged
     assert "file not found" in ended_badly(recorded, "none.csv")
     assert "no range (got 1000 V to 0 V" in ended_badly(recorded, "stack.csv", "--limits", "1000 V", "0 V")
     assert "step.uff: record: too short after the step" not in ended_badly(recorded, "stack.csv", "--step", "stack.csv")

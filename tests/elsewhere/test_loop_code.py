@@ -145,7 +145,7 @@ def test_force_feedback_is_part_of_the_exported_controller():
     tensions[7, 1] = np.nan
     program = with_legs(controller_code(given), given, inner)
     assert program.step == inner.step
-    assert [line.partition(":")[0] for line in program.about if "step every" in line] == [f"One call of the step every {inner.step:.12g} s"]
+    assert [line.partition(":")[0] for line in program.about if "step every" in line] == [f"Call the step every {inner.step:.12g} s"]
     rows = run_program(program, np.hstack([np.repeat(known.reference, 3, axis=0), np.repeat(known.readings, 3, axis=0), tensions]))
     ends = np.cumsum([0, *(len(signal.channels) for signal in program.outputs)])
     found = {signal.field: rows[:, slice(*ends[place : place + 2])] for place, signal in enumerate(program.outputs)}
@@ -345,7 +345,9 @@ def test_the_same_loop_gives_the_same_library(tmp_path, monkeypatch):
 def test_without_a_compiler_it_is_said_and_the_text_still_comes(tmp_path, monkeypatch):
     given = full_loop(current=0.03)  # no other test has compiled it
     monkeypatch.setenv("CC", "no-such-compiler")
-    with pytest.raises(DesignError, match=r"compiler: a functional mock-up unit needs a C compiler.*CC = no-such-compiler.*Install one"):
+    with pytest.raises(
+        DesignError, match=r"compiler: a functional mock-up unit needs a C compiler.*CC = no-such-compiler.*Install a compiler"
+    ):
         write_fmu(tmp_path / "controller.fmu", controller_code(given))
     with pytest.raises(DesignError, match="the compiled simulation needs a C compiler"):
         simulate_compiled(given, np.zeros((2, 6)))
@@ -357,9 +359,9 @@ def test_without_a_compiler_it_is_said_and_the_text_still_comes(tmp_path, monkey
 @pytest.mark.parametrize(
     ("write", "name", "message"),
     [
-        (write_controller, "controller.txt", r"does not end in \.c\. Call it controller\.c"),
-        (write_controller, "2 axes.c", r'"2 axes" is a reserved function name\. Call it stage_2_axes\.c'),
-        (write_controller, "Math.c", r"its header Math\.h would replace a system header.*Call it stage_Math\.c"),
+        (write_controller, "controller.txt", r"does not end in \.c\. Use controller\.c"),
+        (write_controller, "2 axes.c", r'"2 axes" is a reserved function name\. Use stage_2_axes\.c'),
+        (write_controller, "Math.c", r"its header Math\.h would replace a system header.*Use stage_Math\.c"),
         (lambda path, given: write_fmu(path, controller_code(given)), "controller.zip", r"does not end in \.fmu"),
         (lambda path, _: write_plant(path, integral_loop().plant), "plant.m", r"does not end in \.mat"),
     ],
@@ -372,7 +374,7 @@ def test_bad_names_are_refused(tmp_path, write, name, message):
 def test_a_hysteresis_without_c_is_refused():
     given = full_loop()
     one = Preisach.__new__(Preisach)  # of this kind, whatever its numbers
-    with pytest.raises(DesignError, match="Preisach has no C form"):
+    with pytest.raises(DesignError, match="Preisach cannot be exported as C"):
         loop_code(replace_unchecked(given, one))
 
 

@@ -203,7 +203,7 @@ def test_what_the_standard_forbids_is_refused_and_said(known, tmp_path):
     assert "GUID" in unit.said[-1]
     one = unit.instance()
     assert unit.step(one, 0.0, 1e-4) == ERROR
-    assert unit.said[-1] == "it is not running"
+    assert unit.said[-1] == "the FMU is not in step mode"
     assert unit.library.fmi2ExitInitializationMode(one) == ERROR
     assert unit.library.fmi2Terminate(one) == ERROR
     running, wrong = unit.running(), (c_uint * 1)(100_000)

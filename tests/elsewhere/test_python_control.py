@@ -303,5 +303,5 @@ def test_what_cannot_be_taken_is_refused():
     twins = System(
         np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), np.ones((1, 2)), (Channel("a.b", "m"), Channel("a_b", "m")), (channel,)
     )
-    with pytest.raises(DesignError, match="2 names become this one"):
+    with pytest.raises(DesignError, match="2 names become equal"):
         to_control(twins)

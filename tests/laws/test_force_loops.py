@@ -128,8 +128,8 @@ def test_a_current_amplifier_clips_at_the_peak_and_rises_by_the_volts_that_are_l
 @pytest.mark.parametrize(
     ("setup", "found"),
     [
-        (LoopSetup(amplifier=AmplifierSetup(resistance=50.0)), "motor: resistance is of the volts of a stack's amplifier"),
-        (LoopSetup(amplifier=AmplifierSetup(noise=1e-6)), "motor: noise_density is of the volts"),
+        (LoopSetup(amplifier=AmplifierSetup(resistance=50.0)), "motor: resistance applies to amplifiers of stacks"),
+        (LoopSetup(amplifier=AmplifierSetup(noise=1e-6)), "motor: noise_density applies to"),
         (LoopSetup(hysteresis=HystereticStacks(width=0.1)), "hysteresis: forces drive the stage (motor)"),
         (LoopSetup(compensate=(Compensation.LOAD,)), "compensate: load compensation is not supported"),
     ],

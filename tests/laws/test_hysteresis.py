@@ -137,8 +137,11 @@ def test_steps_are_pure(model, points):
         (PrandtlIshlinskii([0.0, 10.0], [0.0, 1e-7]), "the weights up to 0 (threshold 0) sum to 0"),
         (PrandtlIshlinskii([0.0, 10.0], [1e-7, -1e-7]), "the weights up to 1 (threshold 10) sum to 0"),
         (PrandtlIshlinskii([0.0, 10.0, 20.0], [1e-7, -2e-7, 3e-7]), "the weights up to 1 (threshold 10) sum to -1e-07"),
-        (PrandtlIshlinskii([0.0], [1e-7], Envelope([0.0, 5.0, 9.0], [0.0, 5.0, 4.0])), "from 5 to 9 on axis 0 it goes from 5 to 4"),
-        (PrandtlIshlinskii([0.0], [1e-7], after=Envelope([0.0, 1e-5], [0.0, 0.0])), "from 0 to 1e-05 on axis 0 it goes from 0 to 0"),
+        (
+            PrandtlIshlinskii([0.0], [1e-7], Envelope([0.0, 5.0, 9.0], [0.0, 5.0, 4.0])),
+            "between 5 and 9 on axis 0 the value changes from 5",
+        ),
+        (PrandtlIshlinskii([0.0], [1e-7], after=Envelope([0.0, 1e-5], [0.0, 0.0])), "between 0 and 1e-05 on axis 0"),
     ],
 )
 def test_what_has_no_inverse_is_refused(model, words):
@@ -168,7 +171,7 @@ def test_every_reason_is_told():
         (lambda: Envelope([0.0, 0.0], [0.0, 1.0]), "got knot 1 of axis 0 at 0 after 0"),
         (lambda: Envelope([0.0], [0.0]), "at least two"),
         (lambda: Envelope([0.0, np.inf], [0.0, 1.0]), "a knot or a value is not finite"),
-        (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.zeros((3, 2))), "(3, 2) for 1 axes"),
+        (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.zeros((3, 2))), "got (3, 2)"),
         (lambda: PrandtlIshlinskii([0.0], [1.0]).run(np.array([np.nan])), "an input is not finite"),
     ],
 )

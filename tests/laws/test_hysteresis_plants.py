@@ -137,11 +137,11 @@ def test_six_axes_are_six_times_one():
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: BoucWen([1.0], [0.1], [1.0], [1.1]), "gamma is 1.1 1/V, not above -1 and at most 1"),
+        (lambda: BoucWen([1.0], [0.1], [1.0], [1.1]), "gamma is 1.1 1/V (expected above -1 and at most beta, 1)"),
         (lambda: BoucWen([1.0], [0.1], [1.0], [-1.0]), "would not dissipate"),
         (lambda: BoucWen([1.0], [0.8], [1.0], [0.0]), "changes by 1.6 m/V, more than the gain 1 m/V"),
         (lambda: bouc_wen(1e-4, (0.0, 1000.0), 0.6), "Choose a smaller lag"),
-        (lambda: bouc_wen(1e-4, (1000.0, 0.0), 0.1), "no loop"),
+        (lambda: bouc_wen(1e-4, (1000.0, 0.0), 0.1), "invalid loop"),
         (lambda: preisach(1e-4, (0.0, 1000.0), 0.8), "more than 0.0001 m"),
         (lambda: preisach(-1e-4, (0.0, 1000.0), 0.1), "no loop"),
         (lambda: Preisach([0.0], [1.0], [1.0], [0.7], [0.6], [0.0], [1.0]), "its density falls to -0.3 of its middle"),

@@ -58,7 +58,7 @@ def test_names_and_seeds_of_noise():
     assert all(np.array_equal(found[name], more[name]) for name in found)  # what else there is does not matter
     with pytest.raises(DesignError, match=r"ground\.q: unknown motion of the ground"):
         noise_series(one, {"ground.q": SPECTRA["white"]}, 100)
-    with pytest.raises(DesignError, match="it is continuous"):
+    with pytest.raises(DesignError, match="the loop is continuous"):
         noise_series(replace(one, hardware=replace(one.hardware, rate=None, delay=0.0)), {}, 100)
 
 

@@ -240,14 +240,14 @@ def test_jerk_limited_steps_ring_less_than_steps_at_once():
 
 def test_unstable_loops_are_told_with_the_time():
     wired = integral_loop(gain=20_000.0)
-    with pytest.raises(DesignError, match=r"loop: the numbers diverged .* s after the start: the loop is unstable"):
+    with pytest.raises(DesignError, match=r"loop: the simulation diverged .* s after the start: the loop is unstable"):
         simulate(without_limits(machine(wired.plant, wired.controller)), np.full((20_000, 1), 1e-6))
 
 
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"reference": np.zeros((5, 2))}, r"reference: it is \(5, 2\)"),
+        ({"reference": np.zeros((5, 2))}, r"reference: wrong shape \(got \(5, 2\)\)"),
         ({"reference": np.full((5, 6), np.nan)}, r"reference at index 0, 0: must be a finite number \(got nan\)"),
         ({"named": {"ground.q": np.zeros(5)}}, r"ground\.q: unknown input of the loop\. Use ground\.x, ground\.y"),
         ({"named": {"noise.S1": np.zeros(4)}}, r"noise.S1: wrong length \(got \(4,\), expected 5 samples"),
@@ -273,8 +273,8 @@ def test_machines_that_cannot_be_are_named():
         replace(known, hysteresis=plays().__class__([0.0], [1.0]))
     with pytest.raises(DesignError, match=r"B1: hysteresis needs the stack's voltage range, which is missing"):
         replace(known, amplifiers=replace(known.amplifiers, gain=np.full(6, np.nan)))
-    with pytest.raises(DesignError, match="its readings depend on the stroke of the same sample"):
+    with pytest.raises(DesignError, match="the readings depend on the stroke of the same sample"):
         replace(known, plant=replace(known.plant, D=np.ones_like(known.plant.D)))
     one = six_axes().plant
-    with pytest.raises(DesignError, match="it is continuous, and time is simulated in samples"):
+    with pytest.raises(DesignError, match="the loop is continuous, but the simulation needs samples"):
         machine(replace(one, hardware=replace(one.hardware, rate=None, delay=0.0)), known.controller)

@@ -193,7 +193,7 @@ def test_responses_of_records_are_as_far_off_as_they_say_at_resonances_too() -> 
 
 def test_a_record_of_another_stage_is_refused() -> None:
     lines = np.geomspace(20.0, 6000.0, 300)
-    with pytest.raises(DesignError, match="it is probably of another stage"):
+    with pytest.raises(DesignError, match="probably another stage"):
         loop_study(parallelogram(), SETUP, test=swept(parallelogram(), lines, 0.0, faster=1.9))
     found = swept(parallelogram(), lines, 0.0).found
     renamed = replace(found, outputs=tuple(replace(each, name=f"T{each.name}") for each in found.outputs))
@@ -223,5 +223,5 @@ def test_a_record_without_coherence_where_the_loop_is_tuned_is_refused() -> None
     assert seen.multiple is not None
     lines = seen.spectra.frequencies if seen.spectra is not None else np.zeros(0)
     deaf = np.where((lines > 20.0)[:, None] & (lines < 1000.0)[:, None], 0.1, seen.multiple)
-    with pytest.raises(DesignError, match=r"at the crossover \(got 10%"):
+    with pytest.raises(DesignError, match=r"near the crossover \(got 10%"):
         loop_study(parallelogram(), SETUP, test=replace(seen, multiple=deaf))

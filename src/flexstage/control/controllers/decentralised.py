@@ -21,11 +21,12 @@ from flexstage.control.systems.system import System, select
 
 @dataclass(frozen=True, eq=False)
 class Decentralised(CheckedFields):
-    """Decentralised controller: one law with notches per loop, and reference feedforward to the strokes.
+    """Decentralised controller: a control law with notch filters for each loop, and feedforward of the reference to the strokes.
 
-    The strokes are `drive` of the loops times the loops' commands, plus `feedforward` times the reference. `laws` and `notches` have one
-    entry per name of `loops`. `feedforward` (n, f) is R_a, or gains that correct lost motion; default: no feedforward. `prefilters`, one
-    per loop, shape its reference, feedforward included; default: none. Raises `DesignError` for sizes that do not match.
+    The strokes are `loops.drive` times the loops' commands, plus `feedforward` times the reference. `laws`, `notches` and `prefilters` have
+    one entry for each loop; default: no notches and prefilters. `feedforward` (n, f) is R_a, or gains that also correct lost motion;
+    default: no feedforward. A prefilter acts on the reference of its loop, also for the feedforward. Raises `DesignError` for sizes that do
+    not match.
     """
 
     loops: Loops
@@ -42,8 +43,8 @@ class Decentralised(CheckedFields):
         """Return the controller as a linear system.
 
         Inputs are `error.<c>`, `pose.<c>` (only if a law uses it), `reference.<c>` (with `feedforward` or `prefilters`) and
-        `applied.<actuator>`, the applied minus the commanded input. Outputs are `command.<actuator>`. Raises `DesignError` for a law too
-        fast for the sampling rate.
+        `applied.<actuator>`, the applied minus the commanded input. Outputs are `command.<actuator>`. Raises `DesignError` for a law that
+        is too fast for the sampling rate.
 
         >>> from flexstage.control.controllers.pi import PI
         >>> from flexstage.control.controllers.loops import platform_loops
@@ -78,7 +79,7 @@ class Decentralised(CheckedFields):
 
 
 def loop_systems(control: Decentralised, step: float | None = None) -> tuple[System, ...]:
-    """Connect law and notches of each loop in series: one system per loop, inputs `error`, `pose`, `applied`, output `command` [m].
+    """Return law and notches of each loop in series, as a system with inputs `error`, `pose`, `applied` and output `command` [m].
 
     >>> from flexstage.control.controllers.pi import PI
     >>> from flexstage.control.controllers.loops import platform_loops
@@ -118,7 +119,7 @@ def filtered(law: System, notch: System) -> System:
 
 
 def with_feedforward(control: System, gains: Array | None, coordinates: Coordinates) -> System:
-    """Add feedforward to a controller: `gains` (n, f) times the reference. Its inputs `reference.<c>` precede `applied`.
+    """Add feedforward to a controller: `gains` (n, f) times the reference. The inputs `reference.<c>` precede `applied`.
 
     >>> from flexstage.control.plant_models.coordinates import coordinates
     >>> from flexstage.control.systems.system import static
@@ -158,5 +159,5 @@ def _findings(control: Decentralised) -> Iterator[Finding]:
             )
     shape = (len(control.loops.coordinates.actuators), len(control.loops.coordinates.names))
     if control.feedforward is not None and np.shape(control.feedforward) != shape:
-        what = f"feedforward gains of wrong shape (got {np.shape(control.feedforward)}, expected {shape}: actuators, coordinates)"
-        yield Finding("controller", what, "Use strokes per coordinate, as R_a")
+        what = f"feedforward gains have the wrong shape (got {np.shape(control.feedforward)}, expected {shape}: actuators, coordinates)"
+        yield Finding("controller", what, "Use a matrix of strokes per coordinate, like R_a")

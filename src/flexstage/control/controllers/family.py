@@ -1,4 +1,4 @@
-"""Families of single-loop controllers from which tuning selects the best. Other packages register further ones."""
+"""Families of single-loop controllers, from which tuning selects the best. Other packages can register more families."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.control.controllers.law import Law
 
 @dataclass(frozen=True)
 class Place:
-    """Plant of one loop at a crossover `frequency` [Hz]: complex `gain` there, notches included; `static` gain; first `resonance` [Hz]."""
+    """Plant of one loop at the crossover `frequency` [Hz]: complex `gain` with notches, `static` gain, first `resonance` [Hz] if any."""
 
     frequency: float
     gain: complex
@@ -22,11 +22,11 @@ class Place:
 
 @dataclass(frozen=True)
 class Family:
-    """Controller family with a `name`: `laws` returns the laws with |C g| = 1 at a crossover.
+    """Controller family with a `name`: `laws` returns laws C with |C g| = 1 at the crossover of a plant g.
 
-    The arguments of `laws` are the crossover and the sampling interval [s] (None: continuous). For each loop, tuning selects the law with
-    the lowest peak of S. `notched`: notches are added on modes that need them. `others`: kinds to suggest if the specification is not
-    reached. `steps`: ratios of successive trial bandwidths, first above 5 % of the first mode's frequency, then below.
+    The arguments of `laws` are a `Place` and the sampling interval [s] (None: continuous). For each loop, tuning selects the law with the
+    lowest peak of S. If `notched`, it adds notches at modes that need them. `others` names the kinds to suggest if the specification is not
+    met. `steps` are the ratios of successive trial bandwidths, above and below 5 % of the first mode's frequency.
     """
 
     name: str

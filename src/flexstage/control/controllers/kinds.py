@@ -1,4 +1,4 @@
-"""Controller families by their names in set-up files; other packages add further ones."""
+"""Controller families by their names in set-up files. Other packages can register more families."""
 
 from flexstage.base.register import Register
 from flexstage.control.controllers.family import Family

@@ -36,11 +36,12 @@ class Law(Protocol):
 def law_system(A: Array, B: Array, C: Array, D: Array, step: float | None, *, kept: Sequence[bool]) -> System:
     """Construct a law's system from A (n, n), B (n, 3), C (1, n), D (1, 3), discretised by Tustin's rule if `step` [s] is specified.
 
-    Retains only the states in `kept`. In a sampled law the applied input acts one sample later, because it is known only after the command.
+    Keeps only the states marked in `kept`. In a sampled law the applied input acts one sample later, because it is known only after the
+    command.
 
     >>> one, none = np.eye(1), np.zeros((1, 3))
     >>> found = law_system(0.0 * one, np.array([[2.0, 0.0, 4.0]]), one, none, 0.1, kept=[True])
-    >>> found.D.round(12).tolist()  # half a step of the error's rate 2 at once, nothing of what was applied
+    >>> found.D.round(12).tolist()  # error: half a step of the rate 2; applied input: no direct term
     [[0.1, 0.0, 0.0]]
     """
     places = np.flatnonzero(kept)
@@ -52,19 +53,19 @@ def law_system(A: Array, B: Array, C: Array, D: Array, step: float | None, *, ke
 
 
 def gain_findings(kind: str, gains: Mapping[str, tuple[float, str]]) -> Iterator[Finding]:
-    """Check that gains, each with its unit, are finite and not negative; returns the findings.
+    """Return a finding for each gain (with its unit) that is negative or not finite.
 
     >>> [str(each) for each in gain_findings("PI", {"integral": (-2.0, " 1/s")})]
-    ['PI: integral is -2 1/s. Use 0 or more: the model includes the signs of gauges and actuators, so that every loop is positive.']
+    ['PI: integral is -2 1/s. Use 0 or more: the model already includes the signs of gauges and actuators.']
     """
     for name, (value, unit) in gains.items():
         if not 0.0 <= value < np.inf:
-            advice = "Use 0 or more: the model includes the signs of gauges and actuators, so that every loop is positive"
+            advice = "Use 0 or more: the model already includes the signs of gauges and actuators"
             yield Finding(kind, f"{name} is {value:g}{unit}", advice)
 
 
 def corner_findings(kind: str, noun: str, corner: float, step: float | None, otherwise: str = "") -> Iterator[Finding]:
-    """Check that a corner [Hz] of a law is below half the sampling rate; returns the findings.
+    """Return a finding if a corner [Hz] of a law is not below half the sampling rate.
 
     >>> [each.what for each in corner_findings("PID", "its filter at", 900.0, 1e-3)]
     ['its filter at 900 Hz is not below half the sampling rate, 500 Hz']
@@ -84,7 +85,7 @@ def tracking_rate(time: float, step: float | None) -> float:
 
 
 def slow_tracking_findings(kind: str, time: float | None, step: float | None) -> Iterator[Finding]:
-    """Check that a tracking time [s] is at least one sample: otherwise the anti-windup would overshoot.
+    """Return a finding if a tracking time [s] is shorter than a sample: the anti-windup would overshoot.
 
     >>> [each.what for each in slow_tracking_findings("PI", 1.0 / 3000.0, 1e-3)]
     ['tracking rate 3000 1/s is too high (expected at most 1000 1/s, the sampling rate)']
@@ -92,4 +93,4 @@ def slow_tracking_findings(kind: str, time: float | None, step: float | None) ->
     if step is not None and time is not None and step / time > 1.0 + 1e-9:
         rate = 1.0 / time
         what = f"tracking rate {rate:g} 1/s is too high (expected at most {1.0 / step:g} 1/s, the sampling rate)"
-        yield Finding(kind, what, f"Sample at {rate:g} Hz or more, or use a longer time")
+        yield Finding(kind, what, f"Sample at {rate:g} Hz or more, or use a longer tracking time")

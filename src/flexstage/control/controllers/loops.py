@@ -20,7 +20,7 @@ _DEPENDENT = 1e-6
 class Loops:
     """Coordinates of k single loops: loop errors = `sense` (k, f) times coordinate errors, strokes = `drive` (n, k) times loop commands.
 
-    All loops are in metres: in static equilibrium a loop's pose equals its command, except for lost motion.
+    Loop errors and commands are in metres: in static equilibrium a loop's pose equals its command, except for lost motion.
     """
 
     names: tuple[str, ...]
@@ -33,7 +33,7 @@ class Loops:
 def actuator_loops(coordinates: Coordinates) -> Loops:
     """Define one loop for each actuator: sense = R_a, drive = I.
 
-    Raises `DesignError` for more actuators than coordinates: the gauges cannot observe all the integrators.
+    Raises `DesignError` for more actuators than coordinates: the gauges could not observe all integrators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.control.plant_models.coordinates import coordinates
@@ -50,7 +50,7 @@ def actuator_loops(coordinates: Coordinates) -> Loops:
 
 @check_arguments
 def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Loops:
-    """Define one loop for each motion of the platform, rotations times the stage's length: sense = S, drive = R_a S^-1.
+    """Define one loop for each platform motion: sense = S, drive = R_a S^-1; S multiplies rotations by the stage's length.
 
     `strokes` (n, f) replaces R_a, for example by gains that correct lost motion.
 
@@ -66,7 +66,7 @@ def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Lo
 
 
 def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
-    """Select the modes for modal loops: one per coordinate, the most compliant under static load along the coordinates.
+    """Select the modes for modal loops: one per coordinate, with the largest contributions to static compliance along the coordinates.
 
     The contribution of a mode to the platform's compliance is |S phi|^2 / omega^2 (rotations as lengths). The mode with the largest
     contribution is selected first. For each further mode, only the component independent of the selected modes counts. Returns ascending
@@ -77,7 +77,7 @@ def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.ideal import ideal
     >>> from flexstage.models.lumped import lumped
-    >>> loop_modes(modes(lumped(parallelogram())), coordinates(ideal(parallelogram())))  # the first bobs up and down
+    >>> loop_modes(modes(lumped(parallelogram())), coordinates(ideal(parallelogram())))  # the first mode moves vertically
     (1,)
     """
     rows = [COMPONENTS.index(name) for name in coordinates.names]
@@ -104,8 +104,9 @@ def modal_loops(coordinates: Coordinates, shapes: Array, strokes: Array | None =
     """Define one loop for each of the platform's modes: sense = Phi^-1, drive = R_a Phi.
 
     `shapes` (6, f) are the platform's twists in these modes, columns of `Modes.platform_shapes` (`loop_modes` selects them), of any scale.
-    With massless links the loops are exactly decoupled, each an oscillator of static gain 1 (Phi^T K Phi = Omega^2). Unit masses and lost
-    motion cause the remaining crosstalk. `strokes` (n, f) replaces R_a. Raises `DesignError` for shapes that do not span the coordinates.
+    With massless links the loops are exactly decoupled, each an oscillator of static gain 1 (Phi^T K Phi = Omega^2). The masses of the
+    actuation units and lost motion cause the remaining crosstalk. `strokes` (n, f) replaces R_a. Raises `DesignError` for shapes that do
+    not span the coordinates.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates

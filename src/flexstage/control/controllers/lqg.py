@@ -16,15 +16,15 @@ from flexstage.control.systems.system import System
 from flexstage.models.linear.model import Channel
 
 DOUBLINGS, _SETTLED = 30, 1e-15
-"""Rounds of doubling, 2^30 samples: a day at 10 kHz; and the relative change at which doubling stops."""
+"""Maximum number of doublings, 2^30 samples (a day at 10 kHz), and the relative change at which doubling stops."""
 
 
 @dataclass(frozen=True)
 class Weights:
-    """Weights of the regulator's cost: the integral of w^2 |z|^2 + p |y|^2 + |u|^2, with z' = the loop's error.
+    """Weights of the regulator's cost, the integral of w^2 |z|^2 + p |y|^2 + |u|^2, where z is the integral of the loop's error.
 
-    y is the pose in lengths (rotations times the stage's length), u the strokes. w = 2 pi `bandwidth` [Hz] and p = `pose` [1], one for all
-    coordinates or one for each. With a static plant of gain 1 the gain crossover is exactly `bandwidth` (u' = w e).
+    y is the pose in lengths (rotations times the stage's length), u the strokes. w = 2 pi `bandwidth` [Hz] and p = `pose` [1] are equal for
+    all coordinates, or specified for each. With a static plant of gain 1 the gain crossover is exactly `bandwidth` (u' = w e).
     """
 
     bandwidth: float | tuple[float, ...]
@@ -43,11 +43,11 @@ class Disturbances:
 class LQG:
     """LQG controller with integrators, for a model: u = -K x^ + K_z z + N r.
 
-    Sampled: x^ = x- + M (y - C x-), x- = A x^ + B u, z+ = z + T e. Continuous: x^' = A x^ + B u + L (y - C x^ - D u), z' = e. `model` has
-    inputs `command.<actuator>` and outputs `pose.<c>`. `regulator` is K (n, s), `integral` K_z (n, f), `observer` M or L (s, f).
-    `feedforward` (n, f) are static strokes for a reference; default: no feedforward. `tracking` [s] is the anti-windup time of the
-    integrators; the observer uses the applied strokes directly. `weights` are the design weights, `expected` the observer's assumed
-    disturbances, if known.
+    The estimate is x^ = x- + M (y - C x-) with x- = A x^ + B u of the sample before, the integral z+ = z + T e. The sampled `model` has
+    inputs `command.<actuator>` and outputs `pose.<c>`. `regulator` is K (n, s), `integral` K_z (n, f), `observer` M (s, f). `feedforward`
+    (n, f) is the matrix of static strokes for a reference, which determines N; default: no feedforward. `tracking` [s] is the anti-windup
+    time of the integrators; the observer uses the applied strokes directly. `weights` are the design weights, `expected` the disturbances
+    assumed by the observer, if known.
     """
 
     model: System
@@ -67,16 +67,17 @@ class LQG:
         """
         if step != self.model.step:
             model, asked = ("continuous" if each is None else f"sampled every {each:g} s" for each in (self.model.step, step))
-            raise refuse("LQG", f"the model is {model} (expected {asked})", "Design it on a model with the same sampling")
+            raise refuse("LQG", f"the model is {model} (expected {asked})", "Design the controller with a model of the same sampling")
         return with_feedforward_states(_sampled_system(self), self)
 
 
 def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Disturbances, feedforward: Array | None = None) -> LQG:
-    """Design the regulator of least cost and the observer of least variance for a `model` from commands to pose (`pose_plant`).
+    """Design the minimum-cost regulator and the minimum-variance observer for a `model` from commands to pose (`pose_plant`).
 
-    K and K_z solve the algebraic Riccati equation of the model with integrators of the error. The observer solves the equation of the model
-    with its noises (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972). One-sided densities G apply to the whole band, so that a
-    sample has the variance G^2/(2 T). Raises `DesignError` for gauges without noise and for an uncontrollable model.
+    K and K_z solve the algebraic Riccati equation of the model with integrators of the error. The observer gain solves the Riccati equation
+    of the model with its noise (Kwakernaak & Sivan, Linear Optimal Control Systems, 1972). Noise of one-sided density G is white up to half
+    the sampling rate: a sample has the variance G^2/(2 T). Raises `DesignError` for a continuous model, gauges without noise, and an
+    undamped mode that is not controllable or observable.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -89,7 +90,7 @@ def lqg(model: System, coordinates: Coordinates, weights: Weights, expected: Dis
 
 
 def with_observer(model: System, coordinates: Coordinates, weights: Weights, observer: Array, feedforward: Array | None = None) -> LQG:
-    """Design the regulator of least cost for a known observer gain (s, f).
+    """Design the minimum-cost regulator for a known observer gain (s, f).
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -135,8 +136,7 @@ def observer_gain(model: System, coordinates: Coordinates, expected: Disturbance
     pose = weight @ coordinates.pose * densities
     state, cross = entry @ entry.T, entry @ (D * expected.strokes).T
     output = pose @ pose.T + expected.strokes**2 * D @ D.T
-    # Of the order 1e-20 m^2: made numbers of order one, which the solver's tolerances need. Only ratios of noises count, so that
-    # sample variance G^2/(2 T) of a one-sided density G
+    # variances of about 1e-20 m^2 are scaled to 1 for the solver's tolerances; only their ratios affect the gain
     unit = np.trace(output) / len(output)
     state, output, cross = state / unit, output / unit, cross / unit
     solution = _riccati(model.A.T, C.T, state, output, cross)
@@ -144,7 +144,7 @@ def observer_gain(model: System, coordinates: Coordinates, expected: Disturbance
 
 
 def estimator(model: System, observer: Array) -> System:
-    """Construct the Kalman filter: it estimates the states x^ of a model from readings y and commands u.
+    """Construct the Kalman filter: it estimates the states x^ of a model from the pose y and the commands u.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
@@ -162,7 +162,7 @@ def estimator(model: System, observer: Array) -> System:
 
 def _step(model: System) -> float:
     if model.step is None:
-        raise refuse("LQG", "the model is continuous", "Specify a rate: linear-quadratic control is sampled")
+        raise refuse("LQG", "the model is continuous", "Specify a sampling rate: LQG control must be sampled")
     return model.step
 
 
@@ -175,7 +175,7 @@ def _riccati(A: Array, B: Array, cost: Array, effort: Array, cross: Array) -> Ar
         if not np.all(np.isfinite(found)):
             raise np.linalg.LinAlgError
     except np.linalg.LinAlgError as error:
-        what = "the Riccati equation has no stabilising solution: an undamped mode is neither controllable nor observable"
+        what = "the Riccati equation has no stabilising solution: an undamped mode is not controllable or not observable"
         raise refuse("LQG", what, "Retain fewer modes, or damp all of them") from error
     return 0.5 * (found + found.T)
 

@@ -23,7 +23,7 @@ _FAR = 0.1
 class Notch(CheckedFields):
     """Notch filter (s^2 + 2 d zeta w s + w^2) / (s^2 + 2 zeta w s + w^2): gain d = `depth` at w = 2 pi `frequency`, 1 far from it.
 
-    `damping` zeta belongs to the poles: the gain is below 1/sqrt(2) over a bandwidth of about 2 zeta of the frequency. Depth zeta_m / zeta
+    `damping` zeta belongs to the poles: the gain is below 1/sqrt(2) in a band about 2 zeta times the frequency wide. Depth zeta_m / zeta
     cancels a mode of damping ratio zeta_m: the notch's poles replace the mode's poles. Raises `DesignError` for invalid numbers.
 
     >>> from flexstage.control.controllers.notch import Notch
@@ -42,7 +42,7 @@ class Notch(CheckedFields):
         if not 0.0 < self.frequency < np.inf:
             found.append(Finding(where, "must be a positive frequency", "Use a positive number: the frequency of a mode"))
         if not 0.0 <= self.depth <= 1.0:
-            found.append(Finding(where, f"its depth is {self.depth:g}", "Use the gain at the notch: from 0 to 1 (no notch)"))
+            found.append(Finding(where, f"its depth is {self.depth:g}", "Use a gain from 0 to 1 (1: no notch)"))
         if not 0.0 < self.damping < np.inf:
             found.append(Finding(where, f"the damping of its poles is {self.damping:g}", "Use a positive ratio, for example 0.7"))
         require(found)
@@ -60,7 +60,7 @@ class Notch(CheckedFields):
         if step is None:
             return found
         if self.frequency >= 0.5 / step:
-            what = f"half the sampling rate is {0.5 / step:g} Hz"
+            what = f"not below half the sampling rate, {0.5 / step:g} Hz"
             require([Finding(f"notch at {self.frequency:g} Hz", what, f"Sample above {2.0 * self.frequency:g} Hz, or omit the notch")])
         return bilinear(found, step, self.frequency)
 
@@ -78,10 +78,10 @@ def notch_of_mode(frequency: float, ratio: float, damping: float = _WIDTH) -> No
 
 
 def notch_findings(notches: Iterable[Notch], frequencies: Iterable[float]) -> list[Finding]:
-    """Find notches more than 10 % away from every mode of `frequencies` [Hz]. Each finding names the modes on both sides.
+    """Find notches that are more than 10 % away from every mode of `frequencies` [Hz]. Each finding gives the nearest modes.
 
     >>> [str(each) for each in notch_findings([Notch(135.0)], [106.0, 106.0, 150.0])]
-    ['notch at 135 Hz: it is at no mode: between those at 106 Hz and 150 Hz. Move it to the mode that limits the loop, or omit it.']
+    ['notch at 135 Hz: no mode within 10 % (nearest: 106 Hz and 150 Hz). Move the notch to the mode that limits the loop, or omit it.']
     """
     modes = sorted(frequencies)
     found = []
@@ -90,9 +90,9 @@ def notch_findings(notches: Iterable[Notch], frequencies: Iterable[float]) -> li
             continue
         below = [mode for mode in modes if mode < each.frequency]
         above = [mode for mode in modes if mode > each.frequency]
-        side = f"above the highest, {below[-1]:g} Hz" if below else "the stage has none"
+        side = f"highest: {below[-1]:g} Hz" if below else "the stage has none"
         if above:
-            side = f"between those at {below[-1]:g} Hz and {above[0]:g} Hz" if below else f"below the lowest, {above[0]:g} Hz"
-        advice = "Move it to the mode that limits the loop, or omit it"
-        found.append(Finding(f"notch at {each.frequency:g} Hz", f"it is at no mode: {side}", advice))
+            side = f"nearest: {below[-1]:g} Hz and {above[0]:g} Hz" if below else f"lowest: {above[0]:g} Hz"
+        advice = "Move the notch to the mode that limits the loop, or omit it"
+        found.append(Finding(f"notch at {each.frequency:g} Hz", f"no mode within {100.0 * _FAR:g} % ({side})", advice))
     return found

@@ -18,9 +18,9 @@ from flexstage.control.systems.system import System
 class PI(CheckedFields):
     """PI controller k_p + k_i / s from a loop's error [m] to its command [m]: `proportional` k_p [1], `integral` k_i [1/s].
 
-    Under saturation the integrator follows the applied input within `tracking` T_t [s], x' = k_i e + (applied - commanded)/T_t
-    (back-calculation; Astrom and Haegglund, Advanced PID Control, 2006, section 3.5). Default: (1 + k_p)/k_i, the time constant of the loop
-    around a plant of gain 1, but at least one sample. Raises `DesignError` for negative gains.
+    Under saturation the integrator follows the applied input with the time constant `tracking` T_t [s], x' = k_i e + (applied -
+    commanded)/T_t (back-calculation; Astrom and Haegglund, Advanced PID Control, 2006, section 3.5). Default: (1 + k_p)/k_i, the time
+    constant of the loop around a plant of gain 1, but at least one sample. Raises `DesignError` for negative gains.
 
     >>> control = PI(proportional=0.5, integral=100.0)
     >>> control.tracking_time, control.system().transfer(np.array([100.0 / (2.0 * np.pi)]))[0, 0, 0].round(12)  # 0.5 + 100/(100j)
@@ -52,11 +52,11 @@ class PI(CheckedFields):
 
 
 def tracking_findings(kind: str, tracking: float | None) -> list[Finding]:
-    """Check that a tracking time [s] is positive; returns the findings.
+    """Return a finding if a tracking time [s] is not positive.
 
     >>> [each.what for each in tracking_findings("PI", 0.0)]
     ['tracking time must be positive (got 0 s)']
     """
     if tracking is None or tracking > 0.0:
         return []
-    return [Finding(kind, f"tracking time must be positive (got {tracking:g} s)", "Use a positive time, or omit it")]
+    return [Finding(kind, f"tracking time must be positive (got {tracking:g} s)", "Use a positive time, or omit the tracking time")]

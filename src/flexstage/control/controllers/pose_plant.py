@@ -11,8 +11,8 @@ from flexstage.control.systems.system import System, reachable, select
 def pose_plant(plant: Plant, offset: float = 0.0) -> System:
     """Return the plant from `command.<actuator>` [m] to `pose.<c>` [m, rad]: stage, amplifiers, gauges, hold and delay.
 
-    Continuous for a continuous loop. A relative `offset` raises all modes by scaling time: lags become shorter too. Hold and delay
-    of a sampled plant are unchanged.
+    The plant of a continuous loop is continuous. A relative `offset` raises all modal frequencies by scaling time, so that lags become
+    shorter too. Hold and delay of a sampled plant are unchanged.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = pose_plant(integral_loop().plant)

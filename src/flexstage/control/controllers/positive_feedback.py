@@ -66,10 +66,10 @@ class PositiveFeedback:
 
 
 def place_poles(frequency: float, damping: float, static: float = 1.0) -> PositiveFeedback:
-    """Place the poles of an undamped mode at (s^2 + 2 sigma s + sigma^2 + w^2)^2, sigma = `damping` w, by velocity and position feedback.
+    """Place the poles of an undamped mode and of the filter at the roots of (s^2 + 2 sigma s + sigma^2 + w^2)^2, sigma = `damping` w.
 
-    The mode w^2 g / (s^2 + w^2) and the filter keep their frequency. Both get the same decay rate (Bhikkaji et al. 2007: four parameters
-    place four poles).
+    The mode w^2 g / (s^2 + w^2), g = `static`, and the filter keep their frequency, and get the same decay rate (Bhikkaji et al. 2007: four
+    parameters place four poles).
 
     >>> law = place_poles(100.0, 0.2)
     >>> w = 200.0 * np.pi
@@ -88,7 +88,7 @@ def place_poles(frequency: float, damping: float, static: float = 1.0) -> Positi
 
 
 def position_laws(place: Place, step: float | None) -> list[PositiveFeedback]:
-    """Design positive position feedback of the first resonance for several shares of its static gain, frequencies and damping ratios."""
+    """Design positive position feedback of the first resonance for several static loop gains, filter frequencies and damping ratios."""
     if place.resonance is None or not place.static > 0.0:
         return []
     filters = [

@@ -26,7 +26,7 @@ class Prefilter(CheckedFields):
 
     Without a `lead` the numerator is 1. The static gain is 1. The prefilter is the second degree of freedom of a loop (Astrom and
     Haegglund, Advanced PID Control, 2006, section 3.4). A law with strong integrators has a zero at k_i/k_p, which causes overshoot. F
-    removes the oscillatory part of the command, and does not change S, margins and noise. Raises `DesignError` for invalid numbers.
+    reduces this overshoot, and does not change S, margins or noise. Raises `DesignError` for invalid numbers.
 
     >>> gains = Prefilter(frequency=90.0, damping=1.0).system().transfer(np.array([0.0, 90.0]))
     >>> abs(gains.ravel()).round(12).tolist()  # 1/(2 zeta) there
@@ -47,7 +47,7 @@ class Prefilter(CheckedFields):
         )
 
     def system(self, step: float | None = None) -> System:
-        """Return the filter from `reference` to `shaped`, by Tustin's rule, prewarped at its frequency if below half the sampling rate."""
+        """Return the filter from `reference` to `shaped`, by Tustin's rule, prewarped at a frequency below 0.4 of the sampling rate."""
         omega = 2.0 * np.pi * self.frequency
         A = np.array([[0.0, omega], [-omega, -2.0 * self.damping * omega]])
         slope = 0.0 if self.lead is None else self.frequency / self.lead

@@ -21,9 +21,10 @@ class IntegralResonant(CheckedFields):
     """Integral resonant control u = Q(s) y + (k_t / s) e, Q(s) = k / (s + k d): damping by positive feedback, tracking by an integrator.
 
     An integrator -k/s around the plant with feed-through G - d is equivalent to Q around the plant (Aphale, Fleming & Moheimani 2007;
-    Fleming, Aphale & Moheimani 2010). `gain` k [1/s], `feedthrough` d [1], positive here and subtracted, `tracking` k_t [1/s]. y is the
-    loop's pose [m], e its error, u its command. The static value of Q is 1/d: stable only if d exceeds the plant's static gain. The
-    anti-windup time is 1/k_t, or `tracking_time` [s]. Raises `DesignError` for negative gains, and without feed-through.
+    Fleming, Aphale & Moheimani 2010). `gain` k [1/s], `feedthrough` d [1] (positive, because it is subtracted), `tracking` k_t [1/s]. y is
+    the loop's pose [m], e its error, u its command. The static gain of Q is 1/d: the loop is stable only if d exceeds the plant's static
+    gain. The anti-windup time is 1/k_t, or `tracking_time` [s]. Raises `DesignError` for negative gains, and for a feed-through that is not
+    positive.
 
     >>> control = IntegralResonant(gain=1000.0, feedthrough=2.0, tracking=100.0)
     >>> control.system().transfer(np.array([0.0001]))[0, 0, 1].real.round(6).item()  # 1/d at rest
@@ -39,7 +40,7 @@ class IntegralResonant(CheckedFields):
         super().__post_init__()
         found = list(gain_findings("integral resonant control", {"gain": (self.gain, " 1/s"), "tracking": (self.tracking, " 1/s")}))
         if not 0.0 < self.feedthrough < np.inf:
-            advice = "Use a positive one, above the plant's static gain: twice that gain is usual"
+            advice = "Use a value above the plant's static gain, e.g. twice that gain"
             found.append(Finding("integral resonant control", f"feed-through must be positive (got {self.feedthrough:g})", advice))
         require(found)
 
@@ -59,11 +60,10 @@ class IntegralResonant(CheckedFields):
 
 
 def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
-    """Compute the gains that give an undamped mode at `frequency` [Hz] the `damping` ratio zeta, the maximum for their feed-through.
+    """Compute the gains that damp an undamped mode at `frequency` [Hz] by zeta = `damping`, the highest ratio with their feed-through.
 
     d = g (1 + 2 zeta)^2 / ((1 + 2 zeta)^2 - 1), k d = w_p (1 + 2 zeta)^(1/2) (Namavar, Fleming & Aphale 2014). w_p is the mode's angular
-    frequency, g = `static` the plant's static gain, `tracking` [1/s] as for the law. Raises `DesignError` for numbers that are not
-    positive.
+    frequency, g = `static` the plant's static gain, `tracking` k_t [1/s]. Raises `DesignError` for numbers that are not positive.
 
     >>> control = resonant_law(100.0, damping=0.5 * (2.0**0.5 - 1.0))
     >>> round(control.feedthrough, 9), round(control.gain * control.feedthrough / (200.0 * np.pi), 4)  # 2, and 2^(1/4)

@@ -21,17 +21,17 @@ from flexstage.models.linear.model import Channel, LinearModel
 
 @dataclass(frozen=True, eq=False)
 class ChargedStacks:
-    """Stacks at constant charge: `actuators`, each `stiffer` by 1/(1 - k^2) (n,) above its corner.
+    """Stacks of the `actuators` at constant charge: each is `stiffer` (n,) by the factor 1/(1 - k^2) above its corner frequency.
 
     `corners` (n,) [Hz] are the corner frequencies below which the drive acts as a voltage drive. `residual_hysteresis` (n,) are the
-    remaining shares of hysteresis and creep above the corners. The plant's modes are at `by_volts` (k,) [Hz] with constant voltage, and at
-    `by_charge` (k,) [Hz] with constant charge.
+    fractions of hysteresis and creep that remain above the corners. The plant's modes are at `by_volts` (k,) [Hz] with constant voltage,
+    and at `by_charge` (k,) [Hz] with constant charge.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Charge drive",
         "stiffer corners residual_hysteresis",
-        notes=("Stiffness at constant charge over that at constant voltage: 1/(1 - k^2), above the corner frequency.",),
+        notes=("Stiffness ratio of constant charge to constant voltage: 1/(1 - k^2), above the corner frequency.",),
     )
 
     actuators: tuple[str, ...]
@@ -52,8 +52,8 @@ def at_constant_charge(model: LinearModel, legs: tuple[Leg, ...], drives: Mappin
     """Return the model with the stacks of `legs` at constant-charge stiffness, k / (1 - kappa^2).
 
     A stack has elongation u, tension F, voltage V, charge Q: u = F/k + d V and Q = d F + C V (Preumont, Vibration Control of Active
-    Structures, 2018, ch. 4). With kappa^2 = d^2 k / C, u = (1 - kappa^2) F/k + (d/C) Q. The stiffness is higher; the free stroke equals the
-    stroke that the same voltage causes without load.
+    Structures, 2018, ch. 4). With kappa^2 = d^2 k / C, u = (1 - kappa^2) F/k + (d/C) Q. The stiffness is higher. The free stroke (d/C) Q is
+    d V, with the voltage V that causes the charge Q without load.
     """
     stiffness, output, through = dict(model.stiffness), np.array(model.output, dtype=float), np.array(model.feedthrough, dtype=float)
     for each in legs:
@@ -72,9 +72,10 @@ def at_constant_charge(model: LinearModel, legs: tuple[Leg, ...], drives: Mappin
 def leak_charge(given: Plant, legs: tuple[Leg, ...], drives: Mapping[str, ChargeDrive], kept: tuple[str, ...] = ()) -> Plant:
     """Add charge leakage below a corner w_0 to the plant of stacks at constant charge; exact at every frequency.
 
-    The drive imposes the current I = (s C + 1/R) v of an unloaded stack at any voltage (Fleming & Leang, Design, Modeling and Control of
-    Nanopositioning Systems, 2014, ch. 12). Hence u = F/k (1 - kappa^2 s/(s + w_0)) + d v, w_0 = 1/(R C): kappa^2 w_0/(s + w_0) F/k is added
-    to the stroke at constant charge. `legs` have the stiffness k at constant voltage. The result has only the link forces named in `kept`.
+    The drive imposes the current I = (s C + 1/R) v that a voltage v would cause in the unloaded stack (Fleming & Leang, Design, Modeling
+    and Control of Nanopositioning Systems, 2014, ch. 12). Hence u = F/k (1 - kappa^2 s/(s + w_0)) + d v, w_0 = 1/(R C): kappa^2 w_0/(s +
+    w_0) F/k is added to the stroke at constant charge. `legs` have the stiffness k at constant voltage. The result has only the link forces
+    named in `kept`.
     """
     inner = [_leak(each, drives[each.actuator]) for each in legs]
     gone = {f"{each.link}.fx" for each in legs} - {f"{name}.fx" for name in kept}
@@ -82,7 +83,7 @@ def leak_charge(given: Plant, legs: tuple[Leg, ...], drives: Mapping[str, Charge
         given,
         system=around_legs(given, legs, inner, [name for name in given.system.output_names if name not in gone]),
         states=(*given.states, *(f"charge.{each.actuator}" for each in legs)),
-        note=f"{given.note}; stacks of {', '.join(each.actuator for each in legs)} at constant charge above their leakage",
+        note=f"{given.note}; stacks of {', '.join(each.actuator for each in legs)} at constant charge above the leakage corner",
     )
 
 

@@ -1,4 +1,4 @@
-"""A plant with force feedback in its legs, controlled by the pose loop (high authority over low authority)."""
+"""Plant with force feedback in its legs (low authority) inside the pose loop (high authority)."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ _SLOW, _LINES = 1e-3, 200
 class DampedMode:
     """Mode of the plant: `frequency` [Hz] and damping `ratio` without the inner loops, and both values with the inner loops.
 
-    `zero` [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping of a single leg, or of decoupled legs,
-    (w - z)/(2 z). `alone` is the damping with the present gain if the mode were isolated.
+    `zero` [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping ratio with one leg or decoupled legs, (w
+    - z)/(2 z). `alone` is the damping ratio of the isolated mode with the present gain.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -38,8 +38,8 @@ class DampedMode:
         "frequency zero ratio most alone damped_frequency damped_ratio",
         notes=(
             (
-                "Transmission zero z: the frequency without the stacks' axial stiffness. Maximum damping: (w - z)/(2 z), of one leg or "
-                "decoupled legs. Isolated mode: with this gain, no other mode near, no damping of its own and no lag of the amplifier."
+                "Transmission zero z: the frequency without the stacks' axial stiffness. Maximum damping: (w - z)/(2 z), with one leg "
+                "or decoupled legs. Isolated mode: damping ratio with this gain, without other modes, structural damping and amplifier lag."
             ),
         ),
     )
@@ -57,16 +57,16 @@ class DampedMode:
 class ActiveDamping:
     """Integral force feedback in the `legs`: `gain` [1/s], and `corner` [Hz] of its high-pass filter of the given `order`.
 
-    `modes` are the plant's modes. For each of the `coordinates`, `left_at_rest` is the remaining share of the platform's static stiffness.
-    `softest` is the lowest remaining share below the first mode, at the frequency `softest_at` [Hz]. A leg keeps more than half its axial
-    stiffness below `kept_below` [Hz] (order 1: 0). `rate` [Hz] is the sampling rate, absent for analogue feedback. `reached` is the lowest
+    `modes` are the plant's modes. For each of the `coordinates`, `left_at_rest` is the fraction of the platform's static stiffness that
+    remains. `softest` is the lowest such fraction below half the first mode's frequency, at `softest_at` [Hz]. A leg keeps more than half
+    its axial stiffness below `kept_below` [Hz]. `rate` [Hz] is the sampling rate, absent for analogue feedback. `reached` is the lowest
     damping ratio of the modes with the largest residues, one per loop coordinate.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Remaining stiffness with IFF",
         "left_at_rest softest softest_at",
-        notes=("Share of the platform's static stiffness at rest, and the lowest below the first mode.",),
+        notes=("Fraction of the platform's stiffness that remains: at rest, and the lowest below half the first mode's frequency.",),
     )
 
     legs: tuple[str, ...]
@@ -91,10 +91,10 @@ class ActiveDamping:
 
 
 def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Plant:
-    """Close the inner loops; `given` has the link forces `<link>.fx`, which the result omits.
+    """Close the inner loops; `given` needs the link forces `<link>.fx` as outputs, which the result omits.
 
-    The strokes of the inner loops are added before the amplifiers, and are outputs `added.<actuator>` [m]. Inputs `sensed.<actuator>` [N]
-    are sensor signals in addition to the tension.
+    The strokes of the inner loops are added before the amplifiers; they are also outputs `added.<actuator>` [m]. Inputs `sensed.<actuator>`
+    [N] are noise added to the measured tension.
     """
     inner = [
         law.system(each.stiffness, Channel(f"tension.{each.actuator}", "N"), Channel(f"{ADDED}.{each.actuator}", "m")) for each in legs
@@ -133,7 +133,7 @@ def as_felt(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
 
 
 def tension_signs(given: Plant, legs: tuple[Leg, ...]) -> list[float]:
-    """Return the sign (1 or -1) of each link force in tension: a positive stroke reduces the tension."""
+    """Return the signs (1 or -1) that convert link forces to tensions: a positive stroke reduces the tension."""
     static = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs]).transfer(np.zeros(1))[0].real
     return [-float(np.sign(value)) for value in np.diag(static)]
 
@@ -158,8 +158,8 @@ def _modal_poles(given: Plant) -> Array:
 def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: float) -> float:
     """Compute the lowest gain [1/s] that gives the modes with the largest residues the damping ratio `wanted`.
 
-    There is one such mode per loop coordinate. If no gain reaches `wanted`, returns the gain of maximum damping. Raises `DesignError` if
-    the inner loops are unstable at every gain.
+    There is one such mode per loop coordinate. If no gain reaches `wanted`, returns the gain of maximum damping. A gain with unstable inner
+    loops is reduced. Raises `DesignError` if they are unstable at the lowest gain tried.
     """
     felt = felt_most(given)
     scale = 2.0 * np.pi * float(np.median(given.frequencies[felt]))
@@ -170,7 +170,7 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
     if not steady[0]:
         raise refuse(
             "damping",
-            f"the inner loops are unstable at a gain of {gains[0]:.3g} 1/s",
+            f"the inner loops are unstable even at a gain of {gains[0]:.3g} 1/s",
             "Use a shorter delay and faster amplifiers",
         )
     reached = np.flatnonzero(ratios >= wanted)
@@ -190,7 +190,7 @@ def _ratios(poles: Array) -> Array:
 
 
 def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tuple[Leg, ...], pairs: Pairs) -> ActiveDamping:
-    """Summarise the effect of the inner loops on modes and platform stiffness; `pairs` are the model's modes with and without stacks."""
+    """Summarise the effect of the inner loops on modes and platform stiffness; `pairs` are the modes with and without axial stiffness."""
     gains = law.gain * np.geomspace(1e-2, 1.0, 40)
     poles = follow_poles(given, law, legs, gains)[-1]
     modes = []
@@ -236,7 +236,7 @@ def _compliances(given: Plant, lines: Array) -> Array:
 
 
 def with_damped_modes(damped: Plant, found: ActiveDamping) -> Plant:
-    """Replace the plant's modal frequencies and damping ratios by the values under the inner loops, ascending."""
+    """Replace the plant's modal frequencies and damping ratios by the values with closed inner loops, ascending."""
     frequencies = np.array([each.damped_frequency for each in found.modes])
     ratios = np.clip([each.damped_ratio for each in found.modes], 1e-6, 1.0)
     order = np.argsort(frequencies, kind="stable")

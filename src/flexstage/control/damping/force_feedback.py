@@ -18,9 +18,9 @@ class ForceFeedback:
 
     k [N/m] is the axial stiffness, `gain` g [1/s], `corner` a / (2 pi) [Hz] of the high-pass filter (Preumont, Dufour & Malekian, J. Guid.
     Control Dyn. 15 (1992) 390; Preumont, Vibration Control of Active Structures, 2018, ch. 7 and 8). Without the filter the leg would have
-    no static stiffness, and would cancel every command. Order 1 keeps a / (a + g) of the static stiffness. Order 2 keeps the whole
-    stiffness below a^2 / g. `lag` [Hz] is the corner of the sensor's electronics, `delay` [s] a second-order Pade approximation. Raises
-    `DesignError` for invalid numbers.
+    no static stiffness, and would cancel every command. Order 1 keeps the fraction a / (a + g) of the static stiffness. Order 2 keeps all
+    of it, and more than half the stiffness below a^2 / g. `lag` [Hz] is the corner of the sensor's electronics. The `delay` [s] is a
+    second-order Pade approximation. Raises `DesignError` for invalid numbers.
     """
 
     gain: float
@@ -31,7 +31,7 @@ class ForceFeedback:
 
     def __post_init__(self) -> None:
         require(
-            Finding("force feedback", f"its {name} is {value:g}", "Give a positive number")
+            Finding("force feedback", f"its {name} is {value:g}", "Use a positive number")
             for name, value in (("gain", self.gain), ("corner", self.corner), ("lag", self.lag))
             if not value > 0.0
         )
@@ -72,7 +72,7 @@ class ForceFeedback:
 
     @property
     def kept_below(self) -> float:
-        """Frequency [Hz] below which a leg keeps half its axial stiffness, |G| < 1: a^2 / (2 pi g); 0 for order 1 with g > a."""
+        """Frequency [Hz] below which a leg keeps more than half its axial stiffness: a^2 / (2 pi g). Order 1: 0 if g > a, else infinite."""
         turning = 2.0 * np.pi * self.corner
         if self.order == 1:
             return 0.0 if self.gain > turning else np.inf
@@ -82,8 +82,9 @@ class ForceFeedback:
 def most_damping(frequency: float, zero: float) -> float:
     """Compute the maximum damping of a mode by integral force feedback, (w - z) / (2 z).
 
-    w is its frequency, z its frequency without the actuators' axial stiffness, for one leg or decoupled legs with one gain (Preumont 2018,
-    ch. 7: s^3 + g s^2 + w^2 s + g z^2 = 0, at g = w (w/z)^(1/2) with the real root -(w z)^(1/2)). Above 1 the mode can be overdamped.
+    w is the mode's frequency, z its frequency without the actuators' axial stiffness. Valid for one leg, or decoupled legs with equal gains
+    (Preumont 2018, ch. 7: s^3 + g s^2 + w^2 s + g z^2 = 0, at g = w (w/z)^(1/2) with the real root -(w z)^(1/2)). Above 1 the mode can be
+    overdamped.
 
     >>> most_damping(110.0, 100.0)
     0.05

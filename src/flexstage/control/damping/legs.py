@@ -36,10 +36,11 @@ class Leg:
 
 
 def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (), asked: str = "damping") -> tuple[Leg, ...]:
-    """Return the legs of all actuators that impose a stroke along their link, with strain `gauges` or a force sensor per stack.
+    """Return the legs of all actuators that impose a stroke along their link, with strain `gauges`, or a force sensor at each stack.
 
-    A strain gauge on a stack also reads the free stroke, which is subtracted as commanded. Elsewhere in the leg it reads only tension.
-    Raises `DesignError`, located at `asked`, for stages without stacks, models without link forces, and gauges outside the legs.
+    With `gauges`, returns only the legs that have a gauge. A gauge on a stack also reads the free stroke: the commanded stroke is
+    subtracted. A gauge elsewhere in the leg reads only the tension. Raises `DesignError`, located at `asked`, for stages without stacks,
+    models without link forces, and gauges outside the legs.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -142,11 +143,11 @@ def _findings(assembly: Assembly, model: LinearModel, outputs: set[str], asked: 
     untold = [name for name, link in assembly.strokes.items() if link not in model.stiffness or f"{link}.fx" not in outputs]
     if untold:
         what = f"the model provides no forces in the legs of {', '.join(untold)}"
-        yield Finding(asked, what, 'Use model = "lumped", nominal')
+        yield Finding(asked, what, 'Use model = "lumped", at the nominal position')
     for name, link in assembly.strokes.items():
         along = np.asarray(assembly.actuator(name).free_deformation)
         if link in model.stiffness and np.any(np.abs(along[..., 1:]) > 0.0):
-            yield Finding(asked, f"{name} moves across its link, not along it", "the command supports only strokes along the link")
+            yield Finding(asked, f"{name} moves across its link, not along it", "Use an actuator with its stroke along the link")
 
 
 def _gauge_findings(gauges: tuple[str, ...], placed: Mapping[str, str]) -> Iterator[Finding]:

@@ -17,7 +17,7 @@ class SampledLegs:
 
     The law is G = g s / (s + a)^2 (`order` 1: g / (s + a)), discretised by Tustin's rule. A low-pass filter a / (s + a) acts on the
     tensions times `gains` g / (a k) (m,) [m/N]. For order 2, a second low-pass filter of this output is subtracted. This form is accurate
-    in single precision at slow poles. `share` is a step / (2 + a step).
+    in single precision even with slow poles. `share` is a step / (2 + a step).
     """
 
     actuators: tuple[str, ...]
@@ -28,7 +28,7 @@ class SampledLegs:
     turns: int
 
     def strokes(self, tensions: Array) -> Array:
-        """Compute the strokes (n, m) [m] added by tensions (n, m) [N], from zero state.
+        """Compute the strokes (n, m) [m] of the force feedback for tensions (n, m) [N], from zero state.
 
         >>> held = SampledLegs(("B",), np.array([2e-8]), 1e-2, 1, 1e-5, 10)
         >>> held.strokes(np.full((2000, 1), 50.0))[-1].round(12).tolist()

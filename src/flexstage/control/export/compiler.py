@@ -17,7 +17,7 @@ _MADE, _SECONDS = "made.so", 300.0
 
 
 def find_compiler() -> tuple[str, ...] | None:
-    """Find the command of the C compiler: the environment's CC (`ccache gcc`), else `cc`, `gcc` or `clang`; None without any.
+    """Find the command of the C compiler: the environment variable CC (`ccache gcc`), else `cc`, `gcc` or `clang`; None if missing.
 
     >>> found = find_compiler()
     >>> found is None or len(found) > 0
@@ -31,9 +31,9 @@ def find_compiler() -> tuple[str, ...] | None:
 
 
 def compile_source(what: str, sources: Mapping[str, str], flags: tuple[str, ...]) -> bytes:
-    """Compile a shared library of `sources` (text by file name) in an empty folder, so that it contains no paths.
+    """Compile a shared library of `sources` (text by file name) in an empty folder, so that it contains no file paths.
 
-    Raises `DesignError` without a compiler, or if it rejects the sources.
+    Raises `DesignError` without a compiler, or for sources that do not compile.
 
     >>> sources = {"one.c": "int one(void); int one(void) { return 1; }"}
     >>> len(compile_source("an example", sources, ("-fPIC", "-shared"))) > 1000 if find_compiler() else True
@@ -42,7 +42,7 @@ def compile_source(what: str, sources: Mapping[str, str], flags: tuple[str, ...]
     found = find_compiler()
     if found is None:
         looked = f"CC = {os.environ['CC']}" if os.environ.get("CC") else ", ".join(COMPILERS)
-        raise refuse("compiler", f"{what} needs a C compiler (found none of {looked})", "Install one, or set CC to one")
+        raise refuse("compiler", f"{what} needs a C compiler (found none of {looked})", "Install a compiler, or set CC to its command")
     with temporary_folder() as folder:
         for name, text in sources.items():
             Path(folder, name).write_text(text, encoding="utf-8")
@@ -55,4 +55,4 @@ def compile_source(what: str, sources: Mapping[str, str], flags: tuple[str, ...]
                 return Path(folder, _MADE).read_bytes()
         except (OSError, subprocess.SubprocessError) as error:
             said = str(error)
-    raise refuse("compiler", f"{found[0]} refuses {what}: {said}", "Set CC to another compiler, and report this")
+    raise refuse("compiler", f"{found[0]} cannot compile {what}: {said}", "Set CC to another compiler, and report this")

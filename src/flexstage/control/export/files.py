@@ -36,43 +36,43 @@ ENDINGS = {
     ".mat": "the plant for MATLAB",
     ".c": "the controller in C",
     ".fmu": "the controller as functional mock-up unit",
-    ".csv": "the commanded path",
+    ".csv": "the commanded trajectory",
 }
-"""Export by the ending of the file name."""
+"""Content of an export by the ending of its file name."""
 WHOLE = ".loop.fmu"
-"""File ending of the whole loop as functional mock-up unit: controller, amplifiers, stacks, stage and gauges."""
+"""File name ending of the whole loop as functional mock-up unit: controller, amplifiers, stacks, stage and gauges."""
 
 
 def export_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
-    """Check the name of an export for an unknown ending or a reserved function name; returns the findings.
+    """Return findings for the file name of an export: an unknown ending, or a reserved function name.
 
     >>> print(*export_findings("math.c"))
-    math.c: its header math.h would replace a system header, or "math" is a reserved function name. Call it stage_math.c.
+    math.c: its header math.h would replace a system header, or "math" is a reserved function name. Use stage_math.c.
     """
     place = Path(path)
     name = identifier(place.stem)
     if place.suffix not in ENDINGS:
-        known = ", ".join(f"{ending} ({what})" for ending, what in {**ENDINGS, WHOLE: "the whole loop as one"}.items())
-        yield Finding(os.fspath(path), f'unknown ending "{place.suffix}" of an export', f"End the name in {known}")
+        known = ", ".join(f"{ending} ({what})" for ending, what in {**ENDINGS, WHOLE: "the whole loop as one unit"}.items())
+        yield Finding(os.fspath(path), f'unknown ending "{place.suffix}" of an export', f"Use one of {known}")
     elif place.suffix == ".c" and name != place.stem:
         what = f'its header {place.stem}.h would replace a system header, or "{place.stem}" is a reserved function name'
-        yield Finding(os.fspath(path), what, f"Call it {name}.c")
+        yield Finding(os.fspath(path), what, f"Use {name}.c")
 
 
 def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
-    """Check the name of a controller for hardware; returns the findings.
+    """Return findings for the file name of a controller for hardware.
 
     >>> print(*hardware_findings("plant.mat"))
-    plant.mat: its name does not end in .c. Call it plant.c.
+    plant.mat: the file name does not end in .c. Use plant.c.
     """
     if Path(path).suffix != ".c":
-        yield Finding(os.fspath(path), "its name does not end in .c", f"Call it {identifier(Path(path).stem)}.c")
+        yield Finding(os.fspath(path), "the file name does not end in .c", f"Use {identifier(Path(path).stem)}.c")
     else:
         yield from export_findings(path)
 
 
 def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "", legs: SampledLegs | None = None) -> dict[Path, str]:
-    """Generate the controller of a machine as C99: texts of `controller.c` and its header, by file; the file's name is the prefix.
+    """Generate the controller of a machine as C99: texts by file of `controller.c` and its header. The stem is the prefix of C names.
 
     With `legs` the code includes the force feedback of these legs. Raises `DesignError` for a name without `.c` or a reserved name.
 
@@ -104,7 +104,7 @@ def hardware_files(
     about: str = "",
     legs: SampledLegs | None = None,
 ) -> dict[Path, str]:
-    """Generate a controller for hardware (see `hardware_code`): texts of `controller.c`, its header and `controller_test.c`, by file.
+    """Generate a controller for hardware (see `hardware_code`): texts by file of `controller.c`, its header and `controller_test.c`.
 
     The test simulates the loop from zero state, without noise, for the first 300 samples of a `reference` (n, f) [m, rad]. Raises
     `DesignError` for a name without `.c` or a reserved name.
@@ -169,7 +169,7 @@ def write_plant(path: str | os.PathLike[str], given: Plant) -> Path:
 
 
 def plant_file(given: Plant) -> bytes:
-    """Generate a MATLAB file (v5) of a plant: state space with names and units, continuous and between hold and sampler.
+    """Generate a MATLAB file (v5) of a plant: state space with names and units, both continuous and from hold to sampler.
 
     Structures `continuous` and `sampled` (for a sampled loop) contain A, B, C, D, `step` [s] (0: continuous), inputs, outputs, their units
     and `states`. The file also contains the modes' frequencies [Hz] and damping ratios, simplifications, and provenance.
@@ -197,7 +197,7 @@ def plant_file(given: Plant) -> bytes:
 
 
 def path_file(commanded: Array, step: float, coordinates: tuple[Channel, ...]) -> str:
-    """Generate a CSV file of a path (n, f) every `step` [s], a trajectory for set-ups and controllers: times, then coordinates with units.
+    """Generate a CSV file of a trajectory (n, f), sampled every `step` [s]: times, then coordinates with units.
 
     >>> path_file(np.array([[0.0], [1e-6]]), 1e-4, (Channel("x", "m"),)).splitlines()
     ['time [s],x [m]', '0,0', '0.0001,1e-06']
@@ -229,5 +229,5 @@ def _cells(texts: Any) -> Any:
 def _suffix_findings(path: str | os.PathLike[str], suffix: str) -> Path:
     place = Path(path)
     if place.suffix != suffix:
-        raise refuse(os.fspath(path), f"its name does not end in {suffix}", f"Call it {identifier(place.stem)}{suffix}")
+        raise refuse(os.fspath(path), f"the file name does not end in {suffix}", f"Use {identifier(place.stem)}{suffix}")
     return place

@@ -12,7 +12,7 @@ from flexstage.base.finding import Finding
 from flexstage.base.number import Array
 
 MAJOR = 0.8
-"""Branches over this share of the range or more belong to major loops."""
+"""Branches of at least this fraction of the range belong to major loops."""
 _LEAST = 0.1
 _BINS = 20
 _FEWEST = 40
@@ -43,7 +43,7 @@ class Branch:
 
 
 def branches_of(volts: Array, least: float = _LEAST) -> list[Branch]:
-    """Split a record (k,) at its turning points into branches; turns smaller than `least` of the range count as noise.
+    """Split a record (k,) at its turning points into branches; reversals smaller than the fraction `least` of the range count as noise.
 
     >>> [(each.first, each.last) for each in branches_of(np.array([0.0, 5.0, 10.0, 9.9, 10.0, 4.0, 0.0, 8.0]))]
     [(0.0, 10.0), (10.0, 0.0), (0.0, 8.0)]
@@ -74,10 +74,10 @@ def _extremes(volts: Array) -> list[int]:
 
 
 def record_findings(volts: Array, strokes: Array) -> list[Finding]:
-    """Check a record (k,) of voltage [V] and stroke [m] for the hysteresis of a stack; returns the findings of the first failed check.
+    """Check a record (k,) of voltage [V] and stroke [m] of a stack for hysteresis. Returns the findings of the first failed check.
 
     >>> record_findings(np.arange(100.0), 1e-7 * np.arange(100.0))[0].what
-    'the voltage runs from 0 V to 99 V without reversal: the record cannot show hysteresis'
+    'the voltage changes from 0 V to 99 V without reversal: the record cannot show hysteresis'
     """
     for check in (_channel_findings, _column_findings, _branch_findings, _loop_findings):
         found = list(check(volts, strokes))
@@ -88,43 +88,43 @@ def record_findings(volts: Array, strokes: Array) -> list[Finding]:
 
 def _channel_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     if volts.ndim != 1 or volts.shape != strokes.shape:
-        yield Finding("record", f"different lengths (got volts {volts.shape}, strokes {strokes.shape})", "Use one of each per sample")
+        yield Finding("record", f"different lengths (got volts {volts.shape}, strokes {strokes.shape})", "Use one of each for every sample")
         return
     if len(volts) < _FEWEST:
-        yield Finding("record", f"too few samples (got {len(volts)}, expected at least {_FEWEST})", "Record more of them")
+        yield Finding("record", f"too few samples (got {len(volts)}, expected at least {_FEWEST})", "Record more samples")
     for name, values in (("volts", volts), ("stroke", strokes)):
         if not np.all(np.isfinite(values)):
             place = int(np.argmin(np.isfinite(values)))
-            yield Finding(name, f"sample {place} is {values[place]}", "Truncate the record there, or correct the channel")
+            yield Finding(name, f"sample {place} is {values[place]}", "Truncate the record before this sample, or correct the channel")
         elif np.ptp(values) <= 1e-9 * np.max(np.abs(values)):
             yield Finding(
-                name, f"all samples equal {values[0]:g}: the channel is dead", "Check its cable and its range, or select another channel"
+                name, f"all samples equal {values[0]:g}: the channel has no signal", "Check its cable and range, or select another channel"
             )
 
 
 def _column_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     if np.ptp(strokes) > _LARGEST_STROKE:
-        what = f"the stroke spans {np.ptp(strokes):g} m, and the volts {np.ptp(volts):g} V"
+        what = f"the stroke changes by {np.ptp(strokes):g} m, the voltage by {np.ptp(volts):g} V"
         yield Finding("record", what, "Check the units of both channels, and whether they are exchanged")
 
 
 def _branch_findings(volts: Array, _: Array) -> Iterator[Finding]:
     branches = branches_of(volts)
     if len(branches) < 2:
-        what = f"the voltage runs from {volts[0]:g} V to {volts[-1]:g} V without reversal: the record cannot show hysteresis"
+        what = f"the voltage changes from {volts[0]:g} V to {volts[-1]:g} V without reversal: the record cannot show hysteresis"
         yield Finding("volts", what, "Record two cycles over the whole range, then smaller inner loops")
         return
     counts = np.array([branch.stop - branch.start + 1 for branch in branches])
     if np.any(counts < _FEWEST_A_BRANCH):
         worst = int(np.argmin(counts))
         what = f"{np.sum(counts < _FEWEST_A_BRANCH)} of {len(branches)} branches have fewer than {_FEWEST_A_BRANCH} samples"
-        which = f"branch {worst + 1}, {branches[worst].first:g} V to {branches[worst].last:g} V, has {counts[worst]}"
-        yield Finding("volts", f"{what}: {which}", "Record slower, or sample faster")
+        which = f"branch {worst + 1} from {branches[worst].first:g} V to {branches[worst].last:g} V has {counts[worst]}"
+        yield Finding("volts", f"{what}: {which}", "Record more slowly, or sample faster")
     major = [branch for branch in branches[1:] if branch.swing >= MAJOR * np.ptp(volts)]
-    for rises, word in ((True, "up"), (False, "down")):
+    for rises, word in ((True, "rising"), (False, "falling")):
         if not any(branch.rises == rises for branch in major):
-            what = f"no branch after the first goes {word} over {MAJOR:.0%} of the range ({np.min(volts):g} V to {np.max(volts):g} V)"
-            yield Finding("volts", what, "Record at least one and a half cycles over the whole range: the first branch depends on the past")
+            what = f"no {word} branch after the first covers at least {MAJOR:.0%} of the range, {np.min(volts):g} V to {np.max(volts):g} V"
+            yield Finding("volts", what, "Record at least 1.5 cycles over the whole range: the first branch depends on the history")
 
 
 def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
@@ -134,15 +134,15 @@ def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     risen = np.mean([np.sign(branch.last - branch.first) * (strokes[branch.stop] - strokes[branch.start]) for branch in major])
     if risen < 0.0:
         what = f"the stroke falls by {-1e6 * risen:.4g} um during a rising branch"
-        yield Finding("stroke", what, "Change its sign: a stack extends with voltage")
+        yield Finding("stroke", what, "Change the sign of the stroke: a stack extends with rising voltage")
         return
     up, down = (
         np.nanmean([mean for branch, mean in zip(major, means, strict=True) if branch.rises == way], axis=0) for way in (True, False)
     )
     ahead = float(np.mean((up - down)[1:-1])) / size
     if ahead > _AHEAD:
-        what = f"at equal voltage the ascending stroke exceeds the descending stroke by {ahead:.1%} of its range: it leads the voltage"
-        yield Finding("record", what, "Check whether the channels are exchanged, or one is delayed: a stack lags")
+        what = f"at equal voltage the stroke is {ahead:.1%} of its range larger on rising than on falling branches: it leads the voltage"
+        yield Finding("record", what, "Check for exchanged channels, or a delayed channel: the stroke of a stack lags")
     drops = [float(np.max(np.maximum.accumulate(mean) - mean)) for mean in means]
     worst = int(np.argmax(drops))
     if drops[worst] > _FALL * size:
@@ -166,6 +166,6 @@ def _fall(branch: Branch, mean: Array, volts: Array, size: float) -> Finding:
     peak = int(np.argmax(mean[: trough + 1]))
     drop = highest[trough] - mean[trough]
     places = np.min(volts) + np.ptp(volts) * (np.array([peak, trough]) + 0.5) / _BINS
-    what = f"on the branch from {branch.first:g} V to {branch.last:g} V it is {1e6 * drop:.3g} um less at {places[1]:g} V"
+    what = f"on the branch from {branch.first:g} V to {branch.last:g} V the stroke is {1e6 * drop:.3g} um less at {places[1]:g} V"
     much = f"than at {places[0]:g} V ({drop / size:.1%} of its range)"
     return Finding("stroke", f"{what} {much}: a loop that is not monotonic has no inverse", "Look for slip, a resonance or a bad contact")

@@ -23,8 +23,8 @@ from flexstage.models.linear.model import Channel
 class LogCreep(CheckedFields):
     """Logarithmic creep w(t) = w_0 (1 + gamma log10(t/t_0)) after a step at t = 0: `rate` gamma per decade, `reference` t_0 [s].
 
-    w_0 is the stroke at t_0. (Jung and Gweon, Rev. Sci. Instrum. 71, 2000, 3436-3440.) Valid from about t_0; it has no limit for short or
-    long times.
+    w_0 is the stroke at t_0. (Jung and Gweon, Rev. Sci. Instrum. 71, 2000, 3436-3440.) The law is valid from about t_0. It is unbounded for
+    very short and very long times.
     """
 
     rate: Annotated[float, Heading("creep per decade", digits=3, unit="%")]
@@ -33,8 +33,8 @@ class LogCreep(CheckedFields):
     def __post_init__(self) -> None:
         super().__post_init__()
         if not (0.0 < self.reference < np.inf and np.isfinite(self.rate)):
-            what = f"no creep law (got rate {self.rate:g} per decade from {self.reference:g} s)"
-            raise refuse("creep", what, "Use a finite rate and a time above 0")
+            what = f"invalid creep law (got rate {self.rate:g} per decade, reference time {self.reference:g} s)"
+            raise refuse("creep", what, "Use a finite rate and a positive reference time")
 
     def at(self, times: Array) -> Array:
         """Compute the relative stroke w/w_0 at `times` > 0 [s].
@@ -50,7 +50,8 @@ class Creep:
     """Creep operator y = g_0 u + sum_i g_i s_i, tau_i ds_i/dt + s_i = u: `instant` g_0 (axes,), `gains` g_i, `times` tau_i [s] (axes, m).
 
     It acts between hysteresis and stage (Hammerstein model). With u constant over a sample T the exact state update is s_i <- s_i + (1 -
-    e^{-T/tau_i}) (u - s_i), after y is computed. One axis may have shape (m,). Raises `DesignError` for times that are not positive.
+    e^{-T/tau_i}) (u - s_i), after y is computed. For a single axis the shape (m,) is also accepted. Raises `DesignError` for time constants
+    that are not positive.
     """
 
     instant: Array
@@ -93,7 +94,7 @@ class Creep:
 
 @dataclass(frozen=True, eq=False)
 class CreepFit:
-    """Exponential fit of logarithmic creep: the `creep`, its `span` of times [s], and its largest relative `error` there."""
+    """Exponential fit of logarithmic creep: the `creep`, the fitted `span` of times [s], and the largest relative `error` in it."""
 
     creep: Creep
     span: tuple[float, float]
@@ -104,8 +105,8 @@ class CreepFit:
 def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 2) -> CreepFit:
     """Fit a sum of exponentials to a logarithmic law over a span of times [s], with `per_decade` terms per decade.
 
-    Times tau_i are spaced evenly in log t over the span, and half a decade beyond both ends. Gains of one sign follow from least squares at
-    times with the same spacing. Raises `DesignError` for an empty span.
+    The time constants tau_i are spaced evenly in log t, over the span and half a decade beyond both ends. The gains, all of one sign,
+    follow from least squares at times that are also spaced evenly in log t. Raises `DesignError` for an empty span.
 
     >>> fit = exponentials(LogCreep(0.02, 0.1), (0.01, 100.0))
     >>> bool(fit.error < 1e-4), fit.creep.step_response(np.array([10.0])).round(3).tolist()
@@ -116,7 +117,7 @@ def exponentials(law: LogCreep, span: tuple[float, float], *, per_decade: int = 
         raise refuse(
             "creep",
             f"invalid span or number of terms (got {low:g} s to {high:g} s, {per_decade} terms per decade)",
-            "Use 0 < low < high, and one term or more",
+            "Use 0 < low < high, and at least one term per decade",
         )
     decades = np.log10(high / low)
     spread = np.logspace(np.log10(low) - 0.5, np.log10(high) + 0.5, 1 + int(np.ceil(per_decade * (decades + 1.0))))
@@ -144,4 +145,4 @@ def _findings(creep: Creep) -> Iterator[Finding]:
         shapes = f"instant {creep.instant.shape}, gains {creep.gains.shape}, times {creep.times.shape}"
         yield Finding("creep", f"shapes do not match (got {shapes})", "Use (axes,), (axes, m) and (axes, m)")
     elif not np.all(creep.times > 0.0) or not all(np.all(np.isfinite(each)) for each in (creep.instant, creep.gains, creep.times)):
-        yield Finding("creep", "a time is not above 0, or a number is not finite", "Correct the numbers")
+        yield Finding("creep", "a time constant is not positive, or a value is not finite", "Correct the values")

@@ -35,9 +35,9 @@ class IdentifiedCreep:
 def identify_creep(times: Array, volts: Array, strokes: Array, *, reference: float = 0.1) -> IdentifiedCreep:
     """Fit w(t) = w_0 (1 + gamma log10(t/t_0)) to the stroke after a voltage step; t_0 is `reference` [s].
 
-    `times` [s], `volts` [V] and `strokes` [m] are (k,); the stack is in equilibrium before the step. The fit is by least squares over means
-    of equal parts of log t, so that every decade has equal weight. Raises `DesignError` if the voltage is not a single step, the record
-    after t_0 is shorter than a decade, or the stroke does not follow the logarithm.
+    `times` [s], `volts` [V] and `strokes` [m] are (k,); the stack is in equilibrium before the step. The least-squares fit uses means over
+    equal intervals of log t, so that every decade has equal weight. Raises `DesignError` if the voltage is not a single step, if the record
+    after t_0 is shorter than a decade, or if the stroke does not follow the logarithm.
 
     >>> times = np.arange(0.0, 100.0, 0.05)
     >>> after = np.maximum(times - 1.0, 0.01)
@@ -70,13 +70,13 @@ def _step(volts: Array) -> tuple[int, int]:
 def _step_findings(times: Array, volts: Array, strokes: Array) -> Iterator[Finding]:
     if not (times.shape == volts.shape == strokes.shape and times.ndim == 1 and len(times) > _FEWEST):
         shapes = f"different lengths (got times {times.shape}, volts {volts.shape}, strokes {strokes.shape})"
-        yield Finding("record", f"it has {shapes}", f"Use one of each per sample, more than {_FEWEST}")
+        yield Finding("record", shapes, f"Use one of each for every sample, more than {_FEWEST} samples")
         return
     if not all(np.all(np.isfinite(each)) for each in (times, volts, strokes)):
-        yield Finding("record", "a sample is not finite", "Truncate the record there")
+        yield Finding("record", "a sample is not finite", "Truncate the record before this sample")
         return
     if np.ptp(volts) == 0.0:
-        yield Finding("volts", f"no voltage step (got {volts[0]:g} V throughout)", "Record the stroke after a voltage step")
+        yield Finding("volts", f"no voltage step (got {volts[0]:g} V throughout)", "Use a record of the stroke after a voltage step")
         return
     places = _step(volts)
     first, last = (float(times[place]) for place in places)
@@ -84,13 +84,13 @@ def _step_findings(times: Array, volts: Array, strokes: Array) -> Iterator[Findi
         what = f"the voltage changes from {first:g} s to {last:g} s, over more than {_STILL:.0%} of the record"
         yield Finding("volts", what, "Record one quick step, and keep the voltage constant after it")
     if np.any(np.diff(times) <= 0.0):
-        yield Finding("times", "they do not ascend", "Use the times of the samples")
+        yield Finding("times", "times must ascend", "Use the times of the samples")
 
 
 def _span_findings(after: Array, reference: float) -> Iterator[Finding]:
     if not reference > 0.0 or after[-1] < 10.0 * reference or np.sum(after >= reference) < _FEWEST:
-        what = f"too short after the step (got {after[-1]:g} s, {np.sum(after >= reference)} samples from {reference:g} s)"
-        yield Finding("record", what, f"Record for {10.0 * reference:g} s or more after the step, or specify an earlier reference time")
+        what = f"too short after the step (got {after[-1]:g} s, {np.sum(after >= reference)} samples after {reference:g} s)"
+        yield Finding("record", what, f"Record at least {10.0 * reference:g} s after the step, or use an earlier reference time")
 
 
 def _means(decades: Array, risen: Array) -> tuple[Array, Array]:
@@ -105,7 +105,7 @@ def _means(decades: Array, risen: Array) -> tuple[Array, Array]:
 
 def _law_findings(stroke: float, slope: float, rms: float, decades: float) -> Iterator[Finding]:
     if stroke == 0.0 or not np.isfinite(slope / stroke):
-        yield Finding("stroke", "no response to the step", "Check that voltage and stroke belong together")
+        yield Finding("stroke", "no response to the step", "Check that voltage and stroke belong to the same stack")
     elif rms > _SCATTER * abs(slope) * decades and rms > 1e-4 * abs(stroke):
-        what = f"it scatters by {rms:.3g} m rms about the logarithm, with creep of {slope * decades:.3g} m"
+        what = f"the rms deviation from the logarithmic law is {rms:.3g} m, for a creep of {slope * decades:.3g} m"
         yield Finding("stroke", what, "Record longer, or with less drift and noise")

@@ -1,4 +1,4 @@
-"""Example test of a stack, simulated with a Bouc-Wen plant, so that no play model is exact."""
+"""Example test of a stack. It is simulated with a Bouc-Wen model, which no play model reproduces exactly."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def sweep_of(turns: tuple[float, ...], samples: int) -> Array:
 
 
 def example_record() -> Record:
-    """Simulate a record of loops: stack of 150 um over 1000 V, hysteresis width 15 % of the stroke, 10 nm of gauge noise.
+    """Simulate a record of hysteresis loops: stroke 150 um at 1000 V, loop width 15 % of the stroke, gauge noise 10 nm.
 
     >>> example_record().length
     901
@@ -54,7 +54,7 @@ def example_step() -> Record:
 
 @cache
 def example_test() -> StackTest:
-    """Return the test of both records, identified once.
+    """Return the test identified from both records; it is computed once.
 
     >>> test = example_test()
     >>> round(test.hysteresis.width, 2), round(test.creep.law.rate, 3)

@@ -1,4 +1,4 @@
-"""Least-squares fit of Prandtl-Ishlinskii models: play weights, and slopes of the envelope before them."""
+"""Least-squares fit of Prandtl-Ishlinskii models: play weights, and slopes of the envelope before the plays."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Form:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Fitted model: slopes (m-1,) of the envelope (mean 1 over the range, for the scale of thresholds), weights (n,) [m/V], offset [m]."""
+    """Fitted model: slopes (m-1,) of the envelope (mean 1, which sets the scale of thresholds), weights (n,) [m/V], offset [m]."""
 
     form: Form
     slopes: Array
@@ -45,7 +45,8 @@ class Fit:
     def model(self) -> PrandtlIshlinskii:
         """Return the model with its envelope shifted to pass through 0, the unloaded state.
 
-        A shift of the input shifts the play outputs equally. The strokes therefore do not change once the initial state has no influence.
+        A shift of the input shifts the play outputs equally. The strokes are therefore unchanged, except while they depend on the initial
+        state.
         """
         knots = self.form.knots
         values = knots[0] + np.concatenate([[0.0], np.cumsum(self.slopes * np.diff(knots))])
@@ -64,7 +65,7 @@ def _extrapolate(knots: Array, values: Array) -> tuple[Array, Array]:
 
 
 def form_of(volts: tuple[float, float], plays: int, pieces: int, *, reach: float = 0.5) -> Form:
-    """Choose `plays` thresholds, even from 0 to below `reach` of the range, and an envelope of `pieces` even pieces.
+    """Choose `plays` thresholds, evenly spaced from 0 to below `reach` of the range, and an envelope of `pieces` equal pieces.
 
     >>> form_of((0.0, 1000.0), 4, 1).thresholds.tolist()
     [0.0, 125.0, 250.0, 375.0]
@@ -74,7 +75,7 @@ def form_of(volts: tuple[float, float], plays: int, pieces: int, *, reach: float
 
 
 def play_outputs(inputs: Array, thresholds: Array) -> Array:
-    """Compute play outputs (k, n) from the first of the inputs (k,).
+    """Compute play outputs (k, n) for inputs (k,). All plays start at the first input.
 
     >>> play_outputs(np.array([0.0, 3.0, 2.0]), np.array([0.0, 1.0])).tolist()
     [[0.0, 0.0], [3.0, 2.0], [2.0, 2.0]]
@@ -92,7 +93,7 @@ def play_outputs(inputs: Array, thresholds: Array) -> Array:
 
 
 def known_from(inputs: Array, thresholds: Array) -> int:
-    """Find the first sample at which no play depends on its initial state: the input has swung by twice the largest threshold.
+    """Find the first sample at which no play depends on its initial state: the input range is then twice the largest threshold.
 
     >>> known_from(np.array([0.0, 1.0, 5.0, 3.0, 0.0]), np.array([0.0, 2.0]))
     2
@@ -102,9 +103,9 @@ def known_from(inputs: Array, thresholds: Array) -> int:
 
 
 def fit_form(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: int = _ROUNDS) -> Fit:
-    """Fit weights and envelope to some rows of a record by least squares; weights are 0 or more, slopes positive.
+    """Fit weights (0 or more) and envelope slopes (positive) to the samples `rows` of a record by least squares.
 
-    Omits rows at which plays still depend on their initial state (`known_from`).
+    Omits samples at which plays still depend on their initial state (`known_from`).
 
     With a straight envelope this is one linear problem. Otherwise the fit alternates between weights (envelope fixed) and slopes (weights
     fixed), at most `rounds` times. Both problems are linear: a sticking play keeps the envelope's value at its last motion, which is linear
@@ -174,7 +175,7 @@ def _bounded_least_squares(matrix: Array, target: Array, lower: Array) -> Array:
 def drift_of(plays: Array, strokes: Array) -> float:
     """Estimate drift [m] over a record: the part of the strokes (k,) that is linear in time and not explained by plays (k, n).
 
-    Returns zero if the drift is not significant: if omitting it increases the rms error by less than a fifth.
+    Returns zero for an insignificant drift: the rms error without it is less than a fifth higher.
 
     >>> plays = np.array([[0.0], [1.0], [0.0], [1.0]])
     >>> round(drift_of(plays, np.array([0.0, 1.01, 0.02, 1.03])), 6)

@@ -33,10 +33,10 @@ def identify_hysteresis(volts: Array, strokes: Array, *, limits: Range | None = 
 
     Thresholds are evenly spaced up to 0.4 or 0.5 of the range. The envelope before the plays has pieces of equal width. Weights of 0 or
     more and slopes above 0 come from least squares (`fit_form`), so that an inverse exists. Cross-validation selects the number of plays
-    and pieces: the smallest model within 5 % of the best. The larger threshold range, with long memory, is selected only if it reduces the
-    error by a fifth. Samples at which plays still depend on their initial state are used only as history. The model is rate independent:
-    record slowly compared with the stage's first mode, and fast compared with creep. `limits` are the actuator's voltages, for the recorded
-    share of the range.
+    and pieces: the smallest model within 5 % of the best. Thresholds up to 0.5 (longer memory) are selected only if they reduce the error
+    by a fifth. Samples at which plays still depend on their initial state are used only as history. The model is rate independent: record
+    slowly compared with the stage's first mode, and fast compared with creep. `limits` are the actuator's voltage limits: a record of a
+    smaller range causes a warning.
 
     Raises `DesignError` for a record without valid hysteresis (see `record_findings`), drift beyond 2 %, and errors beyond 10 %.
 
@@ -153,22 +153,22 @@ def _assess(search: _Search, best: Trial, limits: Range | None) -> IdentifiedHys
 def _warnings(search: _Search, rms: float, inner: int, limits: Range | None) -> Iterator[Finding]:
     low, high = search.range
     if not inner:
-        what = "no inner loops: behaviour after reversals within the range is extrapolated from the major loop"
+        what = "no inner loops: the response after reversals within the range is extrapolated from the major loop"
         yield Finding("record", what, "Also record loops within the range")
     if rms > _LARGE:
-        what = f"the error, {rms:.1%} rms of the stroke, is large: the record may be too fast, or the stack rate dependent"
-        yield Finding("record", what, "Record slower, and compare")
+        what = f"large rms error, {rms:.1%} of the stroke: the record may be too fast, or the hysteresis rate dependent"
+        yield Finding("record", what, "Record more slowly, and compare the errors")
     if limits and high - low < _COVERED * (limits[1] - limits[0]):
         part = (high - low) / (limits[1] - limits[0])
-        what = f"it covers {low:g} V to {high:g} V, {part:.0%} of the actuator's range: the model is extrapolated linearly beyond"
+        what = f"{low:g} V to {high:g} V is only {part:.0%} of the actuator's range: outside, the model is extrapolated linearly"
         yield Finding("record", what, "Record the whole range, or operate within the recorded range")
 
 
 def _result_findings(found: IdentifiedHysteresis) -> Iterator[Finding]:
     if abs(found.drift) > _DRIFT:
         what = f"the stroke drifts by {found.drift:.1%} of its range ({1e6 * found.drift * found.stroke:.3g} um) over the record"
-        yield Finding("stroke", what, "Let the stage settle before recording, record faster than it creeps, or subtract the drift")
+        yield Finding("stroke", what, "Let the stage settle before the test, record faster to reduce creep, or subtract the drift")
     elif found.rms > _POOR:
-        what = f"the best model has an error of {found.rms:.1%} rms of the stroke: the hysteresis is rate dependent"
-        yield Finding("record", what, "Record slower, and check that voltage and stroke belong together")
+        what = f"the rms error of the best model is {found.rms:.1%} of the stroke: the hysteresis is probably rate dependent"
+        yield Finding("record", what, "Record more slowly, and check that voltage and stroke belong to the same stack")
     yield from inverse_findings(found.model)

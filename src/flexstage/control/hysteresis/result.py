@@ -1,4 +1,4 @@
-"""Identified hysteresis: the model, its accuracy, and the recorded share of the actuator's range."""
+"""Identified hysteresis: the model, its accuracy, and the samples used."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ SMALL_ERROR = Graded(0.02)
 
 @dataclass(frozen=True)
 class Trial:
-    """Model size tried: `plays`, `pieces` of the envelope, `reach` (largest threshold relative to the range), and its error.
+    """Model size tried: numbers of `plays` and envelope `pieces`, `reach` (largest threshold over the range), and error.
 
-    `error` is the cross-validation error relative to the stroke. Each part of the record is excluded from one fit, and the rms error is
-    computed over these parts.
+    `error` is the cross-validation error relative to the stroke. Each of several parts of the record is excluded from one fit; the rms
+    error is computed over the excluded parts.
     """
 
     plays: int
@@ -52,8 +52,8 @@ class IdentifiedHysteresis(InNotebook):
     """Hysteresis model identified from a record, with its accuracy.
 
     Errors and the width are relative to `stroke` [m], the range of the strokes after the first branch. `rms` and `largest` are errors over
-    the samples after `known_from`, which do not depend on the unknown history. `validation` is the rms error on parts of the record that
-    were not fitted. `width` is the largest distance of the branches of the model's major loop. `range` is the recorded voltage range,
+    the samples from `known_from`, which do not depend on the unknown history. `validation` is the rms error on parts of the record that
+    were not fitted. `width` is the largest distance between the branches of the model's major loop. `range` is the recorded voltage range,
     `inner` the number of branches shorter than 80 % of it. `volts`, `strokes` and `modelled` (k,) are the samples used.
     """
 

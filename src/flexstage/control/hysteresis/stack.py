@@ -29,15 +29,15 @@ FORMAT = "flexstage hysteresis 1"
 _Volts = tuple[Annotated[float, VOLTAGE], ...]
 _Strokes = tuple[Annotated[float, DISPLACEMENT], ...]
 _COMMENTS = {
-    "": "Hysteresis of a stack: stroke = offset + sum of weight x play(threshold) of the envelope of the volts.",
-    "volts": "The range of the record.",
-    "rms": "Error on the record, relative to the stroke.",
+    "": "Hysteresis of a stack: stroke = offset + sum of weight x play(threshold); input of the plays: envelope of the volts.",
+    "volts": "Voltage range of the record.",
+    "rms": "Rms model error on the record, relative to the stroke.",
 }
 
 
 @dataclass(frozen=True)
 class Bend:
-    """Envelope before the plays in a file: `effective` [V] values at `volts` [V]."""
+    """Envelope before the plays in a file: input of the plays, `effective` [V], at `volts` [V]."""
 
     volts: _Volts
     effective: _Volts
@@ -45,7 +45,7 @@ class Bend:
 
 @dataclass(frozen=True)
 class OuterBend:
-    """Envelope after the plays in a file: `strokes` [m] at the weighted sums `plays` of the plays."""
+    """Envelope after the plays in a file: `strokes` [m] at weighted sums of the play outputs, `plays` [m]."""
 
     plays: _Strokes
     strokes: _Strokes
@@ -61,9 +61,9 @@ class StackCreep:
 
 @dataclass(frozen=True)
 class StackHysteresis:
-    """Hysteresis of a stack in a file, one axis: thresholds, weights, envelopes, range of the record, its error and source.
+    """Hysteresis of one stack in a file: thresholds, weights, envelopes, range of the record, model error and source.
 
-    `model` and `log_creep` convert it; `stack_hysteresis` is the exact inverse conversion.
+    `model` and `log_creep` return its model and creep law; `stack_hysteresis` is the exact inverse conversion.
     """
 
     thresholds: _Volts
@@ -78,7 +78,7 @@ class StackHysteresis:
 
     @property
     def model(self) -> PrandtlIshlinskii:
-        """Return the one-axis model. Raises `DesignError` for an invalid one."""
+        """Return the one-axis model. Raises `DesignError` for an invalid model."""
         before = IDENTITY if self.envelope is None else Envelope(np.array(self.envelope.volts), np.array(self.envelope.effective))
         after = straight([1.0], self.offset)
         if self.outer is not None:
@@ -94,7 +94,7 @@ class StackHysteresis:
 
 def _outer_findings(offset: float) -> list[Finding]:
     what = f"conflicts with the outer envelope, which has its own offset (got {offset:g} m)"
-    return [Finding("offset", what, "Leave one of them out")] if offset else []
+    return [Finding("offset", what, "Omit the offset, or the outer envelope")] if offset else []
 
 
 @check_arguments
@@ -106,7 +106,7 @@ def stack_hysteresis(
     rms: float | None = None,
     source: str = "",
 ) -> StackHysteresis:
-    """Convert a one-axis model to file records. Raises `DesignError` for more axes: a file describes one stack.
+    """Convert a one-axis model to the contents of a file. Raises `DesignError` for several axes: a file describes one stack.
 
     >>> stack_hysteresis(PrandtlIshlinskii([0.0, 50.0], [1e-7, 2e-8])).weights
     (1e-07, 2e-08)
@@ -141,7 +141,7 @@ def dumps_hysteresis(stack: StackHysteresis) -> str:
     """Format the text of a hysteresis file.
 
     >>> print(dumps_hysteresis(stack_hysteresis(PrandtlIshlinskii([0.0, 50.0], [1e-7, 2e-8]), creep=LogCreep(0.02))), end="")
-    # Hysteresis of a stack: stroke = offset + sum of weight x play(threshold) of the envelope of the volts.
+    # Hysteresis of a stack: stroke = offset + sum of weight x play(threshold); input of the plays: envelope of the volts.
     format = "flexstage hysteresis 1"
     thresholds = ["0 V", "50 V"]
     weights = ["100 nm/V", "20 nm/V"]
@@ -152,7 +152,7 @@ def dumps_hysteresis(stack: StackHysteresis) -> str:
 
 
 def loads_hysteresis(text: str, *, where: str = "text") -> StackHysteresis:
-    r"""Parse the text of a hysteresis file; `where` names it in findings.
+    r"""Parse the text of a hysteresis file; `where` is the file's name in findings.
 
     Raises `DesignError` with all its errors, an invalid model included.
 

@@ -26,7 +26,7 @@ from flexstage.experiment.records.unit import in_si, same_dimension, unit_proble
 
 @dataclass(frozen=True)
 class Channels(CheckedFields):
-    """Channel names of a stack's test; default: the only channel in volts, and the only one in a length."""
+    """Channel names of a stack's test. Default: the only channel in volts, and the only channel in a unit of length."""
 
     volts: str | None = None
     stroke: str | None = None
@@ -44,8 +44,8 @@ class StackTest(InNotebook):
         "hysteresis.range hysteresis.stroke hysteresis.width hysteresis.branches hysteresis.inner hysteresis.rms hysteresis.largest "
         "hysteresis.validation inverse_rms hysteresis.drift creep.law.rate",
         notes=(
-            "Width, errors and drift: shares of the stroke; of the inverse: of the voltage range.",
-            "Loop width: largest distance of the branches. Validation: on parts of the record that were not fitted.",
+            "Width, errors and drift: relative to the stroke. Error of the inverse: relative to the voltage range.",
+            "Loop width: largest distance between the branches. Validation: error on parts of the record that were not fitted.",
         ),
     )
 
@@ -57,7 +57,7 @@ class StackTest(InNotebook):
 
     @property
     def stack(self) -> StackHysteresis:
-        """Return the file records of the test."""
+        """Return the test's model as contents of a hysteresis file."""
         law = None if self.creep is None else self.creep.law
         found = self.hysteresis
         return stack_hysteresis(found.model, creep=law, volts=found.range, rms=found.rms, source=self.source)
@@ -69,16 +69,16 @@ class StackTest(InNotebook):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes: the size of the model, and the fitted times of creep."""
+        """Notes: the size of the model, and the fitted time span of creep."""
         found = self.hysteresis
         plays, knots = found.model.thresholds.shape[1], found.model.before.knots.shape[1]
-        size = f"{plays} plays, an envelope of {knots} knots, selected from {len(found.trials)} model sizes."
-        creep = () if self.creep is None else ("Creep: {:.3g} to {:.3g} s after the step.".format(*self.creep.span),)
+        size = f"{plays} plays and an envelope of {knots} knots, selected from {len(found.trials)} model sizes."
+        creep = () if self.creep is None else ("Creep fit: {:.3g} to {:.3g} s after the step.".format(*self.creep.span),)
         return (size, *creep)
 
     @property
     def inverse_rms(self) -> Annotated[float, VIEW, Heading("rms error, inverse", digits=3, unit="%", mark=SMALL_ERROR)]:
-        """Rms difference between the inverse's and the applied voltage, relative to the range."""
+        """Rms difference between the voltages of the inverse and of the test, relative to the voltage range."""
         wrong, (low, high) = (self.inverse_volts - self.hysteresis.volts)[self.valid_samples], self.hysteresis.range
         return float(np.sqrt(np.mean(wrong**2))) / (high - low)
 
@@ -87,8 +87,8 @@ class StackTest(InNotebook):
 def stack_test(record: Record, channels: Channels = Channels(), *, step: Record | None = None, limits: Range | None = None) -> StackTest:
     """Identify hysteresis from a record of voltage and stroke and, optionally, creep from the record of a `step`.
 
-    Channels are converted to V and m. `limits` are the actuator's volts. Raises `DesignError` for ambiguous channels, missing or wrong
-    units, and the errors of `identify_hysteresis` and `identify_creep`.
+    Channels are converted to V and m. `limits` are the actuator's voltage limits. Raises `DesignError` for ambiguous channels, missing or
+    wrong units, and the errors of `identify_hysteresis` and `identify_creep`.
 
     >>> from flexstage.experiment.records.record import in_memory
     >>> volts = 500.0 * (1.0 - np.cos(np.linspace(0.0, 6.0 * np.pi, 400)))
@@ -138,7 +138,7 @@ def _choose_channels(record: Record, channels: Channels) -> tuple[Channel, Chann
     require(findings)
     volts, stroke = (each for each in found if each is not None)
     if volts.name == stroke.name:
-        raise refuse(record.source or "record", f"{volts.name} is selected for volts and for stroke", "Select two channels")
+        raise refuse(record.source or "record", f"{volts.name} is selected both for volts and for stroke", "Select two channels")
     return volts, stroke
 
 
@@ -163,18 +163,18 @@ def _choose_channel(record: Record, wanted: _ChannelRequest, findings: list[Find
         return fitting[0]
     said = ", ".join(f"{each.name} [{each.unit or 'no unit'}]" for each in record.channels[:12])
     count = "none" if not fitting else f"{len(fitting)}"
-    what = f"of its channels, {said}, {count} {'is' if not fitting else 'are'} in {'volts' if wanted.unit == 'V' else 'a length'}"
-    findings.append(Finding(where, what, f'Name one with --{wanted.kind}, and state its unit, e.g. --units "NAME={_example(wanted)}"'))
+    what = f"{count} of the channels ({said}) {'is' if not fitting else 'are'} in {'volts' if wanted.unit == 'V' else 'a unit of length'}"
+    findings.append(Finding(where, what, f'Select one with --{wanted.kind}, and specify its unit, e.g. --units "NAME={_example(wanted)}"'))
     return None
 
 
 def _unit_findings(where: str, named: Channel, wanted: _ChannelRequest) -> Iterator[Finding]:
     problem = unit_problem(named.unit)
     if problem is not None:
-        yield Finding(where, f"{named.name}: {problem}", f'Specify it, e.g. --units "{named.name}={_example(wanted)}"')
+        yield Finding(where, f"{named.name}: {problem}", f'Specify the unit, e.g. --units "{named.name}={_example(wanted)}"')
     elif not same_dimension(named.unit, wanted.unit):
-        what = f"{named.name} is in {named.unit} (expected {'volts' if wanted.unit == 'V' else 'a length'})"
-        yield Finding(where, what, "Check whether the channels are exchanged, or specify the unit (--units)")
+        what = f"{named.name} is in {named.unit} (expected {'volts' if wanted.unit == 'V' else 'a unit of length'})"
+        yield Finding(where, what, "Check whether the channels are exchanged, or correct the unit with --units")
 
 
 def _example(wanted: _ChannelRequest) -> str:

@@ -18,7 +18,7 @@ from flexstage.models.linear.static import static_gain
 from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 _REFERENCE = 1.0
-"""Frequency [Hz] by which accelerations of motions without stiffness are compared with displacements."""
+"""Frequency [Hz] that converts accelerations to displacements for motions without stiffness."""
 _MISSING = 1e-9
 
 
@@ -28,7 +28,7 @@ class Coordinates:
 
     `pose` (f, g) maps gauge readings to xi, (R_s V)^+: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, least squares for more. `gauges` are
     the single gauges; sums of gauges are included in `pose`. `strokes` (n, f) maps xi to strokes, R_a of Eq. 13; `back` (f, n) is its
-    (least-squares) inverse. For force actuators `back` is the static motion per unit of input, and `strokes` its pseudo-inverse, the
+    (least-squares) inverse. For force actuators `back` is the static motion per unit input, and `strokes` its pseudo-inverse, the
     minimum-norm inputs [A, N]. `units` are m or rad; `length` [m] makes rotations comparable with translations. `gauge_units` and
     `input_units` are units of readings and inputs (default: m).
     """
@@ -82,9 +82,9 @@ class Coordinates:
 def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coordinates:
     """Compute the coordinates of a stage's loop (one design). For force actuators the elastic `model` provides the static motion.
 
-    The inputs of force actuators are (V^T W)^+ times the static force of the pose. Each loop's plant then has a static gain of 1, as with
-    strokes. Raises `DesignError` if the gauges cannot observe the pose or the actuators cannot produce it, with the missing directions, and
-    for strokes and forces together.
+    The inputs of force actuators follow from the pseudo-inverse of the static motion per unit input. Each loop's plant then has a static
+    gain of 1, as with strokes. Raises `DesignError`, with the missing directions, if the gauges cannot observe the pose or the actuators
+    cannot produce it. Strokes and forces together are also refused.
 
     >>> from flexstage.cases.double_triangle import SM_REF_A, double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -100,8 +100,8 @@ def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coo
     told = _even(kinematics)[:, None] * np.real(first_design(kinematics.seen, 2)) / scale
     require(
         [
-            *_missing("actuators", pushed / scale, kinematics, "make", "Add actuators, or lock the degrees of freedom without an actuator"),
-            *_missing("gauges", told, kinematics, "tell", "Add gauges, or rotate them so that every motion changes a reading"),
+            *_missing("actuators", pushed / scale, kinematics, "produce", "Add actuators, or lock degrees of freedom without an actuator"),
+            *_missing("gauges", told, kinematics, "measure", "Add gauges, or rotate them so that every motion changes a reading"),
         ]
     )
     back = np.linalg.pinv(drive / scale) / scale[:, None]
@@ -125,14 +125,14 @@ def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coo
 def _mixture(kinematics: Kinematics) -> list[Finding]:
     if not kinematics.actuators or not kinematics.thrusts:
         return []
-    what = f"strokes ({', '.join(kinematics.actuators)}) and forces ({', '.join(kinematics.thrusts)}) drive the stage"
-    return [Finding("loop", what, "Remove one kind: command allocation between both is not supported")]
+    what = f"both strokes ({', '.join(kinematics.actuators)}) and forces ({', '.join(kinematics.thrusts)}) drive the stage"
+    return [Finding("loop", what, "Use only strokes or only forces: allocation of commands between both is not supported")]
 
 
 def _give(kinematics: Kinematics, model: LinearModel | None) -> Array:
     """Static motion of the coordinates (f, n) per unit input, by an elastic model; without stiffness the amplitude at `_REFERENCE`."""
     if model is None:
-        raise refuse("loop", "force actuators need an elastic model for the stage's static motion", "Use its lumped model")
+        raise refuse("loop", "force actuators need an elastic model for the stage's static motion", "Use the lumped model")
     twist = tuple(f"{PLATFORM}.{name}" for name in COMPONENTS)
     if model.floating is None:
         gain = np.asarray(static_gain(model, twist, kinematics.thrusts).values)
@@ -158,7 +158,7 @@ def _missing(kind: str, map_: Array, kinematics: Kinematics, verb: str, advice: 
     """Unobservable motions of a map (columns, all lengths), by the right null space."""
     count = len(kinematics.coordinates)
     if not count:
-        return [Finding("loop", "no ideal platform motion to control", "Release the degrees of freedom of its links")]
+        return [Finding("loop", "the platform has no ideal motion to control", "Release degrees of freedom of the links")]
     _, values, rows = np.linalg.svd(np.vstack([map_, np.zeros((count, count))]))
     lost = rows[values[:count] <= _MISSING * max(values[0], _MISSING)]
     if not len(lost):

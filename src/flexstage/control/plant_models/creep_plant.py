@@ -15,7 +15,7 @@ from flexstage.models.linear.model import Channel
 
 
 def add_creep(given: Plant, creep: Creep) -> Plant:
-    """Add the creep of the stacks to a plant: free strokes `<actuator>` first pass y = g_0 u + sum_i g_i s_i (Hammerstein model).
+    """Add the creep of the stacks to a plant: free strokes `<actuator>` first pass through y = g_0 u + sum_i g_i s_i (Hammerstein model).
 
     Rate-independent hysteresis precedes creep, so that everything after the hold is linear and exactly sampled. Creep and amplifier lag
     commute, because both are linear. For charge-driven stacks the creep y - u is multiplied by h + (1 - h) w_0/(s + w_0), with the residual
@@ -29,7 +29,7 @@ def add_creep(given: Plant, creep: Creep) -> Plant:
     """
     if creep.axes != len(given.actuators):
         raise refuse(
-            "creep", f"wrong number of axes (got {creep.axes}, expected {len(given.actuators)}, the actuators)", "Use one per actuator"
+            "creep", f"wrong number of axes (got {creep.axes}, expected {len(given.actuators)}, the actuators)", "Use one axis per actuator"
         )
     entering = given.coordinates.commands()
     crept = {name: f"crept.{name}" for name in given.actuators}

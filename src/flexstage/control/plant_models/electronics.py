@@ -23,10 +23,10 @@ from flexstage.parts.gauge import Instrument
 
 @dataclass(frozen=True)
 class ChargeHold(CheckedFields):
-    """Charge drive of a stack with electromechanical `coupling` k: constant charge far above a corner frequency, instead of voltage.
+    """Charge drive of a stack with electromechanical `coupling` k: far above a corner frequency, it imposes charge instead of voltage.
 
-    The corner is `corner` [Hz] if specified, or 1/(2 pi R C) of the resistance `leakage` [ohm] parallel to the stack's capacitance.
-    `residual_hysteresis` is the remaining share of hysteresis and creep under constant charge.
+    The corner frequency is `corner` [Hz], or 1/(2 pi R C) with the resistance R = `leakage` [ohm] parallel to the stack's capacitance C.
+    `residual_hysteresis` is the fraction of hysteresis and creep that remains at constant charge.
     """
 
     coupling: float
@@ -37,12 +37,12 @@ class ChargeHold(CheckedFields):
 
 @dataclass(frozen=True)
 class AmplifierSettings(amplifier.Amplifier):
-    """Amplifier data in addition to the design file; absent values impose no limit.
+    """Amplifier data that the design file does not contain; absent values impose no limit.
 
-    In addition to the common values: `slew` [V/s], maximum voltage rate; `noise_density` [V/Hz^(1/2)], one-sided and white before the
-    amplifier's lag; `bits` of the converter before the amplifier. An amplifier of voice coils controls the current: `bandwidth`, `current`
-    and `bits` apply, and its noise is `current_noise` [A/Hz^(1/2)]. An amplifier with `charge` controls the charge of its stack. Commands,
-    range, slew, noise and steps are then in the voltage that gives the same charge to an unloaded stack.
+    `slew` [V/s] is the maximum voltage rate, `noise_density` [V/Hz^(1/2)] is one-sided and white before the amplifier's lag, `bits` belong
+    to the converter before the amplifier. An amplifier of voice coils controls the current: `bandwidth`, `current` and `bits` apply, and
+    its noise is `current_noise` [A/Hz^(1/2)]. An amplifier with `charge` controls the charge of its stack. Commands, range, slew, noise and
+    steps are then in volts that give the same charge to an unloaded stack.
     """
 
     slew: float | None = None
@@ -56,9 +56,9 @@ class AmplifierSettings(amplifier.Amplifier):
 class GaugeSettings(CheckedFields):
     """Gauge data that replace or extend the design file; an absent value keeps the gauge's value in the design, or imposes no limit.
 
-    `bandwidth` [Hz] of its first-order lag. `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is one-sided and white before the lag. `resolution`
-    [m, rad] is the step of the reading. `filter_order` and `filter_corner` [Hz] belong to a Butterworth filter before the sampler (order 0:
-    no filter).
+    `bandwidth` [Hz] belongs to the first-order lag. `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is one-sided and white before the lag.
+    `resolution` [m, rad] is the step of the reading. `filter_order` and `filter_corner` [Hz] belong to a Butterworth filter before the
+    sampler (order 0: no filter).
     """
 
     bandwidth: Annotated[float, UNLIMITED] | None = None
@@ -70,7 +70,7 @@ class GaugeSettings(CheckedFields):
 
 @dataclass(frozen=True)
 class ChargeDrive:
-    """Charge drive of a stack with `coupling` k above a `corner` [Hz]; `residual_hysteresis` is the remaining share."""
+    """Charge drive of a stack with `coupling` k above a `corner` [Hz]; `residual_hysteresis` is the fraction that remains."""
 
     coupling: float
     corner: Annotated[float, FREQUENCY]
@@ -90,12 +90,12 @@ class ChargeDrive:
 
 @dataclass(frozen=True)
 class Amplifier:
-    """Amplifier, converter and stack of one actuator, in free stroke from the bias; for a force actuator in its input, A or N.
+    """Amplifier, converter and stack of one actuator, in free strokes from the bias; for a force actuator in its inputs [A or N].
 
     `low` to `high` [m] is the stroke range. `slew` [m/s] is the maximum rate: the lesser of current x gain / capacitance and the
-    amplifier's slew x gain, with gain the free stroke per volt. `bandwidth` [Hz] belongs to the lag after the hold. `noise_density`
-    [m/Hz^(1/2)] is free-stroke noise before that lag (None: not specified). `step` [m] is the converter's (0: none). Infinite: no limit.
-    `charge` is the charge drive, if any, with its corner.
+    amplifier's slew x gain, where gain is the free stroke per volt. `bandwidth` [Hz] belongs to the lag after the hold. `noise_density`
+    [m/Hz^(1/2)] is free-stroke noise before that lag (None: not specified). `step` [m] is the converter's resolution (0: no rounding).
+    Infinite values impose no limit. `charge` is the charge drive, if any, with its corner.
     """
 
     low: float = -np.inf
@@ -111,9 +111,9 @@ class Amplifier:
 class Sensor:
     """One gauge between stage and computer.
 
-    `bandwidth` [Hz] of its lag (infinite: no lag). `filter_order` and `filter_corner` [Hz] of the Butterworth filter after the lag.
-    `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is one-sided and white before lag and filter (None: not specified). `resolution` [m, rad] of
-    the reading (0: no rounding). `half_range` [m, rad] is half the measuring range.
+    `bandwidth` [Hz] belongs to the lag (infinite: no lag), `filter_order` and `filter_corner` [Hz] to the Butterworth filter after it.
+    `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is one-sided and white before lag and filter (None: not specified). `resolution` [m, rad] is
+    the step of the reading (0: no rounding). `half_range` [m, rad] is half the measuring range.
     """
 
     bandwidth: float = np.inf
@@ -128,9 +128,9 @@ class Sensor:
 class Hardware:
     """Sampling chain between controller and stage, in both directions.
 
-    `rate` [Hz] of the samples (None: a continuous loop, for analysis only). `delay` [s] from sampling to the resulting output, any fraction
-    of a sample. `amplifiers` and `sensors` by the names of actuators and gauges (omitted ones are ideal). Raises `DesignError` for invalid
-    numbers.
+    `rate` [Hz] is the sampling rate (None: a continuous loop, for analysis only). `delay` [s] is the time from a sample to the resulting
+    output, not necessarily whole samples. `amplifiers` and `sensors` are mappings by the names of actuators and gauges (omitted: ideal).
+    Raises `DesignError` for invalid numbers.
 
     >>> Hardware(rate=10e3).step
     0.0001
@@ -159,10 +159,10 @@ def sampling_chain(
     amplifiers: AmplifierSettings | Mapping[str, AmplifierSettings] | None = None,
     gauges: GaugeSettings | Mapping[str, GaugeSettings] | None = None,
 ) -> Hardware:
-    """Describe the sampling chain of a stage: data of its stacks and gauges, and settings, one for all or each by name.
+    """Describe the sampling chain of a stage from the data of its stacks and gauges, and from settings for all of them or by name.
 
-    Raises `DesignError` for unknown names, and for settings that need missing stack data (its capacitance for `resistance` and `current`,
-    its voltage range for `noise_density`).
+    Raises `DesignError` for unknown names, and for settings that need missing stack data (capacitance for `resistance`, `current` and
+    `leakage`; voltage range for `current`, `slew` and `noise_density`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> given = sampling_chain(double_triangle(), rate=10e3, delay=50e-6, amplifiers=AmplifierSettings(resistance=100.0, bits=16))
@@ -175,7 +175,7 @@ def sampling_chain(
     powers = _by_name(amplifiers, (*piezos, *thrusts), AmplifierSettings(), "actuator")
     limits = stroke_limits(mechanism)
     require(
-        Finding(name, f"its {key} is {value:g}", "Use a positive number, or omit it")
+        Finding(name, f"{key} must be positive (got {value:g})", f"Use a positive number, or omit {key}")
         for name, setting in powers.items()
         for key in ("bandwidth", "resistance", "current", "slew")
         if (value := getattr(setting, key)) is not None and not value > 0.0
@@ -247,19 +247,19 @@ def _largest_input(setting: AmplifierSettings, part: ThrustActuator) -> float:
 
 def _thrust_findings(name: str, setting: AmplifierSettings, part: ThrustActuator) -> Iterator[Finding]:
     if setting.charge is not None:
-        yield Finding(name, "a charge drive needs a stack, but this amplifier drives a force actuator", "Omit kind")
+        yield Finding(name, "a charge drive needs a stack, but this amplifier drives a force actuator", "Omit the key kind")
     for key in ("resistance", "slew", "noise_density"):
         if getattr(setting, key) is not None:
-            what = f"{key} is of the volts of a stack's amplifier, but this one drives a force actuator"
-            advice = "Use bandwidth, current, current_noise and bits; its slew follows from the coil's voltage and inductance"
+            what = f"{key} applies to amplifiers of stacks, but this amplifier drives a force actuator"
+            advice = "Use bandwidth, current, current_noise and bits; the slew rate follows from the coil's voltage and inductance"
             yield Finding(name, what, advice)
     for key in ("current", "current_noise"):
         if getattr(setting, key) is not None and part.input is not CURRENT:
             yield Finding(
-                name, f"{key} does not apply to an input in {part.input.noun}", "Omit it, or describe the actuator as a voice coil"
+                name, f"{key} does not apply to an input in {part.input.noun}", f"Omit {key}, or describe the actuator as a voice coil"
             )
     if setting.bits is not None and np.isinf(_largest_input(setting, part)):
-        yield Finding(name, "bits need a limited input range", 'Add for example peak_current = "5 A" to its part')
+        yield Finding(name, "bits need a limited input range", 'Add for example peak_current = "5 A" to the actuator\'s part')
 
 
 def _slew(setting: AmplifierSettings, gain: float, capacitance: float) -> float:
@@ -293,27 +293,27 @@ def _first_stated(*values: Any) -> Any:
 
 def _amplifier_findings(name: str, setting: AmplifierSettings, piezo: ChargedActuator) -> Iterator[Finding]:
     if setting.resistance is not None and setting.bandwidth is not None:
-        what = f"bandwidth {setting.bandwidth:g} Hz and resistance {setting.resistance:g} ohm are both given"
-        yield Finding(name, what, "Use the lower limit of both")
+        what = f"both bandwidth ({setting.bandwidth:g} Hz) and resistance ({setting.resistance:g} ohm) are specified"
+        yield Finding(name, what, "Specify only the one with the lower corner frequency")
     stated = {"resistance": setting.resistance, "current": setting.current, "leakage": setting.charge and setting.charge.leakage}
     for key, value in stated.items():
         if value is not None and piezo.capacitance is None:
-            yield Finding(name, f"{key} needs its stack's capacitance, which is missing", 'Add for example capacitance = "0.5 uF"')
+            yield Finding(name, f"{key} needs the stack's capacitance, which is missing", 'Add for example capacitance = "0.5 uF"')
     if setting.current_noise is not None:
-        yield Finding(name, "current_noise belongs to a voice coil's amplifier", "Specify the noise of a stack's amplifier in volts")
+        yield Finding(name, "current_noise applies only to amplifiers of voice coils", "Specify the noise of a stack's amplifier in volts")
     for key in ("current", "slew", "noise_density"):
         if getattr(setting, key) is not None and np.isnan(_gain(piezo)):
-            what = f"{key} needs its stack's voltage range, which is missing"
+            what = f"{key} needs the stack's voltage range, which is missing"
             yield Finding(name, what, 'Add for example voltage_low = "0 V" and voltage_high = "1000 V"')
 
 
 def _findings(given: Hardware) -> Iterable[Finding]:
     if given.rate is not None and not 0.0 < given.rate < np.inf:
-        yield Finding("rate", f"it is {given.rate:g} Hz", "Use a positive number, or none for a continuous loop")
+        yield Finding("rate", f"must be positive (got {given.rate:g} Hz)", "Use a positive number, or omit the rate for a continuous loop")
     if not 0.0 <= given.delay < np.inf:
-        yield Finding("delay", f"it is {given.delay:g} s", "Use a time of 0 or more")
+        yield Finding("delay", f"must be 0 or more (got {given.delay:g} s)", "Use a time of 0 or more")
     if given.rate is None and given.delay:
-        yield Finding("delay", f"delay of {given.delay:g} s in a continuous loop, which has no samples", "Specify a rate, or no delay")
+        yield Finding("delay", f"{given.delay:g} s in a continuous loop, which has no samples", "Specify a rate, or omit the delay")
     for kind in (given.amplifiers, given.sensors):
         for name, item in kind.items():
             yield from _item_findings(name, item, given.rate)
@@ -321,17 +321,17 @@ def _findings(given: Hardware) -> Iterable[Finding]:
 
 def _item_findings(name: str, item: Amplifier | Sensor, rate: float | None) -> Iterable[Finding]:
     if not item.bandwidth > 0.0:
-        yield Finding(name, f"its bandwidth is {item.bandwidth:g} Hz", "Use a positive number, or leave it out")
+        yield Finding(name, f"its bandwidth is {item.bandwidth:g} Hz", "Use a positive bandwidth, or omit it")
     if item.noise_density is not None and not 0.0 <= item.noise_density < np.inf:
         yield Finding(name, f"its noise density is {item.noise_density:g}", "Use a number of 0 or more")
     if isinstance(item, Amplifier):
         if not item.low < item.high:
-            yield Finding(name, f"its stroke goes from {item.low:g} m to {item.high:g} m", "Use a low value below the high one")
+            yield Finding(name, f"its stroke range is {item.low:g} m to {item.high:g} m", "Use a lower limit below the upper limit")
         return
     if not 0.0 <= item.resolution < np.inf:
-        yield Finding(name, f"its resolution is {item.resolution:g}", "Give 0 or more")
+        yield Finding(name, f"its resolution is {item.resolution:g}", "Use 0 or more")
     if not 0 <= item.filter_order <= 12:
-        yield Finding(name, f"its filter has order {item.filter_order}", "Give 0 (none) to 12")
+        yield Finding(name, f"its filter has order {item.filter_order}", "Use 0 (no filter) to 12")
     if item.filter_order and not 0.0 < item.filter_corner < np.inf:
         what = f"its filter of order {item.filter_order} has no corner"
-        yield Finding(name, what, "Specify filter_corner, below half the sampling rate" if rate else "State filter_corner")
+        yield Finding(name, what, "Specify filter_corner, below half the sampling rate" if rate else "Specify filter_corner")

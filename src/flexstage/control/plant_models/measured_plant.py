@@ -1,4 +1,4 @@
-"""Plant identified in a test: strokes to gauges by the identified modes and delay, all else by the model."""
+"""Plant identified in a test: modes and delay from strokes to gauges are identified, all other responses follow from the model."""
 
 from __future__ import annotations
 
@@ -43,11 +43,11 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
     """Replace the model's response from strokes to gauges by the identified modes, static term and delay.
 
     The new response is (sum of the modes + D) times the gauges' specified lags and the `delay`. D is the real residual, constant up to the
-    highest mode. The identified response includes amplifiers and filters, so the hardware gets none of its own; the delay adds to the
-    loop's delay. Platform motion in a loop coordinate follows from the gauges. Ground motion and wrenches act as in the model; its modes
-    get frequency and damping of the paired identified modes. Modes above the test's band are part of D.
+    highest mode. The identified response includes amplifiers and filters, which the hardware of the result therefore omits; the delay adds
+    to the loop's delay. Platform motion in a loop coordinate follows from the gauges. Ground motion and wrenches act as in the model, whose
+    modes get frequency and damping of the paired identified modes. Modes above the test's band are part of D.
 
-    Raises `DesignError` if inputs and outputs are not the stage's actuators and gauges, and if the modes do not match such a stage.
+    Raises `DesignError` if inputs and outputs are not the stage's actuators and gauges, and if the modes do not match the stage.
     """
     require(_channel_findings(given.coordinates, found))
     pairs = pair_modes(given, model, found)
@@ -85,7 +85,7 @@ def measured_plant(given: Plant, model: LinearModel, found: Identified) -> Plant
         frequencies=found.frequencies,
         ratios=found.damping,
         left_out=0,
-        note=f"{driven_by} to gauges as measured: {len(found.poles)} modes, {1e6 * delay:.4g} us late; ground by the model",
+        note=f"{driven_by} to gauges as measured: {len(found.poles)} modes, delay {1e6 * delay:.4g} us; ground motion by the model",
         provenance=found.provenance,
     )
 
@@ -122,17 +122,17 @@ def _assurance(seen: Array, shapes: Array, frequencies: Array, column: int) -> f
 
 def _stage_findings(given: Plant, found: Identified, pairs: Pairs) -> Iterator[Finding]:
     if not len(found.frequencies):
-        yield Finding("--record", "no identified mode", "Record longer, or drive more: see flexstage identify")
+        yield Finding("--record", "no identified mode", "Record longer, or increase the drive: see flexstage identify")
         return
     below = found.frequencies <= _BELOW * given.frequencies[min(len(given.coordinates.names), len(given.frequencies)) - 1]
     count, alike = int(np.sum(below)), int(np.sum(below[pairs.found]))
     ours = ", ".join(f"{each:.4g}" for each in given.frequencies[:6])
     theirs = ", ".join(f"{each:.4g}" for each in found.frequencies[:6])
     if not count:
-        what = f"its modes ({theirs} Hz) are above the lowest of the stage ({ours} Hz): it is probably of another stage, or too short"
+        what = f"all its modes ({theirs} Hz) are above the stage's lowest modes ({ours} Hz): probably another stage, or too short"
         yield Finding("--record", what, "Record longer or in a lower band, or use the design of the tested stage")
     elif alike < _LEAST * count or not len(pairs.found):
-        what = f"{alike} of its {count} lowest modes ({theirs} Hz) match the stage's ({ours} Hz): it is probably of another stage"
+        what = f"only {alike} of its {count} lowest modes ({theirs} Hz) match the stage ({ours} Hz): probably another stage"
         yield Finding("--record", what, "Use the design of the tested stage; check for exchanged channels with flexstage identify --stage")
 
 
@@ -146,14 +146,14 @@ def _channel_findings(loop: Coordinates, found: Identified) -> Iterator[Finding]
                 yield Finding(
                     f"--record: {name}",
                     f"no {kind} channel of this name in the record",
-                    f"{suggest_nearest(name, names)}; a loop needs all",
+                    f"{suggest_nearest(name, names)}; a loop needs all actuators and gauges",
                 )
                 continue
             unit = there[names.index(name)].unit
             if unit_problem(unit) is not None or not same_dimension(unit, units[name]):
                 what = f'wrong unit (got "{unit}", expected {units[name]})'
                 yield Finding(
-                    f"--record: {name}", what, "Record free strokes (or the inputs of forces) and gauge readings, with their units"
+                    f"--record: {name}", what, "Record free strokes (or inputs of force actuators) and gauge readings, with their units"
                 )
 
 

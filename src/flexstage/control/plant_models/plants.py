@@ -41,8 +41,8 @@ class Plant:
     wrenches `platform.fx` ... [N, N m]. Outputs: `gap.<gauge>` [m, rad] (its reading after lag and filter, before noise and rounding),
     absolute motions `platform.<c>` and `<point>.<c>` [m, rad], and motions relative to the ground, `relative.<c>` and
     `relative.<point>.<c>`. `states` names its states. `frequencies` [Hz] and `ratios` belong to the retained modes; `left_out` counts the
-    others, whose compliance is a static term. `note` lists the simplifications. `heard` are the noise densities of further inputs: sensors
-    of inner loops.
+    omitted modes, whose compliance is a static term. `note` lists the simplifications. `heard` are noise densities of further inputs, from
+    sensors of inner loops.
     """
 
     system: Annotated[System, INNER]
@@ -80,10 +80,11 @@ def plant(
 ) -> Plant:
     """Build the plant of a stage's model; `kinematics` defines its loop's coordinates.
 
-    `modes` is the number of modes to retain. Default: all below half the sampling rate, and all for a continuous loop; at least as many as
-    loop coordinates, and both of a pair (frequencies within 0.1 %). The static compliance of the others remains. `points` are further
-    bodies or points for motion outputs, `links` those for axial forces `<link>.fx` [N]. Raises `DesignError` for a batch of designs, for
-    gauges that cannot observe the pose, actuators that cannot produce it, and a design without damping.
+    `modes` is the number of modes to retain. Default: all modes below half the sampling rate; of a continuous loop, all modes. At least as
+    many as loop coordinates are retained, and both modes of a pair (frequencies within 0.1 %). The static compliance of the others remains.
+    `points` are further bodies or points for motion outputs, `links` the links for axial force outputs `<link>.fx` [N]. Raises
+    `DesignError` for a batch of designs, for gauges that cannot observe the pose, actuators that cannot produce it, and a design without
+    damping.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -131,9 +132,9 @@ def plant(
 def zero_order_hold(given: Plant) -> System:
     """Discretise the plant by zero-order hold, exact at the samples; strokes with the `delay`, wrenches without.
 
-    Ground motion is linear between samples (`first_order_hold`): a hold would add jumps to the gauge readings. A gauge is read before its
-    sample's output arrives: without delay and lag it still shows the previous output. Returns a continuous plant unchanged. Inputs and
-    outputs belong to `Plant.system`; its states come first, then the delayed strokes.
+    Ground motion is linear between samples (`first_order_hold`): a hold would add jumps to the gauge readings. Gauges are read before the
+    output of the same sample: without delay and lag they still show the previous output. A continuous plant is returned unchanged. Inputs
+    and outputs are as in `Plant.system`. The delayed strokes follow its states.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -141,7 +142,7 @@ def zero_order_hold(given: Plant) -> System:
     >>> from flexstage.models.lumped import lumped
     >>> stage = parallelogram()
     >>> one = plant(lumped(stage), ideal(stage), sampling_chain(stage, rate=10e3, delay=150e-6), modes=2)
-    >>> len(one.system.A), len(zero_order_hold(one).A)  # and two strokes of one actuator under way
+    >>> len(one.system.A), len(zero_order_hold(one).A)  # plus two delayed strokes of the actuator
     (5, 7)
     """
     step = given.hardware.step

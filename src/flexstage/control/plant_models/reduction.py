@@ -14,7 +14,7 @@ _REPEATED = 1e-3
 
 
 def reduce_modes(given: Plant, wanted: Array) -> Plant:
-    """Residualise a plant to the modes of the mask `wanted` (k,), and at least as many strongest modes as its loop has coordinates.
+    """Keep the modes of the mask `wanted` (k,) and the strongest modes, as many as loop coordinates; residualise the other modes.
 
     Repeated modes are retained together. Omitted states follow statically, x = -A^-1 B u, so that every static gain is preserved
     (residualisation: Green and Limebeer, Linear Robust Control, 1995, section 9.2).
@@ -43,13 +43,13 @@ def reduce_modes(given: Plant, wanted: Array) -> Plant:
 
 
 def resonances(given: Plant) -> Array:
-    """Compute the resonance (k,) of every mode between strokes and pose, relative to a static stroke-to-pose gain of 1.
+    """Compute the resonance peak (k,) of every mode between strokes and pose, relative to a static stroke-to-pose gain of 1.
 
-    With strokes and pose expressed as platform motions in lengths, the resonance is |c| |b| / (2 zeta omega^2): c and b are the modal
-    output and input. It is infinite at 0 Hz.
+    With strokes and pose expressed as platform motions in lengths, the peak is |c| |b| / (2 zeta omega^2): c and b are the modal output and
+    input. It is infinite at 0 Hz.
 
     >>> from flexstage.control.example import integral_loop
-    >>> resonances(integral_loop().plant).round(1).tolist()  # one of them is the guide's own, 1/(2 zeta) = 50
+    >>> resonances(integral_loop().plant).round(1).tolist()  # the guide's mode: about 1/(2 zeta) = 50
     [0.0, 49.5, 0.0]
     """
     loop = given.coordinates

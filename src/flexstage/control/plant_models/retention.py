@@ -22,13 +22,13 @@ from flexstage.control.systems.system import select
 from flexstage.spatial.frame import COMPONENTS
 
 LOOP_GAINS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0)
-"""Loop gains at resonance from which modes are retained: the first value; if no mode reaches it, as low as the margins require."""
+"""Loop gains from which modes are retained: the first; if no mode reaches it, the first one that keeps the margins."""
 MARGIN_CHANGE = 0.01
 """Limit of the relative change of margins by all omitted modes together."""
 RINGING = 0.001
 """Limit of ringing by an omitted mode, relative to the step, along any axis: 1/20 of the settling band of 2 %."""
 _LEAST = 0.01
-"""Gain margins are compared as 1/k, for factors up to 100; no loop is near its stability limit beyond."""
+"""Gain margins are compared as 1/k, for factors up to 100; beyond, no loop is near its stability limit."""
 _PLAIN = 400
 _UNDERDAMPED = 1e-3
 
@@ -38,8 +38,8 @@ class Retention:
     """Modes retained in the plant, `retained` of `total`; the static compliance of the others is kept.
 
     `gain` is the largest closed-loop resonance |L (1 + L)^-1| of an omitted mode (`frequency` [Hz]), all loops closed. `change` is the
-    largest relative change of peak of S, margins and rejection by all omitted modes. `wanted` (k,) are the modes to retain, `retune`
-    whether added modes change the loop, not only the residual of a step.
+    largest relative change of peak of S, margins and rejection by all omitted modes. `wanted` (k,) marks the modes to retain. `retune` is
+    true if added modes change the loop, not only the residual of a step.
     """
 
     retained: int
@@ -59,10 +59,10 @@ class Retention:
 def retention(whole: Plant, closed: Loop) -> Retention:
     """Find the significant modes of a `whole` plant in a loop closed around a subset, with its present controller.
 
-    An omitted mode is significant by one of three criteria. First, its loop gain at resonance, other loops and axes closed: |a| |b K S| for
-    its pulse transfer function a b psi(z). This is exact between hold and sampler, also above half the sampling rate. Second, ringing
+    An omitted mode is significant by one of three criteria. First, its loop gain at resonance with other loops and axes closed: |a| |b K S|
+    for its pulse transfer function a b psi(z). This is exact between hold and sampler, also above half the sampling rate. Second, ringing
     beyond `RINGING` in a step, in the true platform motion along any axis. Third, a margin changed by all omitted modes together: modes of
-    lower loop gain are added until no change exceeds `MARGIN_CHANGE`, once the other criteria are met.
+    lower loop gain are added until no change exceeds `MARGIN_CHANGE`, if no omitted mode meets the first criterion.
 
     >>> from flexstage.control.systems.closed import loop
     >>> from flexstage.control.example import integral_loop

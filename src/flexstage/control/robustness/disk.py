@@ -38,9 +38,9 @@ class Edge:
 class DiskMargin(InNotebook):
     """Disk margin of all loops: simultaneous factors f_i = (1 + (1 - s) d_i/2)/(1 - (1 + s) d_i/2), |d_i| < alpha, s the `skew`.
 
-    Stability is guaranteed for all d_i below `guaranteed`, at every frequency if `covered` (else at the sampled ones). At `reached` >=
-    `guaranteed`, some set of d_i makes a pole at `frequency` [Hz] marginal. `loops` are the varied loops. `gain_low` to `gain_high` and
-    `phase` [rad] are guaranteed for every loop, independently of the others.
+    Stability is guaranteed for |d_i| < `guaranteed`, at every frequency if `covered` (else at the sampled frequencies). Some d_i of
+    magnitude `reached` >= `guaranteed` make the loop marginally stable at `frequency` [Hz]. `loops` are the varied loops. Each of them
+    tolerates gain factors from `gain_low` to `gain_high`, or phases up to `phase` [rad], independently of the others.
     """
 
     TABLE: ClassVar[Layout] = Layout("Disk margin, all loops at once", "guaranteed gain_low gain_high phase")
@@ -54,18 +54,18 @@ class DiskMargin(InNotebook):
 
     @property
     def gain_low(self) -> Annotated[float, INNER, Heading("gain reduction margin", digits=3)]:
-        """Lowest gain factor of every loop."""
+        """Lowest guaranteed gain factor of every loop."""
         return (2.0 - self.guaranteed * (1.0 - self.skew)) / (2.0 + self.guaranteed * (1.0 + self.skew))
 
     @property
     def gain_high(self) -> Annotated[float, INNER, Heading("gain margin", digits=3)]:
-        """Largest gain factor of every loop."""
+        """Largest guaranteed gain factor of every loop."""
         below = 2.0 - self.guaranteed * (1.0 + self.skew)
         return (2.0 + self.guaranteed * (1.0 - self.skew)) / below if below > 0.0 else np.inf
 
     @property
     def phase(self) -> Annotated[float, ANGLE, INNER, Heading("phase margin", digits=3)]:
-        """Phase variation [rad] of every loop, both signs: cos phi = (1 + g_low g_high)/(g_low + g_high)."""
+        """Guaranteed phase variation [rad] of every loop, of either sign: cos phi = (1 + g_low g_high)/(g_low + g_high)."""
         low, high = self.gain_low, self.gain_high
         cosine = low if np.isinf(high) else (1.0 + low * high) / (low + high)
         return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
@@ -87,9 +87,9 @@ def disk_margins(closed: Loop, cut: LoopBreak | None, skew: float = 0.0) -> Disk
     """Compute the disk margin of all loops at once: at the poses, at the commands, or (`cut` None) at both.
 
     alpha = 1/sup mu(S + (skew - 1)/2), mu the structured singular value for a complex factor in every loop. Upper bound mu <= min over
-    diagonal D of sigma(D M D^-1), lower bound mu >= max over phases U of rho(U M). The upper bound holds at all frequencies. For each D the
-    Hamiltonian matrix gives the intervals in which sigma is below a level 0.1 % above the highest value, until these intervals cover all
-    frequencies. Raises `DesignError` for an unstable loop.
+    diagonal D of sigma(D M D^-1), lower bound mu >= max over phases U of rho(U M). The upper bound is proved for all frequencies: the
+    Hamiltonian matrix of a D gives the intervals in which sigma is below a level 0.1 % above the highest value found. Further D follow
+    until these intervals cover all frequencies. Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()

@@ -35,7 +35,7 @@ _LEAST_LINES = 16
 class Reading:
     """Measured margin: its `value`, and 95 % confidence limits `low` and `high` (None: unknown).
 
-    `fitted` belongs to the tuned plant, `predicted` to the stage's model, both at the same lines (NaN: no limit).
+    `fitted` is the value with the tuned plant, `predicted` with the stage's model, both at the same frequency lines (NaN: no limit).
     """
 
     value: Annotated[float, Heading("measured", digits=4)]
@@ -57,9 +57,9 @@ class ReadChannel:
 
 @dataclass(frozen=True, eq=False)
 class ReadLines:
-    """Sensitivity |S_ii| (f, n) over `frequencies` (f,) [Hz]: measured, with 95 % confidence limits per line, of the fit and of the model.
+    """Sensitivity |S_ii| (f, n) over `frequencies` (f,) [Hz]: `measured` with 95 % limits per line, `fitted`, `predicted`.
 
-    `low` and `high` are absent if the test has no uncertainty of its responses.
+    `low` and `high` are absent if the uncertainty of the test's responses is unknown.
     """
 
     frequencies: Array
@@ -74,8 +74,8 @@ class ReadLines:
 class MeasuredMargins(InNotebook):
     """Margins of a loop at the frequency lines of a test: peak of S, and margins by coordinate.
 
-    The peak is the largest singular value, rotations as lengths. `lines` are the number of frequency lines within `band` [Hz]. Between
-    lines the response is unknown: a narrower peak may be higher.
+    The peak is the largest singular value, rotations as lengths. `lines` is the number of frequency lines within `band` [Hz]. Between lines
+    the response is unknown: a narrower peak may be higher.
     """
 
     band: Annotated[tuple[float, float], FREQUENCY]
@@ -95,11 +95,11 @@ def measured_margins(closed: Loop, seen: Identification, predicted: Plant) -> Me
     """Compute margins of a loop on measured responses, with hold and delay: L = P(f) H_0(f) e^{-j w delay} K(e^{j w T}).
 
     P comes from local polynomials on the records (`local_responses`), or is the analyser's response. H_0 is the hold's response. Errors of
-    P are circular normal. For stored responses their variance is |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th ed., 2010, ch.
-    9), on the assumption that one input was driven at a time. Confidence limits are quantiles of 100 draws, about their median or mirrored
-    at the value, whichever is wider. Aliasing from above half the sampling rate is neglected.
+    P are assumed to be circular normal. For stored responses their variance is |H|^2 (1 - g^2)/(n g^2) (Bendat & Piersol, Random Data, 4th
+    ed., 2010, ch. 9), on the assumption that one input was driven at a time. Confidence limits are quantiles of 100 random draws, about the
+    draws' median or mirrored at the value, whichever is wider. Aliasing from above half the sampling rate is neglected.
 
-    Uses only lines within the searched band, below half the sampling rate.
+    Uses only lines within the band of the identification, below half the sampling rate.
     """
     loop, found = closed.plant.coordinates, seen.found
     step = closed.step or 0.0
@@ -157,8 +157,8 @@ def coherence_findings(seen: Identification, margins: MeasuredMargins) -> Iterat
     shares = np.median(seen.multiple[inside], axis=0) if np.any(inside) else np.zeros(len(seen.spectra.outputs))
     for channel, share in zip(seen.spectra.outputs, shares, strict=True):
         if share < _COHERENT:
-            what = f"low coherence from {low:.3g} to {high:.3g} Hz, at the crossover (got {share:.0%}, expected {_COHERENT:.0%})"
-            yield Finding(f"--record: {channel.name}", what, "Increase the drive there, record longer, or request another bandwidth")
+            what = f"low coherence from {low:.3g} to {high:.3g} Hz, near the crossover (got {share:.0%}, expected at least {_COHERENT:.0%})"
+            yield Finding(f"--record: {channel.name}", what, "Increase the drive in this band, record longer, or request another bandwidth")
 
 
 def _ends(value: float, drawn: Array) -> tuple[float, float]:
@@ -188,7 +188,7 @@ def _responses(seen: Identification) -> LocalResponses:
 def _few_lines(lines: Array, found: Identified) -> Iterator[Finding]:
     if len(lines) < _LEAST_LINES:
         low, high = found.band
-        what = f"too few response lines between {low:.4g} and {high:.4g} Hz (got {len(lines)}, expected {_LEAST_LINES})"
+        what = f"too few frequency lines between {low:.4g} and {high:.4g} Hz (got {len(lines)}, expected at least {_LEAST_LINES})"
         yield Finding("--record", what, "Record longer, or drive with noise over the whole band")
 
 

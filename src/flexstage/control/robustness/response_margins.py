@@ -39,11 +39,11 @@ class LoopLines:
     control: Array
 
     def sensitivity(self, plant: Array) -> Array:
-        """Compute S (f, c, c) = (I + P K)^-1 from the responses (f, c, n) of commands to pose."""
+        """Compute S (f, c, c) = (I + P K)^-1 for the responses P (f, c, n) from commands to pose."""
         return np.linalg.inv(np.eye(plant.shape[1]) + plant @ self.control)
 
     def margins(self, plant: Array) -> ResponseMargins:
-        """Compute peak and margins from the responses (f, c, n) of commands to pose."""
+        """Compute the peak of S and the margins for the responses (f, c, n) from commands to pose."""
         sensitivity = self.sensitivity(plant)
         peaks = np.linalg.norm(sensitivity * self.scale[:, None] / self.scale, 2, axis=(1, 2))
         place = int(np.argmax(peaks))

@@ -11,9 +11,10 @@ _POWERS = (4.0, 32.0, 256.0, 2048.0)
 
 
 def balance(matrices: Array) -> Array:
-    """Balance each matrix (f, n, n) by diagonal scaling e^{d_i} M_ij e^{-d_j}: logarithms d (f, n), by rows and columns in turn.
+    """Balance each matrix (f, n, n) by diagonal scaling e^{d_i} M_ij e^{-d_j}. Returns the logarithms d (f, n).
 
-    Osborne's rule: equal off-diagonal row and column norms. The result is a start value for an optimisation, and often sufficient.
+    Osborne's rule: off-diagonal norms of rows and columns become equal. The result is a start value of an optimisation, and often
+    sufficient.
 
     >>> balance(np.array([[[0.0, 100.0], [1.0, 0.0]]])).round(6).tolist()
     [[-1.151293, 1.151293]]
@@ -71,7 +72,7 @@ def lower_bound(matrix: Array) -> tuple[float, Array]:
 
     BFGS from several starts: d log|lambda| / d theta_i = -Im(conj(y_i) x_i / y^H x).
 
-    >>> round(lower_bound(np.array([[1.0, 2.0], [2.0, -1.0]]))[0], 6), round(5.0**0.5, 6)  # all of sigma is reached
+    >>> round(lower_bound(np.array([[1.0, 2.0], [2.0, -1.0]]))[0], 6), round(5.0**0.5, 6)  # equal to the largest singular value
     (2.236068, 2.236068)
     """
     left, _, right = np.linalg.svd(matrix)

@@ -27,9 +27,9 @@ _ALIKE = 1e-3
 class Pole:
     """Closed-loop pole with its source.
 
-    `frequency` [Hz] of a pair, `growth` [1/s] of its motion (negative: it decays), `ratio` of damping, -growth / |p|. `source` is the owner
-    with the largest participation (`mode 3 at 126 Hz`, `controller`, `amplifier B1`, `gauge S1`, `strokes under way`), `share` that
-    participation. `coordinate` is the loop with the largest error, rotations times the stage's length.
+    `frequency` [Hz] and damping `ratio` -growth / |p| belong to the pole pair, `growth` [1/s] is its growth rate (negative: decay).
+    `source` has the largest participation in the pole (`mode 3 at 126 Hz`, `controller`, `amplifier B1`, `gauge S1`, `delayed strokes`),
+    and `share` is this participation. `coordinate` has the largest error, rotations times the stage's length.
     """
 
     frequency: Annotated[float, FREQUENCY]
@@ -42,12 +42,12 @@ class Pole:
 
 @dataclass(frozen=True, eq=False)
 class Verdict(InNotebook):
-    """Stability of a loop: stable if all closed-loop poles decay, exact hold and delay included.
+    """Stability of a loop: stable if all closed-loop poles decay, with exact hold and delay.
 
-    `slowest_pole` is the least stable. `poles` (k,) are all as rates [1/s] (ln z / T of a sampled loop), least stable first. With all
-    commands multiplied by one factor the loop is stable between `gain_low` and `gain_high`: the interval around 1 for a stable loop (0 and
-    infinite: no limit within a factor of 1000), the nearest interval below 1 for an unstable loop (NaN: none down to 1/1000). `sentence`
-    summarises it.
+    `slowest_pole` is the least stable pole. `poles` (k,) are all poles as rates [1/s] (ln z / T of a sampled loop), least stable first.
+    With all commands multiplied by one factor, the loop is stable for factors from `gain_low` to `gain_high`. For a stable loop this
+    interval contains 1 (0 and infinite: no limit within a factor of 1000). For an unstable loop it is the nearest interval below 1 (NaN:
+    none down to 1/1000). `sentence` summarises it.
     """
 
     stable: bool
@@ -63,7 +63,8 @@ def verdict(closed: Loop) -> Verdict:
     """Determine the stability of a loop from the eigenvalues of its closed system.
 
     A mode's participation in a pole is |left x right eigenvector| summed over its states (Perez-Arriaga, Verghese, Schweppe 1982); modes
-    within 0.1 % of one another count as one source. Gain limits are found from the growth rate, upwards in steps of 8 %, downwards of 40 %.
+    within 0.1 % of one another count as one source. Gain limits are changes of sign of the growth rate, searched upwards in steps of 8 %,
+    downwards in steps of 40 %.
 
     >>> from flexstage.control.example import integral_loop
     >>> verdict(integral_loop()).stable, verdict(integral_loop(gain=1e4)).slowest_pole.source
@@ -137,7 +138,7 @@ def _growth(open_loop: System, factor: float) -> float:
 def require_stable(closed: Loop, what: str) -> None:
     """Raise `DesignError` if a loop is unstable, so that `what` (margins, rms values) does not exist.
 
-    The message has the growth rate and source of the least stable pole.
+    The message contains growth rate and source of the least stable pole.
 
     >>> from flexstage.control.example import integral_loop
     >>> require_stable(integral_loop(), "rms values")
@@ -168,7 +169,7 @@ def _owner(closed: Loop, state: str) -> str:
     if kind.startswith("mode"):
         return _modes(closed, kind.rstrip("'"))
     if kind == "held":
-        return "strokes under way"
+        return "delayed strokes"
     return "controller" if kind == "controller" else f"{kind} {rest.partition('.')[0]}"
 
 
@@ -190,16 +191,16 @@ def _coordinate(closed: Loop, vector: Array) -> str:
 
 def _sentence(closed: Loop, least: Pole) -> str:
     where = f"{least.frequency:.4g} Hz" if least.frequency > 0.0 else "0 Hz (without oscillation)"
-    comes = f"from {least.source} ({100.0 * least.share:.0f} % of it), largest in {least.coordinate}"
+    comes = f"from {least.source} ({100.0 * least.share:.0f} % participation), with the largest error in {least.coordinate}"
     if _is_stable(closed, least):
-        return f"stable; the slowest pole, at {where}, decays by {-least.growth:.4g} 1/s, {comes}"
-    return f"a pole at {where} grows by {least.growth:.4g} 1/s, {comes}"
+        return f"stable; the slowest pole, at {where}, decays at {-least.growth:.4g} 1/s, {comes}"
+    return f"a pole at {where} grows at {least.growth:.4g} 1/s, {comes}"
 
 
 def _gain_words(low: float, high: float, *, stable: bool) -> str:
     if np.isnan(low):
-        return "no smaller gain makes it stable"
+        return "no smaller gain makes the loop stable"
     span = f"{'between' if low else 'below'} {f'{low:.4g} and ' if low else ''}{high:.4g}"
     if not stable:
-        return f"stable with all commands multiplied by a factor {span}"
-    return "no upper gain limit" if np.isinf(high) and not low else f"stays so with all commands multiplied by a factor {span}"
+        return f"the loop is stable with all commands multiplied by a factor {span}"
+    return "no upper gain limit" if np.isinf(high) and not low else f"it stays stable with all commands multiplied by a factor {span}"

@@ -34,9 +34,9 @@ def _grade_disk(alpha: float) -> Mark:
 class ChannelMargins:
     """Stability margins of one loop, with the others closed.
 
-    Stable for gain factors between `gain_low` < 1 and `gain_high` > 1 (0 and infinite: no limit), phases up to `phase` [rad] of either
-    sign, and delays up to `delay` [s] (the factor e^{-j omega tau} at samples). `disk` is alpha of its balanced disk margin: the factors (1
-    + d/2)/(1 - d/2) with |d| < alpha, gain and phase *together*.
+    The loop is stable for gain factors between `gain_low` < 1 and `gain_high` > 1 (0 and infinite: no limit), phases up to `phase` [rad] of
+    either sign, and delays up to `delay` [s] (factors e^{-j omega tau}). `disk` is alpha of the balanced disk margin: gain and phase may
+    change *together* by a factor (1 + d/2)/(1 - d/2) with |d| < alpha.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -45,8 +45,8 @@ class ChannelMargins:
         head="coordinate",
         notes=(
             (
-                "Of one loop at a time, opened at the pose, the others closed. Disk margin alpha: gain and phase together may change by "
-                "(1 + d/2)/(1 - d/2), |d| < alpha; at most 2."
+                "One loop at a time, opened at the pose with the others closed. Disk margin alpha <= 2: gain and phase may change together "
+                "by a factor (1 + d/2)/(1 - d/2), |d| < alpha."
             ),
         ),
     )
@@ -80,9 +80,9 @@ class Margins(InNotebook):
 def margins(closed: Loop, cut: LoopBreak, found: Curves | None = None) -> Margins:
     """Compute margins of one loop at a time, the others closed; `found` are its `curves` if already known.
 
-    Limits are at real S_ii = 1/(1 + L_i) below 0 or above 1 (L_i real and negative: a gain), or at real part 1/2 (|L_i| = 1: a phase, a
-    delay). They are located to rounding between frequencies dense enough for L_i. alpha_i = 1/||S_ii - 1/2|| (Seiler, Packard, Gahinet,
-    IEEE Control Systems 40, 2020) by `peak`. Raises `DesignError` for an unstable loop.
+    Gain limits are at frequencies of a real S_ii = 1/(1 + L_i) below 0 or above 1 (L_i real and negative), phase and delay limits at a real
+    part of 1/2 (|L_i| = 1). They are exact to rounding error; the frequencies resolve L_i. `peak` gives alpha_i = 1/||S_ii - 1/2|| (Seiler,
+    Packard, Gahinet, IEEE Control Systems 40, 2020). Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = margins(integral_loop(), LoopBreak.POSE).of("x")
@@ -131,7 +131,7 @@ def _has_direct_gain(own: complex, step: float | None) -> bool:
 
 @dataclass(frozen=True)
 class Peaks(InNotebook):
-    """Peaks of S = (I + L)^-1 and T = I - S at a cut: largest singular values, poses as lengths, commands unscaled."""
+    """Peaks of S = (I + L)^-1 and T = I - S at a cut: largest singular values, with poses as lengths and commands unscaled."""
 
     cut: LoopBreak
     sensitivity: Peak
@@ -155,18 +155,18 @@ def peaks(closed: Loop, cut: LoopBreak) -> Peaks:
 
 @dataclass(frozen=True)
 class ShiftedPeak:
-    """Peak sensitivity Ms with all plant modes shifted by a relative `shift`, the larger of both signs; infinite if unstable."""
+    """Peak sensitivity Ms with all plant modes shifted by a relative `shift` up or down, the larger value; infinite if unstable."""
 
-    TABLE: ClassVar[Layout] = Layout("Peak sensitivity Ms, all modes shifted either way", "peak", head="shift")
+    TABLE: ClassVar[Layout] = Layout("Peak sensitivity Ms, all modes shifted up or down", "peak", head="shift")
 
     shift: Annotated[float, RATIO]
     peak: Annotated[float, Heading("peak sensitivity Ms", digits=4, infinite="unstable")]
 
 
 def shifted_peaks(closed: Loop, shifts: Iterable[float] = (0.0, 0.02, 0.05, 0.1)) -> tuple[ShiftedPeak, ...]:
-    """Compute the peak sensitivity of a sampled loop at the pose for relative `shifts` of all modes, both signs.
+    """Compute the peak sensitivity of a sampled loop at the pose for relative `shifts` of all modes, up and down.
 
-    The time scale of the plant is changed, the time scale of the controller is not.
+    Only the time scale of the plant changes, not the time scale of the controller.
 
     >>> from flexstage.control.example import integral_loop
     >>> [round(each.peak, 2) for each in shifted_peaks(integral_loop(), (0.0, 0.1))]
@@ -184,7 +184,7 @@ def _shifted_peak(closed: Loop, offset: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Bandwidths(InNotebook):
-    """Bandwidths [Hz] (n,) by coordinate: the lowest crossing frequency of each (NaN: none).
+    """Bandwidths [Hz] (n,) by coordinate, each the lowest frequency of a crossing (NaN: none).
 
     `tracking`: the true motion falls 3 dB below its reference. `complementary`: T_ii falls 3 dB below 1. `rejection`: |S_ii| rises through
     1, above which the loop amplifies disturbances. `half_rejection`: |S_ii| rises through -3 dB.
@@ -257,9 +257,9 @@ def _tracking(closed: Loop, found: Curves, number: int) -> float:
 
 
 def crosstalk(closed: Loop) -> Matrix:
-    """Compute static crosstalk: all six platform motions relative to the ground per coordinate commanded.
+    """Compute static crosstalk: all six platform motions relative to the ground, per unit of each commanded coordinate.
 
-    The commanded coordinates are tracking, all others crosstalk. Raises `DesignError` for an unstable loop.
+    Motion in the commanded coordinate is tracking, all other motion is crosstalk. Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> round(float(crosstalk(integral_loop()).at("x", "x")), 9)

@@ -12,7 +12,7 @@ from flexstage.control.simulation.machine import Machine
 
 
 def rounder(steps: Array) -> Callable[[Array], Array]:
-    """Return the rounding of numbers to multiples of `steps`, half to even; numbers without a step (0) pass.
+    """Return a function that rounds numbers to multiples of `steps`, half to even (step 0: no rounding).
 
     >>> rounder(np.array([0.0, 0.5]))(np.array([0.3, 1.7])).tolist()
     [0.3, 1.5]
@@ -24,7 +24,7 @@ def rounder(steps: Array) -> Callable[[Array], Array]:
 
 
 class Actuation:
-    """Running actuators of a machine: last applied strokes, states of hysteresis and inverse model. They start at the bias.
+    """Simulated actuators of a machine, with their last applied strokes and states of hysteresis and inverse. They start at the bias.
 
     >>> from dataclasses import replace
     >>> from flexstage.control.example import integral_loop

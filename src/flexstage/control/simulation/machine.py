@@ -40,8 +40,8 @@ class Amplifiers:
 class Relief:
     """Charge-drive reduction of the hysteretic stroke, which is the stroke minus the linear stroke of the same voltage.
 
-    `residual_hysteresis` (m,) is the share that remains. `leak` (m,) is the share of the removed part that returns per sample by charge
-    leakage, 1 - exp(-2 pi f T) for the drives' corners f.
+    `residual_hysteresis` (m,) is the fraction that remains. `leak` (m,) is the fraction of the removed part that returns per sample by
+    charge leakage, 1 - exp(-2 pi f T) for the drives' corners f.
     """
 
     residual_hysteresis: Array
@@ -52,12 +52,13 @@ class Relief:
 class Machine:
     """Sampled loop as computed by a simulation.
 
-    Order within sample k. Readings y = C x + D w + noise of the `plant` (outputs `gap.<gauge>`), rounded to `resolution` (g,) [m] (0: no
-    rounding). A reading that is not finite or beyond `half_range` (g,) [m] (default: unlimited) is replaced by its gauge's last valid one.
-    Then pose = `pose` (f, g) y, error = reference - pose, and the `controller` (inputs any of `error.<c>`, `reference.<c>`, `pose.<c>`,
-    `applied.<actuator>`; outputs `command.<actuator>`). The voltage is computed by the inverse of `compensation`, or is proportional, and
-    is limited by `amplifiers`. The free stroke is computed by `hysteresis` from the voltage (reduced by `relief`), or is proportional. Last
-    come the states of plant and controller for k + 1. `applied` is the amplifiers' output minus the request: zero except at a limit.
+    Order within sample k: first, the readings y = C x + D w + noise of the `plant` (outputs `gap.<gauge>`) are rounded to `resolution` (g,)
+    [m] (0: no rounding). A reading that is not finite or beyond `half_range` (g,) [m] (default: unlimited) is replaced by its gauge's last
+    valid one. Then follow pose = `pose` (f, g) y, error = reference - pose, and the `controller` (inputs any of `error.<c>`,
+    `reference.<c>`, `pose.<c>`, `applied.<actuator>`; outputs `command.<actuator>`). The voltage is computed by the inverse of
+    `compensation`, or is proportional, and is limited by `amplifiers`. The free stroke is computed by `hysteresis` from the voltage
+    (reduced by `relief`), or is proportional. Last, the states of plant and controller are computed for k + 1. `applied` is the amplifiers'
+    output minus the request: zero except at a limit.
 
     `plant` is sampled. Its inputs named in `actuators` are strokes, all others disturbances; strokes affect no gauge in the same sample.
     """
@@ -85,7 +86,7 @@ class Machine:
 
     @property
     def reach(self) -> Array:
-        """Largest valid readings (g,) [m]: the gauges' range and half their step, or the largest finite number."""
+        """Largest valid readings (g,) [m]: half the gauges' range plus half their resolution, or the largest finite number."""
         ends = np.full(len(self.gauges), np.inf) if self.half_range is None else self.half_range
         return np.minimum(ends + 0.5 * self.resolution, np.finfo(float).max)
 
@@ -137,7 +138,7 @@ def machine(
 ) -> Machine:
     """Assemble a plant with hardware and controller for simulation.
 
-    `electric` (of `drive`) maps strokes to volts, required by hysteresis and compensation. `motions` are the plant outputs to keep
+    `electric` (of `drive`) maps strokes to volts, which hysteresis and compensation require. `motions` are the plant outputs to keep
     (default: all). Raises `DesignError` for a continuous loop, and as `Machine`.
 
     >>> from flexstage.control.example import integral_loop
@@ -148,7 +149,7 @@ def machine(
     (('x',), ('S',), 0.0001)
     """
     if given.hardware.step is None:
-        require([Finding("loop", "it is continuous, and time is simulated in samples", "State the sampling rate")])
+        require([Finding("loop", "the loop is continuous, but the simulation needs samples", "Specify the sampling rate")])
     loop, nothing = given.coordinates, np.full(len(given.actuators), np.nan)
     power = [given.hardware.amplifiers.get(name, Amplifier()) for name in given.actuators]
     senses = [given.hardware.sensors.get(name, Sensor()) for name in given.gauges]
@@ -204,10 +205,10 @@ def _findings(given: Machine) -> Iterator[Finding]:
     yield from missing
     if not missing and np.any(select(plant, given.actuators, given.readings).D):  # otherwise an algebraic loop
         yield Finding(
-            "plant", "its readings depend on the stroke of the same sample", "Add a delay to the loop, or a bandwidth to the gauges"
+            "plant", "the readings depend on the stroke of the same sample", "Add a delay to the loop, or a bandwidth to the gauges"
         )
     if np.any(controller.D[:, [name.startswith("applied.") for name in controller.input_names]]):
-        yield Finding("controller", "its command depends on the applied input of the same sample", "Connect it to the states only")
+        yield Finding("controller", "the command depends on the applied input of the same sample", "Connect this input to states only")
     known = [f"{kind}.{name}" for kind in ("error", "reference", "pose") for name in given.names]
     known += [f"applied.{name}" for name in given.actuators]
     for name in controller.input_names:
@@ -235,6 +236,6 @@ def _electric(given: Machine) -> Iterator[Finding]:
             if np.isnan(gain):
                 yield Finding(actuator, f"{name} needs the stack's voltage range, which is missing", 'Add for example voltage_low = "0 V"')
     if given.compensation is not None and given.relief is not None:
-        yield Finding("compensation", "this hysteresis is for voltage drive, but the stacks have charge drive", "Omit it")
+        yield Finding("compensation", "this hysteresis is for voltage drive, but the stacks have charge drive", "Omit the compensation")
     if given.compensation is not None:
         yield from inverse_findings(given.compensation)

@@ -17,7 +17,7 @@ from flexstage.control.white_noise import gauge_noise
 
 
 class Stream(IntEnum):
-    """Random stream of a source kind."""
+    """Random stream of each kind of source."""
 
     FLOOR = 16
     GAUGE = 17
@@ -27,10 +27,10 @@ class Stream(IntEnum):
 def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed: int = 0) -> dict[str, Array]:
     """Generate series (samples,) by name for `simulate`: `ground.<c>` of the `floor`, noise of gauges and amplifiers.
 
-    Independent Gaussian series, equal for equal seeds, regardless of other sources. Ground motion is linear between samples (see `ramped`
-    for the error). Gauge noise is taken after lag and filter, with exact aliasing (`gauge_noise`). Amplifier noise is white up to half the
-    sampling rate. Rounding is not included: the simulation rounds. Raises `DesignError` for a continuous loop, and for unknown ground
-    motions.
+    The series are independent and Gaussian. Each depends only on its source and the seed. Ground motion is linear between samples (see
+    `ramped` for the error). Gauge noise is the noise after lag and filter, with exact aliasing (`gauge_noise`). Amplifier noise is white up
+    to half the sampling rate. Rounding is not included: the simulation rounds. Raises `DesignError` for a continuous loop, and for unknown
+    ground motions.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = noise_series(integral_loop().plant, {"ground.x": Spectrum(1e-18)}, 1000, seed=3)
@@ -39,7 +39,7 @@ def noise_series(given: Plant, floor: Mapping[str, Spectrum], samples: int, seed
     """
     step = given.hardware.step
     if step is None:
-        raise refuse("loop", "it is continuous, and series of numbers are samples", "State the sampling rate")
+        raise refuse("loop", "the loop is continuous, but noise series need samples", "Specify the sampling rate")
     require(_findings(given, floor))
     found = {}
     inputs = given.system.input_names
@@ -76,12 +76,12 @@ def series(spectrum: Spectrum, samples: int, step: float, key: tuple[int, ...]) 
 
 
 def shape(density: Array, samples: int, step: float, key: tuple[int, ...]) -> Array:
-    """Shape white Gaussian numbers by a one-sided density (f,) at the frequencies of a series twice as long; returns half of it.
+    """Shape white Gaussian noise by a one-sided density (f,) at the frequencies of a series twice as long; return half the series.
 
     X(f) = W(f) (S(f) / 2 T)^(1/2), W the transform of unit white numbers: Gaussian and stationary, with this density at its frequencies.
     The discarded half removes the periodicity (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 1991).
 
-    >>> flat = shape(np.full(9, 2.0), 8, 1.0, (7,))  # one-sided 2 T: unit variance, the white numbers themselves
+    >>> flat = shape(np.full(9, 2.0), 8, 1.0, (7,))  # density 2 T: unit variance, the unchanged white noise
     >>> bool(np.allclose(flat, generator(7).standard_normal(16)[:8]))
     True
     """

@@ -22,12 +22,12 @@ from flexstage.spatial.frame import COMPONENTS
 class Simulated(InNotebook):
     """Simulated loop over time: every series has a row per sample, `times` (n,) [s].
 
-    `reference`, `pose` (estimated) and `error` (n, f) [m, rad] are by `coordinates`. `motions` (n, p) are true motions by `channels`. The
-    following are by `actuators`, as strokes (n, m) [m] from the bias: the controller's `command`, `asked` (amplifier input, after inverse
-    and converter), `given` (amplifier output, after limits), and `stroke` at the stage. `volts` are NaN for a stack without data.
-    `readings` (n, g) [m] are in `gauges` order, in their units. `saturated` and `slewing` (m,) are the shares of samples at a range limit,
-    or at a speed limit only. `out_of_range` (g,) are the shares of samples with a reading out of range or lost; the last valid reading is
-    then used.
+    `reference`, `pose` (estimated) and `error` (n, f) [m, rad] have a column for each of `coordinates`, the true `motions` (n, p) for each
+    of `channels`. Strokes (n, m) [m] from the bias have a column for each of `actuators`: the controller's `command`, `asked` (amplifier
+    input, after inverse and converter), `given` (amplifier output, after limits), and `stroke` at the stage. `volts` (n, m) are NaN for a
+    stack without data. `readings` (n, g) have a column for each of `gauges`, in its unit. `saturated` and `slewing` (m,) are the fractions
+    of samples at a range limit, and at a speed limit only. `out_of_range` (g,) is the fraction of samples with a reading out of range or
+    lost; the last valid reading then replaces it.
     """
 
     TABLE: ClassVar[Layout] = Layout("Limits of the actuators", "saturated slewing", head="trajectory, actuator")
@@ -55,14 +55,14 @@ class Simulated(InNotebook):
         """Return the true motion (n,) of the channel `name` (`platform.x`) [m, rad]; raises `DesignError` if it was not recorded."""
         known = [channel.name for channel in self.channels]
         if name not in known:
-            raise refuse(name, "not recorded in the simulation", f"{suggest_nearest(name, known)}; add it to the motions")
+            raise refuse(name, "not recorded in the simulation", f"{suggest_nearest(name, known)}; add this channel to the motions")
         return self.motions[:, known.index(name)]
 
     @property
     def true_error(self) -> Array:
         """Reference minus true platform pose (n, f) [m, rad], including the loop's response to gauge noise.
 
-        Relative to the moving ground, as the gauges measure, if its motions `relative.<c>` were recorded.
+        The pose is relative to the moving ground, as the gauges measure it, if the motions `relative.<c>` were recorded.
         """
         known = {channel.name for channel in self.channels}
         names = [f"relative.{channel.name}" for channel in self.coordinates]
@@ -170,8 +170,8 @@ def _rms(values: Array) -> Array:
 class StepFigures:
     """Step response figures by coordinate (f,): `settling` time [s] until the true error stays within `band` [m, rad].
 
-    Infinite without settling. `overshoot` is the largest excess relative to the step, `undershoot` the same in the opposite direction (both
-    NaN without a step). `residual` [m, rad] is the true error at the end.
+    The settling time is infinite if the error does not settle. `overshoot` is the largest excess over the step, relative to the step,
+    `undershoot` the same in the opposite direction (NaN without a step). `residual` [m, rad] is the true error at the end.
     """
 
     coordinates: tuple[Channel, ...]
@@ -186,8 +186,8 @@ class StepFigures:
 def step_figures(found: Simulated, share: float = 0.02, *, start: float = 0.0) -> StepFigures:
     """Compute settling time and overshoot of a simulated step at `start` [s].
 
-    The band is a `share` of each coordinate's step; coordinates without a step use the largest step of their unit. Uses the error of the
-    true pose.
+    The band is the fraction `share` of each coordinate's step; coordinates without a step use the largest step of their unit. All values
+    follow from the error of the true pose.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

@@ -33,5 +33,5 @@ def simulate(given: Machine, reference: Array, disturbances: Mapping[str, Annota
     1000.0
     """
     if reference.ndim != 2 or reference.shape[1] != len(given.names) or not len(reference):
-        raise refuse("reference", f"it is {reference.shape}", f"Use one row per sample, with {', '.join(given.names)}")
+        raise refuse("reference", f"wrong shape (got {reference.shape})", f"Use one row per sample, with columns {', '.join(given.names)}")
     return simulation_result(given, RunningLoop(given, disturbances, len(reference)).advance(reference))

@@ -18,8 +18,9 @@ from flexstage.control.simulation.result import Series
 class RunningLoop:
     """Machine simulated by `advance`, initially at rest.
 
-    `disturbances` are series (`count`,) by name as for `simulate`; the default `count` is the longest length. At the end they are replayed
-    backwards, which preserves noise spectra. An axis that is not `held` uses its reading as reference: zero error, no restoring action.
+    `disturbances` are series (`count`,) by name as for `simulate`; the default `count` is the longest length. From their end they are
+    replayed backwards, which preserves noise spectra. An axis that is not `held` uses its pose as reference: its error is zero, without
+    restoring action.
     """
 
     def __init__(self, given: Machine, disturbances: Mapping[str, Array], count: int | None = None) -> None:
@@ -42,7 +43,7 @@ class RunningLoop:
         """Samples since the reset."""
 
     def advance(self, wanted: Array, held: Array | None = None) -> Series:
-        """Simulate as many samples as `wanted` (n, f) has rows, with the servo-controlled axes `held` (f,), default all.
+        """Simulate a sample for each row of the references `wanted` (n, f); `held` (f,) marks the servo-controlled axes, default all.
 
         Raises `DesignError` for diverging numbers, and resets the loop.
         """
@@ -91,9 +92,9 @@ def require_finite(given: Machine, rows: Array) -> None:
     >>> example = integral_loop()
     >>> require_finite(machine(example.plant, example.controller), np.array([[0.0], [np.inf]]))
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: loop: the numbers diverged 0.0001 s after the start: the loop is unstable. ...
+    flexstage.base.finding.DesignError: loop: the simulation diverged 0.0001 s after the start: the loop is unstable. ...
     """
     lost = ~np.all(np.isfinite(rows), axis=-1)
     if np.any(lost):
-        what = f"the numbers diverged {int(np.argmax(lost)) * given.step:g} s after the start: the loop is unstable"
-        raise refuse("loop", what, "Reduce the gains, or see the growing mode in the stability result")
+        what = f"the simulation diverged {int(np.argmax(lost)) * given.step:g} s after the start: the loop is unstable"
+        raise refuse("loop", what, "Reduce the gains, or find the growing mode in the stability result")

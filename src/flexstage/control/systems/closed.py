@@ -57,9 +57,9 @@ class Loop:
 def loop(given: Plant, controller: System) -> Loop:
     """Connect a controller to a plant.
 
-    The controller's inputs are any of `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>` (unconnected: a linear loop has no
-    saturation); its outputs all `command.<actuator>`. Its step must equal the hardware's (continuous: none). Raises `DesignError`
-    otherwise, and for an algebraic loop without solution.
+    The controller's inputs are any of `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>`; the last remains unconnected,
+    because a linear loop has no saturation. Its outputs are all `command.<actuator>`. Its step must equal the hardware's (continuous:
+    none). Raises `DesignError` otherwise, and for an algebraic loop without solution.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.control.plant_models.plants import plant
@@ -105,8 +105,8 @@ def pose_controller(controller: System, coordinates: Coordinates, sense: Array |
 def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
     """Return the open loop L of a negative feedback: S = (I + L)^-1, from the input at the break to minus the returned signal.
 
-    Break at the pose or at the commands, all channels (rows and columns named by coordinates or actuators, inputs `cut.<name>`), or a
-    single `channel` with the others closed (loop at a time). Raises `DesignError` for an unknown channel.
+    The loop is opened at the pose or at the commands: in all channels (rows and columns named by coordinates or actuators, inputs
+    `cut.<name>`), or in a single `channel` with the others closed. Raises `DesignError` for an unknown channel.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()
@@ -114,7 +114,7 @@ def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
     >>> at_pose.input_names, at_pose.output_names
     (('cut.x',), ('pose.x',))
     >>> far = np.array([10.0, 500.0])
-    >>> bool(np.allclose(at_pose.transfer(far), at_command.transfer(far)))  # one input, one output: the same loop from both places
+    >>> bool(np.allclose(at_pose.transfer(far), at_command.transfer(far)))  # one input, one output: the same loop at both breaks
     True
     """
     outer = {each.name.removeprefix(f"{cut.value}."): each for each in cut.channels(closed.plant)}
@@ -124,7 +124,7 @@ def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
 
 
 def open_everywhere(closed: Loop) -> System:
-    """Return the loop opened at all poses and all commands at once, in this order: for simultaneous factors at both ends.
+    """Return the loop opened at all poses and all commands at once, in this order: for simultaneous factors on both sides of the plant.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = open_everywhere(integral_loop())

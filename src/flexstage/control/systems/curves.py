@@ -38,7 +38,7 @@ class Curves:
         return np.where(own == 0.0, np.inf, 1.0 / np.where(own == 0.0, 1.0, own) - 1.0)
 
     def crossings(self, of: Callable[[Array], Array], channel: int) -> tuple[Array, Array]:
-        """Find the frequencies [Hz] at which a real function `of` S_ii of a channel changes sign, to rounding; also returns S_ii there."""
+        """Find the frequencies [Hz] at which a real function `of` S_ii of a channel changes sign, and S_ii there."""
         values = of(self.sensitivity[:, channel, channel])
         places = sign_changes(values)
         low, high = self.frequencies[places], self.frequencies[places + 1]
@@ -86,7 +86,7 @@ def curves(closed: Loop, cut: LoopBreak) -> Curves:
 
 
 def rates_of(poles: Array, step: float | None, least: float = 1e-6) -> Array:
-    """Convert poles to rates [1/s]: unchanged, or ln z / T for a sampled system (poles at 0 become fast ones).
+    """Convert poles to rates [1/s]: unchanged, or ln z / T for a sampled system (poles at 0 become fast poles).
 
     >>> rates_of(np.array([np.exp(-0.5)]), 0.1).round(9).tolist()
     [(-5+0j)]
@@ -148,7 +148,7 @@ def sign_changes(values: Array) -> Array:
 def roots(of: Callable[[Array], Array], ends: tuple[Array, Array], values: tuple[Array, Array]) -> Array:
     """Find zeros of a function within brackets (low, high) (k,) with `values` of opposite signs, all at once.
 
-    Illinois variant of the false-position method, to rounding.
+    Illinois variant of the false-position method, to rounding error.
 
     >>> roots(lambda x: x**2 - 2.0, (np.array([0.0]), np.array([2.0])), (np.array([-2.0]), np.array([2.0]))).round(12).tolist()
     [1.414213562373]

@@ -18,7 +18,7 @@ def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
     """Convert a system to `control.StateSpace`, with the names of inputs and outputs, dots replaced by underscores (`error_x`).
 
     `states` are names for the system's states, for instance `Loop.states`. A continuous system has dt = 0. Raises `DesignError` without
-    python-control, and for names that coincide.
+    python-control, and for names that become equal.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = to_control(integral_loop().controller)
@@ -29,7 +29,7 @@ def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
     names = [[_python_names(name) for name in group] for group in (system.input_names, system.output_names, states or ())]
     for group in names:
         require(
-            Finding(name, f"{group.count(name)} names become this one", "Rename them")
+            Finding(name, f"{group.count(name)} names become equal", "Rename all but one")
             for name in dict.fromkeys(group)
             if group.count(name) > 1
         )
@@ -58,7 +58,7 @@ def from_control(system: Any, inputs: tuple[Channel, ...] | None = None, outputs
             "system", f"wrong type (got {type(system).__name__}, expected StateSpace or TransferFunction)", "Linearise or convert it first"
         )
     if isinstance(system, control.TransferFunction) and (system.ninputs, system.noutputs) != (1, 1):
-        what = f"a transfer function with {system.ninputs} inputs and {system.noutputs} outputs"
+        what = f"unsupported transfer function with {system.ninputs} inputs and {system.noutputs} outputs"
         raise refuse("system", what, "Convert it to a StateSpace: the realisation of several channels is not unique")
     found = control.ss(system)
     if found.dt is True or found.dt is None:
@@ -84,5 +84,5 @@ def _channels(given: tuple[Channel, ...] | None, system: Any, kind: str) -> tupl
     if given is None:
         return tuple(Channel(label, "1") for label in labels)
     if len(given) != len(labels):
-        require([Finding(f"{kind}s", f"wrong number of names (got {len(given)}, expected {len(labels)})", "Name each of them")])
+        require([Finding(f"{kind}s", f"wrong number of names (got {len(given)}, expected {len(labels)})", "Use one channel for each")])
     return given

@@ -29,7 +29,7 @@ class Peak:
 
 
 def peak(system: System) -> Peak:
-    """Compute sup over omega of the largest singular value of H, for a stable system its H-infinity norm, to 1e-9 relative.
+    """Compute the H-infinity norm of a stable system H, the supremum of its largest singular value over omega, to a relative 1e-9.
 
     The accuracy is 1e-6 if the value at half the sampling rate, or the direct gain of a continuous system, is within 1e-6 of the largest.
     Gamma is a singular value of H if and only if the Hamiltonian matrix of gamma has an eigenvalue on the imaginary axis (Bruinsma and
@@ -43,7 +43,7 @@ def peak(system: System) -> Peak:
     (5.025189076, 5.025189076)
     """
     if system.growth >= 0.0:
-        raise refuse("peak", f"unstable system: it grows by {system.growth:.3g} 1/s", "Stabilise it first")
+        raise refuse("peak", f"the system is unstable (growth rate {system.growth:.3g} 1/s)", "Stabilise it first")
     plane = to_plane(system)
     frequencies = _first_frequencies(system)
     best = _highest_of(system, frequencies)
@@ -60,7 +60,7 @@ def peak(system: System) -> Peak:
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """System mapped to a continuous one, s = j nu: nu = 2 pi f / `unit`, or tan(pi f T) for a sampled one."""
+    """System mapped to a continuous one, s = j nu: nu = 2 pi f / `unit`, or tan(pi f T) for a sampled system."""
 
     system: System
     unit: float
@@ -74,7 +74,7 @@ class Plane:
 
 
 def to_plane(system: System) -> Plane:
-    """Map a system with balanced states: sampled ones by z = (1 + s)/(1 - s), continuous ones with a scaled time.
+    """Map a system to a continuous one with balanced states: if sampled, by z = (1 + s)/(1 - s); if continuous, by scaling time.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop().system
@@ -107,7 +107,7 @@ def _balance(system: System) -> System:
 
 
 def level_crossings(plane: Plane, level: float) -> Array:
-    """Find ascending frequencies [Hz] at which a singular value may cross `level`: all true crossings, and possibly further points.
+    """Find ascending frequencies [Hz] at which a singular value may cross `level`: all true crossings, possibly also other points.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)

@@ -17,8 +17,8 @@ def discretise(system: System, step: float, delay: float = 0.0, early: int = 0) 
 
     With delay = (d + f) T, 0 <= f < 1, the input changes within the step: x[k+1] = e^{AT} x[k] + Gamma_1 u[k-d-1] + Gamma_0 u[k-d], Gamma_0
     = int_0^{(1-f)T} e^{As} ds B, Gamma_1 = e^{A(1-f)T} int_0^{fT} e^{As} ds B (Astrom and Wittenmark, Computer-Controlled Systems, 1997,
-    section 2.3). An output sampled at an input change (f = 0) has the new value, the first `early` outputs the previous one. All inputs
-    have the same delay. Raises `DesignError` for a sampled system, and for invalid times.
+    section 2.3). An output sampled at an input change (f = 0) has the new value; the first `early` outputs have the previous value. All
+    inputs have the same delay. Raises `DesignError` for a sampled system, and for invalid times.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)
@@ -78,7 +78,7 @@ def first_order_hold(system: System, step: float) -> System:
 
 
 def split_delay(samples: float) -> tuple[int, float]:
-    """Split a delay [samples] into whole samples and the remainder; a remainder within rounding is 0."""
+    """Split a delay [samples] into whole samples and the remainder; a remainder of the size of rounding errors is 0."""
     nearest_whole = round(samples)
     if abs(samples - nearest_whole) < 1e-9:
         return nearest_whole, 0.0
@@ -127,9 +127,9 @@ def bilinear(system: System, step: float, prewarp: float | None = None) -> Syste
 def _findings(system: System, step: float, delay: float) -> list[Finding]:
     found = []
     if system.step is not None:
-        found.append(Finding("system", f"it is sampled already, every {system.step:g} s", "Sample the continuous system"))
+        found.append(Finding("system", f"already sampled, every {system.step:g} s", "Use a continuous system"))
     if not 0.0 < step < np.inf:
-        found.append(Finding("step", f"it is {step:g} s", "Give a positive time"))
+        found.append(Finding("step", f"must be positive (got {step:g} s)", "Use a positive time"))
     if not 0.0 <= delay < np.inf:
-        found.append(Finding("delay", f"it is {delay:g} s", "Use a time of 0 or more"))
+        found.append(Finding("delay", f"must be 0 or more (got {delay:g} s)", "Use a time of 0 or more"))
     return found

@@ -21,15 +21,15 @@ from flexstage.models.linear.state_space import StateSpace
 _SINGULAR = 1e-12
 _CHUNK = 2_000_000
 _FEW = 12
-"""Number of points solved one by one: below it they cost less than a row-by-row solve."""
+"""Number of points below which solving one by one costs less than row by row."""
 
 
 @dataclass(frozen=True, eq=False)
 class System(CheckedFields):
     """Linear system x' = A x + B u, y = C x + D u; with a `step` T [s]: x[k+1] = A x[k] + B u[k], y[k] = C x[k] + D u[k].
 
-    A (n, n), B (n, m), C (p, n), D (p, m), SI; `inputs` and `outputs` have unique names and units. Raises `DesignError` for shapes and
-    names that do not match.
+    A (n, n), B (n, m), C (p, n), D (p, m), SI; `inputs` and `outputs` have unique names and units. Raises `DesignError` for shapes that do
+    not match, and for repeated names.
     """
 
     A: Annotated[Array, VIEW]
@@ -84,7 +84,7 @@ class System(CheckedFields):
         """Compute the frequency response H = C (lambda - A)^-1 B + D, (f, p, m) at `frequencies` (f,) [Hz].
 
         lambda = j omega, or e^{j omega T} for a sampled system. The states are balanced first: modal velocities are about a thousand times
-        larger than modal displacements, and a solution would lose as many digits.
+        larger than modal displacements, and a solution would lose as much accuracy.
         """
         balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
         entry, points = (self.B / scale[:, None]).astype(complex), self._points(frequencies)
@@ -95,7 +95,7 @@ class System(CheckedFields):
         """Compute the frequency response at many frequencies, for the inputs in `columns`.
 
         Infinite frequencies give D (continuous systems only). One Schur form, then back substitution: n^2 operations per point, also for a
-        defective A. Elements zero by symmetry have rounding errors relative to the largest.
+        defective A. Elements that are zero by symmetry have rounding errors relative to the largest element.
         """
         frequencies, direct = np.asarray(frequencies, dtype=float), self.D[:, columns]
         points = self._points(np.where(np.isfinite(frequencies), frequencies, 0.0))
@@ -134,7 +134,7 @@ def _findings(system: System) -> Iterable[Finding]:
             for name in sorted({name for name in names if names.count(name) > 1}):
                 yield Finding(name, f"{names.count(name)} {kind}s have this name", "Rename all but one")
     if system.step is not None and not 0.0 < system.step < np.inf:
-        yield Finding("step", f"it is {system.step:g} s", "Use a positive time, or none for a continuous system")
+        yield Finding("step", f"must be positive (got {system.step:g} s)", "Use a positive time, or none for a continuous system")
 
 
 def from_state_space(space: StateSpace) -> System:
@@ -191,7 +191,7 @@ def rename(system: System, names: Mapping[str, str]) -> System:
 
 
 def select(system: System, inputs: Iterable[str], outputs: Iterable[str]) -> System:
-    """Return the system with only these inputs and outputs, in this order. Raises `DesignError` for names that it does not have.
+    """Return the system with only these inputs and outputs, in this order. Raises `DesignError` for unknown names.
 
     >>> two = static(np.array([[1.0, 2.0]]), (Channel("a", "m"), Channel("b", "m")), (Channel("y", "m"),))
     >>> select(two, ["b"], ["y"]).D.tolist()
@@ -249,7 +249,7 @@ def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple
     feedback, entry = feedback.reshape(len(wired), len(rows)), entry.reshape(len(wired), len(external))
     solve = np.eye(len(wired)) - feedback @ whole.D
     if np.min(np.abs(np.linalg.eigvals(solve)), initial=1.0) < _SINGULAR:
-        require([Finding("loop", "an algebraic loop of gain 1 has no solution", "Put a delay or a lag into it")])
+        require([Finding("loop", "an algebraic loop of gain 1 has no solution", "Add a delay or a lag to the loop")])
     states, driven = np.linalg.solve(solve, feedback @ whole.C), np.linalg.solve(solve, entry)
     closed = System(
         whole.A + whole.B @ states, whole.B @ driven, whole.C + whole.D @ states, whole.D @ driven, inputs, whole.outputs, whole.step
@@ -266,7 +266,7 @@ def _append(parts: tuple[System, ...]) -> System:
     steps = {part.step for part in parts}
     if len(steps) != 1:
         shown = ", ".join(sorted("continuous" if step is None else f"{step:g} s" for step in steps))
-        require([Finding("systems", f"their steps differ: {shown}", "Use the same step in all")])
+        require([Finding("systems", f"the steps differ: {shown}", "Use the same step for all")])
     return System(
         *block_matrices(parts),
         inputs=tuple(channel for part in parts for channel in part.inputs),
@@ -283,10 +283,10 @@ def _link_findings(whole: System, links: Mapping[str, Terms], inputs: tuple[Chan
             yield Finding(name, "unknown input", suggest_nearest(name, whole.input_names))
         for term in links[name]:
             if term not in sources:
-                yield Finding(f"link to {name}", f"nothing is called '{term}'", suggest_nearest(term, sources))
+                yield Finding(f"link to {name}", f"unknown signal '{term}'", suggest_nearest(term, sources))
     for name in whole.input_names:
         if name not in links and name not in sources:
-            yield Finding(name, "nothing feeds this input", "Link it, or name it among the inputs")
+            yield Finding(name, "this input is not connected", "Add a link, or list it among the inputs")
     for name in external:
         if name in whole.output_names:
             yield Finding(name, "an input and an output have this name", "Rename one of them")

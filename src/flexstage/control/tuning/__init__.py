@@ -1,1 +1,1 @@
-"""Tuning: the gains for a requested bandwidth, or the reason of failure."""
+"""Tuning: the gains for a requested bandwidth, or the reason for failure."""

@@ -24,29 +24,29 @@ from flexstage.control.tuning.spec import Judgement, TuningSpec
 from flexstage.control.tuning.view import View, first_alike
 
 _HIGH = 0.3
-"""Loop gain at a mode from which it gets a notch: below, |S| is at most 1/(1 - 0.3) = 1.43 there."""
+"""Loop gain at a mode above which the mode gets a notch: below, |S| is at most 1/(1 - 0.3) = 1.43 there."""
 _AGREES = 0.005
 """Negligible relative difference of a crossover: half of the bandwidth tolerance of 1 %."""
 _TRUST = (1.0, 30.0, 1000.0)
 """Factors on the stroke noise assumed by an observer, in turn: larger values rely less on its model."""
 _TRUST_OF_MASS, _MASS = (0.01, 0.3, 10.0), 0.01
-"""Factors relative to equal stroke and gauge noise at the bandwidth, for loops with a static gain below this share. The observer then
+"""Factors relative to equal stroke and gauge noise at the bandwidth, for loops whose gain there is below this fraction of the static gain.
 
-follows a mass: its speed is the square root of the factor times the bandwidth, for any guide stiffness.
+The observer then follows a mass: its speed is the square root of the factor times the bandwidth, for any guide stiffness.
 """
 _ROUNDS = 8
 _AROUND = 4.0
-"""Iterations of LQG weights for the loop gain at the bandwidth, and their tolerance."""
+"""Iterations of LQG weights for the loop gain at the bandwidth, and the largest gain ratio used in one iteration."""
 _FLATTEST, _STEEPEST, _SAME_WEIGHT = 0.2, 1.5, 1e-4
 """Exponents of the loop gain over its weight, 1 without dynamics, less with roll-off; minimum weight difference for a secant."""
 _FARTHEST = 1e4
 """Limit of the weights relative to the first guess, as a factor."""
 _EQUAL = 1e-9
-"""Relative difference of responses below which loops are equal, for symmetric stages with rounding."""
+"""Relative difference of responses below which loops count as equal: symmetric stages have rounding errors."""
 _WRONG = 1e6
 """Score of an invalid loop, far above any peak of S."""
 _WIDTHS = (0.4, 0.6, 0.9, 1.4)
-"""Damping ratios of the notches' poles tried: the gain is below 0.7 over about twice that share of the frequency."""
+"""Damping ratios of the notches' poles tried: the gain is below 0.7 in a band of about twice this fraction of the frequency."""
 _UNSTATED = Disturbances(1e-9, {})
 """Default noise of an observer."""
 _Options: TypeAlias = tuple[tuple[tuple[Notch, ...], ...], ...]
@@ -55,7 +55,7 @@ _Options: TypeAlias = tuple[tuple[tuple[Notch, ...], ...], ...]
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """Design attempt on the plant `seen`: a controller, its notches by loop, and its open loops `gains` (see `open_gains`)."""
+    """Design attempt on the plant `seen`: a controller, its notches by loop, and its open-loop responses `gains` (see `open_gains`)."""
 
     seen: View
     controller: Decentralised | LQG
@@ -82,8 +82,8 @@ class Attempt:
 class BandwidthTrial:
     """Design of controllers with the crossover of all loops at a `frequency` [Hz], on the plant `seen`.
 
-    The first attempt has the specified notches only. Further attempts add notches of several widths on modes with a loop gain above 0.3.
-    The best law of a loop has the lowest peak of S. If several laws have peaks up to `calm`, the law with the highest static gain is best.
+    The first attempt has only the specified notches. Further attempts add notches of several widths at modes with a loop gain above 0.3.
+    The best law of a loop has the lowest peak of S; among laws with peaks up to `calm`, the law with the highest static gain is best.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

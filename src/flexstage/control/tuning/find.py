@@ -38,7 +38,7 @@ from flexstage.control.tuning.view import View, view
 from flexstage.control.tuning.weigh import RegulatorSpace, merit, weigh, worth
 
 _TIGHTER = (1.0, 0.97, 0.93)
-"""Target peaks of S in the rounds, above 1, as shares of the limit: peaks may occur between frequencies."""
+"""Target peaks of S in successive rounds, as fractions of the limit's excess over 1: peaks may occur between frequencies."""
 _LOOKS = 2
 """Number of passes over all rounds, the second with frequencies dense around missed peaks."""
 _UNMET = 0.02
@@ -56,9 +56,9 @@ def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...]
     Optimises law and notches of every loop, with their width and depth. A crossover beyond a mode is possible if margins hold for all mode
     shifts. The search starts from a grid around the modes. It also starts from the controller of highest bandwidth (`tune`) if the grid's
     result is not better. If that controller has its crossover beyond the modes, the grid is omitted. The result is at least as good for the
-    objective (`merit`) as that controller. It is evaluated by eigenvalues and by the coupled peak of S of the sampled loop, for mode shifts
-    within the spread. `known` tunings of a plant with fewer modes are tried first. Raises `DesignError` for an unstable open loop, for
-    contradictory requirements, and for each unmet requirement.
+    objective (`merit`) as that controller. Its stability follows from eigenvalues, its robustness from the coupled peak of S of the sampled
+    loop, for mode shifts within the spread. `known` tunings of a plant with fewer modes are tried first. Raises `DesignError` for an
+    unstable open loop, for contradictory requirements, and for each unmet requirement.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -87,7 +87,7 @@ def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...]
         raise KeyboardInterrupt(f"Nothing was written. The best controller so far: {reason}.") from None
     best = _best_of(spec, plain, found)
     if best is None and begun is not None and not any((spec.rejection, spec.settling, spec.delay_margin)):
-        return replace(begun, reason=f"{begun.reason}; none stable with modes up to {100.0 * farthest(spec):g} % off was found")
+        return replace(begun, reason=f"{begun.reason}; none stable with mode shifts up to {100.0 * farthest(spec):g} % was found")
     if best is None:
         raise DesignError([_none_found(spec, refused)])
     require(best.unmet)
@@ -141,7 +141,7 @@ def _candidate(within: Field, controller: Decentralised | LQG, judged: Judgement
         return None
     found = outcome(within, controller.system(within.seen.step))
     overshoot = float(np.max(found.overshoot))
-    high = f"; steps overshoot by {100.0 * overshoot:.0f} %, {100.0 * spec.overshoot:g} % allowed"
+    high = f"; steps overshoot by {100.0 * overshoot:.0f} % ({100.0 * spec.overshoot:g} % allowed)"
     reason = f"{_sentence(within, found, judged)}{note}{high if overshoot > spec.overshoot + _UNMET else ''}"
     unmet = tuple(_missed(within, found, missed)) or tuple(_unmet(spec, found))
     return _Candidate(Tuning(spec, controller, judged, reason), merit(spec, found), worth(within, found), overshoot, unmet)
@@ -159,7 +159,9 @@ def _begun(within: Field, controller: Decentralised | LQG) -> _Candidate | None:
     """Start controller of the search."""
     if within.spec.prefilter and isinstance(controller, Decentralised):
         controller = replace(controller, prefilters=prefilters(within, known_loops(within, controller)))
-    return _candidate(within, controller, _judge(within, controller), note="; the controller of highest bandwidth, without a better one")
+    return _candidate(
+        within, controller, _judge(within, controller), note="; it is the controller of highest bandwidth, without a better one"
+    )
 
 
 def _sought(within: Field, seek: Callable[[Field], SearchResult | None]) -> _Candidate | None:
@@ -220,11 +222,11 @@ def _none_found(spec: TuningSpec, refused: tuple[Finding, ...]) -> Finding:
         *([] if spec.settling is None else [f"settles within {1e3 * spec.settling:g} ms"]),
         *([f"has a delay margin of {1e3 * spec.delay_margin:g} ms"] if spec.delay_margin else []),
     ]
-    advice = "allow a higher peak of S or a smaller mode spread, or use another kind"
-    beyond = f", stable with modes up to {100.0 * farthest(spec):g} % off," if spec.spread else ""
+    advice = "allow a higher peak of S or a smaller mode spread, or use another kind of controller"
+    beyond = f", stable with mode shifts up to {100.0 * farthest(spec):g} %," if spec.spread else ""
     that = f" that {' and '.join(wanted)}" if wanted else ""
-    before = "".join(f"; without a search {each.what}" for each in refused)
-    what = f"no {spec.family.name} found within a peak of S of {spec.sensitivity:g}{beyond}{that}{before}"
+    before = "".join(f"; tuning without search also failed: {each.what}" for each in refused)
+    what = f"no {spec.family.name} found with a peak of S up to {spec.sensitivity:g}{beyond}{that}{before}"
     return Finding("controller.goal", what, f"Relax the requirements, {advice}" if wanted else f"{advice[0].upper()}{advice[1:]}")
 
 
@@ -236,8 +238,8 @@ def _missed(within: Field, found: Outcome, far: float) -> Iterator[Finding]:
     if far > _UNMET and wanted:
         reached = ", ".join(f"{name} {each:.4g} Hz" for name, each in zip(within.seen.loops.names, found.rejection[0], strict=True))
         kept = f"{', '.join(wanted)} and an overshoot of at most {100.0 * spec.overshoot:g} % conflict"
-        what = f"{kept}: the nearest design misses by {100.0 * far:.2g} %, with rejection up to {reached}"
-        yield Finding("controller.goal", what, "Relax one of them, allow a higher peak of S, or sample faster")
+        what = f"{kept}: the nearest design violates them by {100.0 * far:.2g} %, with rejection up to {reached}"
+        yield Finding("controller.goal", what, "Relax one requirement, allow a higher peak of S, or sample faster")
 
 
 def _unmet(spec: TuningSpec, found: Outcome) -> Iterator[Finding]:
@@ -250,23 +252,23 @@ def _unmet(spec: TuningSpec, found: Outcome) -> Iterator[Finding]:
     for name, (wanted, value, unit, factor) in reached.items():
         if wanted and (value > wanted if name == "settling" else value < wanted) and abs(value / wanted - 1.0) > _UNMET:
             what = f"the nearest design has {factor * value:.4g} {unit} (expected {factor * wanted:.4g} {unit})"
-            yield Finding(f"controller.goal.{name}", what, "Relax it, allow a higher peak of S, or sample faster")
+            yield Finding(f"controller.goal.{name}", what, "Relax this requirement, allow a higher peak of S, or sample faster")
 
 
 def _findings(plant: Plant, spec: TuningSpec) -> Iterator[Finding]:
     yield from spec_findings(spec, plant.hardware.step)
     if spec.family not in (PI_FAMILY, PID_FAMILY, LQG_FAMILY):
-        what = f"no optimisation for {spec.family.name}"
-        yield Finding("controller.goal", what, "Use pi, pid or lqg, or omit the goal: then it is tuned to the highest bandwidth")
+        what = f"optimisation does not support {spec.family.name}"
+        yield Finding("controller.goal", what, "Use pi, pid or lqg, or omit the goal to tune for the highest bandwidth")
     if spec.family == LQG_FAMILY and spec.prefilter:
-        what = "linear-quadratic control has its own reference shaping, without prefilter"
-        yield Finding("controller.goal.prefilter", what, "Omit it, or use pi or pid")
+        what = "LQG has its own reference shaping and does not support a prefilter"
+        yield Finding("controller.goal.prefilter", what, "Omit the prefilter, or use pi or pid")
 
 
 def _growth_findings(seen: View) -> Iterator[Finding]:
     growth = seen.systems[0].growth
     if growth >= 0.0:
-        what = f"the stage is unstable in open loop: it grows by {growth:.3g} 1/s"
+        what = f"the stage is unstable in open loop (growth rate {growth:.3g} 1/s)"
         yield Finding("plant", what, "Stabilise the stage, or specify the gains: optimisation needs a stable open loop")
 
 
@@ -286,7 +288,7 @@ def _controller(within: Field, found: SearchResult) -> Decentralised:
 
 
 def prefilters(within: Field, found: SearchResult) -> tuple[Prefilter, ...]:
-    """Select, by loop, the grid prefilter of shortest settling at the worst mode shift, with at most 3 % of overshoot."""
+    """Select a prefilter per loop from a grid: least overshoot over all mode shifts (2 % or less are equal), then fastest settling."""
     loops, chosen = one_loops(within, found), dict[int, Prefilter]()
     for loop, first in enumerate(within.alike):
         chosen[loop] = chosen[first] if first in chosen else _soonest(loops[loop])
@@ -315,7 +317,7 @@ def _settling(loop: OneLoop, tried: Prefilter) -> tuple[float, float]:
 def _sentence(within: Field, found: Outcome, judged: Judgement) -> str:
     spec = within.spec
     reached = ", ".join(f"{name} {value:.3g}" for name, value in zip(within.seen.loops.names, found.rejection[0], strict=True))
-    off, beyond = (f" with modes up to {100.0 * spec.spread:g} % off", f", stable up to {100.0 * farthest(spec):g} %")
-    peak = f"the peak of S{off if spec.spread else ''} is {judged.peak:.3g}{beyond if spec.spread else ''}"
+    shifts = f" with mode shifts up to {100.0 * spec.spread:g} %; stable up to {100.0 * farthest(spec):g} %" if spec.spread else ""
+    peak = f"the peak of S is {judged.peak:.3g}{shifts}"
     objective = "" if spec.objective is None else f" for {spec.objective.value}"
     return f"{spec.family.name} optimised{objective}: sensitivity crossover {reached} Hz; {peak}"

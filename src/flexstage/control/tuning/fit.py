@@ -1,4 +1,4 @@
-"""Least-squares fit of loop parameters: margins, rejection and settling as bounds active only when violated."""
+"""Least-squares fit of loop parameters; margins, rejection and settling are bounds that act only when violated."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ _KEPT = 0.01
 _BELOW = 0.985
 """Limit of |S| in the rejection band."""
 _LESS = 0.95
-"""Share of the rejection required for shifted modes."""
+"""Fraction of the rejection required for shifted modes."""
 _SAMPLES = 512
 """Number of step samples with derivatives."""
 _LONGEST = 0.7
 """Largest change of a parameter in one descent step, a factor of 2: beyond, the quadratic model is invalid."""
 _DAMPINGS = (1e-6, 1e6)
 _TREND, _STALLED, _NEAR_ENOUGH = 10, 0.97, 10.0
-"""Tries over which the trend of a descent is taken; its ratio from which on it has stalled; how many times `enough` it has to lead to."""
+"""Tries over which the trend of a descent is evaluated; ratio above which it has stalled; factor on `enough` that it must reach."""
 _STIFFER, _SOFTER = 4.0, 3.0
 """Limits of the Levenberg-Marquardt damping, and its factors of change."""
 
@@ -41,7 +41,7 @@ _STIFFER, _SOFTER = 4.0, 3.0
 class Bounds:
     """Bounds of a loop: |S| below 1 up to `rejection` [Hz], steps within 2 % after `settling` [s], maximum `overshoot`.
 
-    `noise` is the maximum rms in regulation. The rejection is required of the first `plants` (1 or 2); for the second plant, 0.95 of
+    `noise` is the maximum rms noise in regulation. The first one or two plants (`plants`) must meet the rejection; for the second, 0.95 of
     `rejection` is sufficient.
     """
 
@@ -56,9 +56,9 @@ class Bounds:
 class OneLoop:
     """Single loop with the others closed: the `point` of a `shape` defines its controller C.
 
-    C times `plants` (v, f) is the open loop at `frequencies` (v, f) [Hz]. `slow` (w, h - 1) are the plants for step responses, at the
-    evenly spaced `lines` (h,) [Hz] from 0 to half the rate except the first. `disturbed` and `heard` (f,) are mean squares of the floor and
-    the gauges, weighted by S and T of the first plant.
+    C times `plants` (v, f) is the open loop at `frequencies` (v, f) [Hz]. `slow` (w, h - 1) are the plants for step responses, at all but
+    the first of the evenly spaced `lines` (h,) [Hz] from 0 to half the rate. `disturbed` and `heard` (f,) are mean squares of floor and
+    gauge noise, which |S|^2 and |T|^2 of the first plant multiply.
     """
 
     shape: Shape
@@ -112,7 +112,7 @@ class OneLoop:
         """Compute the residuals of all bounds except peaks of S, with derivatives; `quiet` is the weight of noise.
 
         `near` contains S (n, f) of the plants with rejection, and its slopes (p, n, f). `slow` contains T (w, h) and a function that
-        returns its slopes (p, w, h - 1). Slopes are d ln C by the p parameters: dS = -S T slopes.
+        returns its slopes (p, w, h - 1). Slopes are derivatives of ln C by the p parameters: dS = -S T slopes.
         """
         own, slopes = near
         above = self._rejected(bounds) & (np.abs(own) > _BELOW)
@@ -183,8 +183,8 @@ Squares: TypeAlias = tuple[float, Array, Array]
 def descend(at: Callable[[Array], Squares | None], start: Array, within: tuple[Array, Array], tries: int, enough: float = 0.0) -> Array:
     """Minimise half a sum of squares by the Levenberg-Marquardt method, with parameters between the limits `within` (low, high).
 
-    Points at which `at` returns None (unstable) are rejected. The search ends when half the sum is at most `enough`, or if the trend of the
-    last steps does not lead to `enough`.
+    Points at which `at` returns None (unstable) are rejected. The search ends when half the sum of squares is at most `enough`, or when the
+    trend of the last steps does not lead to `enough`.
 
     >>> bowl = lambda point: (0.5 * float(point @ point), point, np.eye(1))
     >>> found = descend(bowl, np.array([2.0]), (np.array([-5.0]), np.array([5.0])), 20)

@@ -1,4 +1,4 @@
-"""Evaluation of a sampled loop, all axes, over shifts of its modes."""
+"""Evaluation of a sampled loop in all axes, for shifts of its modes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flexstage.control.tuning.view import View
 
 _ROUNDING = 1e-9
 _COARSE = 8
-"""Stride of a first coarse check of frequencies: a peak exceeded there needs no further check."""
+"""Stride of a first, coarse check of frequencies: a loop that exceeds the peak there needs no further check."""
 
 
 def judge_loop(seen: View, control: System, gains: Array | None = None) -> Judgement:
@@ -105,8 +105,8 @@ def closed_growth(plant: System, control: System) -> float:
 def highest_gain(matrices: Array) -> tuple[float, int]:
     """Find the largest singular value of all matrices (f, k, k), and its index.
 
-    Bounds exclude most matrices without eigenvalues. The upper bound is the square root of the largest row sum of |M^H M|, the lower bound
-    the norm of the longest column.
+    Bounds exclude most matrices before eigenvalues are computed. The upper bound is the square root of the largest row sum of |M^H M|, the
+    lower bound the norm of the longest column.
 
     >>> highest_gain(np.array([[[1.0, 0.0], [0.0, 1.0]], [[0.0, 3.0], [0.0, 4.0]]]))
     (5.0, 1)
@@ -136,7 +136,7 @@ def crossing_frequency(frequencies: Array, gains: Array) -> float:
 
 
 def first_rise(sizes: Array, frequencies: Array) -> float:
-    """Find the first upward crossing of 1, linear in the logarithms; an end of the frequencies if there is none.
+    """Find the first upward crossing of 1, linear in the logarithms; the last frequency without one, the first if it starts above.
 
     >>> round(first_rise(np.array([0.1, 0.8, 10.0]), np.array([1.0, 10.0, 100.0])), 2)
     12.26

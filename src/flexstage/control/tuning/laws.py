@@ -74,7 +74,7 @@ PI_FAMILY = Family("PI", pi_laws)
 PID_FAMILY = Family("PID", pid_laws, others="LQG", steps=(1.14, 2.0))
 """A loop with phase lead may have its crossover between modes, in narrow ranges."""
 RESONANT_FAMILY = Family("integral resonant control", resonant_laws, notched=False, others="PI with notches, or LQG")
-LQG_FAMILY = Family("LQG", lambda _, __: (), others="less noise of the gauges", steps=(1.6, 4.0))
+LQG_FAMILY = Family("LQG", lambda _, __: (), others="less gauge noise", steps=(1.6, 4.0))
 """Tuned by its weights, in coarser steps because of its cost."""
 FAMILIES: Mapping[str, Family] = MappingProxyType({"pi": PI_FAMILY, "pid": PID_FAMILY, "resonant": RESONANT_FAMILY, "lqg": LQG_FAMILY})
 """Families by their names in set-up files; `CONTROLLERS` has the others."""

@@ -18,11 +18,11 @@ _BAND = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Performance of a controller: `peaks` (v,) of S over all loops by variant of a field, other values by loop (k,).
+    """Performance of a controller: `peaks` (v,) of S for each variant of a field, other values for each loop (k,).
 
-    `rejection` (2, k) [Hz] is the sensitivity crossover of the model, and the lowest for mode shifts within the spread. `noise` is the rms
-    in regulation, `floor` the floor's part [m]. `settling` [s] (2 %) and `overshoot` are the worst over the spread; `delay_margin` [s]
-    belongs to each loop.
+    `rejection` (2, k) [Hz] contains the sensitivity crossover of the model, then the lowest one for mode shifts within the spread. `noise`
+    [m] is the rms in regulation, `floor` [m] the floor's contribution. `settling` [s] (2 %) and `overshoot` are the worst over the spread;
+    `delay_margin` [s] belongs to each loop.
     """
 
     peaks: Array
@@ -35,7 +35,7 @@ class Outcome:
 
 
 def outcome(within: Field, control: System, gain: float = 1.0) -> Outcome:
-    """Evaluate a stable loop with its controller output times `gain`; does not check stability.
+    """Evaluate a stable loop with the controller's output multiplied by `gain`; stability is not checked.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -31,7 +31,7 @@ from flexstage.control.tuning.view import View, first_alike, resonances
 from flexstage.experiment.progress import report
 
 _INSIDE = 0.97
-"""Share of the peak limit for a single loop: reserve for peaks between frequencies, and for coupling."""
+"""Fraction of the peak limit for a single loop: reserve for peaks between frequencies, and for coupling."""
 _FAR, _STABLE = 0.1, 2.5
 """Least shift of all modes up to which loops remain stable; for a larger spread this multiple of it. S is limited there, too."""
 _LOOSER, _LOOSEST, _LATER = 1.5, 4.0, 8.0
@@ -75,7 +75,7 @@ of one evaluation."""
 _NEARLY = 0.03
 """Excess of bounds up to which a start counts as well damped: only such starts bound the noise."""
 _LEFT = 0.015
-"""Share of the overshoot reserved for gauge rounding and for peaks between step samples."""
+"""Fraction of the overshoot reserved for gauge rounding and for peaks between step samples."""
 _LEAST = 0.02
 """Lowest k_p omega/k_i at the known crossover, for starts from a known controller."""
 _FIRST_DERIVATIVE = 0.01
@@ -93,9 +93,9 @@ _LAME = 0.7
 """Minimum rejection of quiet loops in a balance, relative to the best start. Without floor vibration the quietest loop is the slowest: such
 loops are made quiet again with nearly the same rejection."""
 _AMBITION, _BACK = 1.0, 0.8
-"""First target: 0.3 of the first mode's frequency, or this share of the start's rejection, with all bounds met."""
+"""First target: 0.3 of the first mode's frequency, or this fraction of the start's rejection, with all bounds met."""
 _SHARES = (0.98, 0.93, 0.85, 0.75, 0.65, 0.5, 0.35, 0.2)
-"""Shares of the individual loops' results that all together must reach, tried in turn."""
+"""Fractions of the individual loops' results that all together must reach, tried in turn."""
 _SAME = 1e-6
 """Relative difference of plants below which loops are equal: symmetric models agree to about 1e-9."""
 _CORNER, _OF_RATE = 10.0, 0.4
@@ -119,7 +119,7 @@ _CLOSE = np.linspace(-0.06, 0.06, 25)
 
 @dataclass(frozen=True)
 class SearchSettings:
-    """Search parameters: weight `quiet` of noise, maximum number of steps `tries`, and half sum of squares that is `enough`."""
+    """Search parameters: weight `quiet` of noise, maximum number of steps `tries`, half sum of squares `enough` at which to stop."""
 
     quiet: float
     tries: int
@@ -132,7 +132,7 @@ once."""
 
 
 class Work:
-    """Counter of the responses evaluated by a search, of at most `allowed`; reports the progress."""
+    """Counter of the responses evaluated by a search, at most `allowed`; it also reports the progress."""
 
     def __init__(self, allowed: float = _ALLOWED) -> None:
         self.allowed, self.spent, self._begun = allowed, 0.0, time.process_time()
@@ -146,7 +146,7 @@ class Work:
         self.spent += size
 
     def report(self) -> None:
-        """Report the completed share, and the maximum duration of the whole search."""
+        """Report the completed fraction, and the maximum duration of the whole search."""
         share = min(self.spent / self.allowed, 1.0)
         if share:
             report(share, f"optimising the controller, at most {duration((time.process_time() - self._begun) / share)}")
@@ -198,13 +198,13 @@ def farthest(spec: TuningSpec) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """Plants (v, f, k, k) between the loops of a view at `frequencies` (v, f), and (w, h, k, k) at the evenly spaced `lines` (h,) of steps.
+    """Search data: `plants` (v, f, k, k) from loop commands to poses at `frequencies` (v, f); `slow` (w, h, k, k) at the step `lines` (h,).
 
-    Each plant has its own frequencies, the model's raised by its offset, so that the modes are at the same indices.
+    The frequencies of each plant are the model's times (1 + offset), so that the modes are at the same indices. `lines` are evenly spaced.
 
-    `disturbed` (f, k, d) is the amplitude of each loop's pose by each floor motion, `heard` (f, k) by gauge noise. Both are weighted for
-    sums of squares over frequency. `alike` maps each loop to the first equal one. `allowed` is the rms limit in regulation of each loop;
-    default: no limit. `fast` [Hz] is the known crossover, for step sampling and filters.
+    `disturbed` (f, k, d) is the amplitude of each loop's pose due to each floor motion, `heard` (f, k) due to gauge noise. Both are
+    weighted for sums of squares over frequency. `alike` maps each loop to the first equal one. `allowed` is the limit of each loop's rms
+    noise in regulation; default: no limit. `fast` [Hz] is the known crossover, for step sampling and filters.
     """
 
     seen: View
@@ -250,8 +250,8 @@ def _spread(spec: TuningSpec, cases: tuple[Variant, ...]) -> list[int]:
 def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: float = 0.0, work: Work | None = None) -> Field:
     """Prepare the data of a search from a view at the offsets of `variants`.
 
-    Frequencies are also dense around `places` [Hz] of the model, shifted with the modes. `fast` as in `Field`; `work` belongs to an earlier
-    field whose search continues.
+    Frequencies are also dense around `places` [Hz] of the model, shifted with the modes. `fast` has the meaning of `Field.fast`; `work`
+    belongs to an earlier field whose search continues.
     """
     drive, cases = seen.loops.drive, variants(spec)
     own = _frequencies(seen, max(each.offset for each in cases), places)
@@ -279,7 +279,7 @@ def field(seen: View, spec: TuningSpec, places: tuple[float, ...] = (), fast: fl
 
 
 def last_mode(seen: View) -> float:
-    """Return the frequency [Hz] of the n-th mode, with n the number of loops.
+    """Return the frequency [Hz] of the n-th mode, where n is the number of loops.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -360,7 +360,7 @@ class SearchResult:
 
 
 def search(within: Field, family: Family) -> SearchResult | None:
-    """Search the best loops: coupled ones together, then all at once; `None` if none is stable.
+    """Search for the best loops: coupled loops together, then all loops at once; `None` without a stable result.
 
     PID starts from the PI result. The search is deterministic, with starts on a grid.
     """
@@ -371,7 +371,7 @@ def search(within: Field, family: Family) -> SearchResult | None:
 
 
 def advance(within: Field, known: Decentralised) -> SearchResult:
-    """Improve the loops of a known controller: coupled ones together, then all at once."""
+    """Improve the loops of a known controller: coupled loops together, then all loops at once."""
     begun = known_loops(within, known)
     points, reached, noises = list(begun.points), list(begun.reached), list(begun.noises)
     for block in _blocks(within):
@@ -573,9 +573,9 @@ def _climb(within: Field, starts: list[SearchResult], wanted: list[float]) -> Se
 
 
 def loud_enough(within: Field, starts: list[SearchResult], wanted: list[float]) -> tuple[Field, SearchResult | None]:
-    """Return the first start that meets the frequency targets, and its field; if only noise prevents it, with a raised noise limit.
+    """Return the first start that meets the frequency targets, and its field. If only the noise limit prevents this, raise the limit.
 
-    A loop of high rejection with a tiny gain has low noise but never settles: its noise is no reference for a balance.
+    A loop with a tiny gain may have a high sensitivity crossover and low noise, but never settles: its noise is no reference for a balance.
     """
     best = _first_kept(within, starts, wanted)
     if best is not None or not within.allowed:
@@ -634,7 +634,10 @@ def _fit_together(within: Field, found: SearchResult, bounds: list[Bounds], effo
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """Joint optimisation problem of all loops: violated bounds and the coupled peak of S. Equal loops share their parameters."""
+    """Joint optimisation of all loops: the residuals are violated bounds, noise, and excesses of the coupled peak of S.
+
+    Equal loops share their parameters.
+    """
 
     within: Field
     found: SearchResult
@@ -643,14 +646,14 @@ class Joint:
 
     @cached_property
     def parts(self) -> Mapping[int, slice]:
-        """Parameter slices by loop, of the first of equal loops only."""
+        """Slices of the parameter vector by loop, only for the first of equal loops."""
         different = [loop for loop, first in enumerate(self.within.alike) if first == loop]
         ends = np.cumsum([0, *(len(self.found.points[loop]) for loop in different)])
         return {loop: slice(int(ends[place]), int(ends[place + 1])) for place, loop in enumerate(different)}
 
     @cached_property
     def loops(self) -> Mapping[int, tuple[OneLoop, float]]:
-        """Loops, the first of equal ones only, with their noise weights relative to the start."""
+        """The first of equal loops, each with its noise weight relative to the start."""
         begun = one_loops(self.within, self.found)
         return {loop: (begun[loop], self.quiet / begun[loop].rms) for loop in self.parts}
 
@@ -854,5 +857,5 @@ def _coupled_peak(within: Field, whole: Array) -> float:
 
 
 def excess(within: Field, found: SearchResult) -> float:
-    """Compute the largest relative excess over the requirements."""
+    """Compute the largest relative violation of the requirements."""
     return Joint(within, found, tuple(_all_bounds(within, [0.0] * len(within.alike))), 0.0).passed(found)

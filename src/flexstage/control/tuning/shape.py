@@ -23,8 +23,8 @@ _BELOW = 0.45
 class Shape:
     """PI, or PID filtered at `corner` [Hz], with `count` notches, sampled every `step` [s].
 
-    A point contains the logarithms of k_p, k_i/k_p [1/s], of a PID k_d/k_p [s], and of each notch's frequency [Hz], depth and damping.
-    k_i/k_p is at least `slowest` [1/s], the rate of its zero and of the integrator's tail.
+    A point contains the logarithms of k_p and k_i/k_p [1/s], for a PID also of k_d/k_p [s], and of each notch's frequency [Hz], depth and
+    damping. k_i/k_p is at least `slowest` [1/s], the rate of its zero and of the integrator's tail.
     """
 
     count: int

@@ -22,17 +22,17 @@ from flexstage.control.tuning.objective import SENSITIVITY, TuningObjective
 class TuningSpec(CheckedFields):
     """Tuning specification: `family` of the controller, requirements, disturbances and references.
 
-    Without an `objective` every loop has its gain crossover at `bandwidth` [Hz] (default: the highest possible), with `notches` in every
-    loop, and more on modes if `automatic`. With an objective the controller is optimised: `rejection` [Hz] and `settling` [s] (2 %) are
-    required of every loop (default: as good as possible). `overshoot` is the maximum of a step, `delay_margin` [s] the minimum of every
-    loop; a `prefilter` shapes references.
+    Without an `objective`, every loop has its gain crossover at `bandwidth` [Hz] (default: the highest possible) and the specified
+    `notches`, with more notches at modes if `automatic`. With an objective, the controller is optimised: every loop must reach `rejection`
+    [Hz] and `settling` [s] (2 %; default: as good as possible). `overshoot` is the largest permitted overshoot of a step, `delay_margin`
+    [s] the smallest permitted delay margin of a loop. With `prefilter`, prefilters shape the references.
 
     `sensitivity` is the maximum peak of S (poses as lengths): 2 = 6 dB implies gain margins of 2 and phase margins of 29 deg (Skogestad &
     Postlethwaite, Multivariable Feedback Control, 2005, eq. 2.47). Stability and peak must hold for relative shifts of all modes within
     +-`spread`. With an objective, they must also hold for relative errors of all gains within +-`gain`.
 
-    `expected` are the disturbances assumed by an observer, `floor` spectra by input, `feedforward` (n, f) the feedforward strokes of the
-    reference.
+    `expected` are the disturbances assumed by an observer, `floor` the spectra of floor motion by input, `feedforward` (n, f) the
+    feedforward strokes of the reference.
     """
 
     family: Family
@@ -58,32 +58,32 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
 
     >>> from flexstage.control.tuning.laws import PI_FAMILY
     >>> [str(each) for each in spec_findings(TuningSpec(PI_FAMILY, 6000.0), 1e-4)]
-    ['bandwidth: 6000 Hz is not below half the sampling rate, 5000 Hz. Sample above 60000 Hz, or ask for less.']
+    ['bandwidth: 6000 Hz is not below half the sampling rate, 5000 Hz. Sample above 60000 Hz, or use a lower bandwidth.']
     >>> [each.advice for each in spec_findings(TuningSpec(PI_FAMILY, rejection=500.0, delay_margin=1e-3), 1e-4)]
-    ['Ask for less than 159.2 Hz, or 0.3183 ms']
+    ['Use a rejection below 159.2 Hz, or a delay margin below 0.3183 ms']
     """
     if spec.bandwidth is not None and not 0.0 < spec.bandwidth < np.inf:
-        yield Finding("bandwidth", f"it is {spec.bandwidth:g} Hz", "Use a positive frequency")
+        yield Finding("bandwidth", f"must be positive (got {spec.bandwidth:g} Hz)", "Use a positive frequency")
     elif spec.bandwidth is not None and step is not None and spec.bandwidth >= 0.5 / step:
         what = f"{spec.bandwidth:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
-        yield Finding("bandwidth", what, f"Sample above {10.0 * spec.bandwidth:g} Hz, or ask for less")
+        yield Finding("bandwidth", what, f"Sample above {10.0 * spec.bandwidth:g} Hz, or use a lower bandwidth")
     if not 1.0 < spec.sensitivity < np.inf:
         advice = "Use a larger value, e.g. 2 (6 dB): a loop with delay always exceeds 1"
-        yield Finding("sensitivity", f"the highest peak of S allowed is {spec.sensitivity:g}, and it has to be above 1", advice)
+        yield Finding("sensitivity", f"the limit of the peak of S must be above 1 (got {spec.sensitivity:g})", advice)
     if not 0.0 <= spec.spread < 0.5:
-        yield Finding("spread", f"modes are to be off by up to {spec.spread:g}", "Use a ratio from 0 to 0.5, e.g. 0.02")
+        yield Finding("spread", f"the relative spread of the modes must be at least 0 and below 0.5 (got {spec.spread:g})", "Use e.g. 0.02")
     delay = spec.delay_margin or 0.0
     if spec.rejection is not None and step is not None and spec.rejection >= 0.5 / step:
         what = f"{spec.rejection:g} Hz is not below half the sampling rate, {0.5 / step:g} Hz"
-        yield Finding("controller.goal.rejection", what, "Ask for less, or sample faster")
+        yield Finding("controller.goal.rejection", what, "Use a lower frequency, or sample faster")
     elif spec.rejection is not None and 2.0 * np.pi * spec.rejection * delay > 1.0:
-        turn = f"a delay of {1e3 * delay:g} ms turns by {360.0 * spec.rejection * delay:.0f} deg"
-        what = f"up to {spec.rejection:g} Hz {turn}: no loop with this rejection remains stable with it"
+        turn = f"at {spec.rejection:g} Hz, a delay of {1e3 * delay:g} ms is a phase lag of {360.0 * spec.rejection * delay:.0f} deg"
+        what = f"{turn}: no loop with this rejection remains stable with this delay"
         least, most = 0.5 / (np.pi * delay), 0.5e3 / (np.pi * spec.rejection)
-        yield Finding("controller.goal", what, f"Ask for less than {least:.4g} Hz, or {most:.4g} ms")
+        yield Finding("controller.goal", what, f"Use a rejection below {least:.4g} Hz, or a delay margin below {most:.4g} ms")
     if spec.settling is not None and delay > 0.5 * spec.settling:
-        what = f"steps are to settle in {1e3 * spec.settling:g} ms, and the loop must remain stable with a delay of {1e3 * delay:g} ms"
-        yield Finding("controller.goal", what, "Keep one of them: the delay margin of a loop is a fraction of its settling time")
+        what = f"a settling time of {1e3 * spec.settling:g} ms conflicts with a delay margin of {1e3 * delay:g} ms"
+        yield Finding("controller.goal", what, "Keep one of them: the delay margin of a loop is only a fraction of its settling time")
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class Judgement:
 
 @dataclass(frozen=True, eq=False)
 class Tuning:
-    """Tuned controller: the `spec` and its `judgement`; `reason` summarises it."""
+    """Tuned `controller`, its `spec` and its `judgement`; `reason` summarises the result."""
 
     spec: TuningSpec
     controller: Decentralised | LQG

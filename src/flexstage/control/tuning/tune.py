@@ -1,4 +1,4 @@
-"""Tuning: gains for a required bandwidth, or for the highest bandwidth, and the reason of a failure."""
+"""Tuning: gains for a required bandwidth, or for the highest bandwidth, and the reason for a failure."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from flexstage.control.tuning.view import View, view
 from flexstage.experiment.progress import report
 
 _SLOW = 0.1
-"""Lowest bandwidth tried, relative to integral control with a gain of 1 at the highest resonance, which is stable by small gain."""
+"""Lowest bandwidth tried, relative to integral control with a gain of 1 at the highest resonance (stable: small-gain theorem)."""
 _FINE = 0.05
-"""Share of the first mode above which bandwidths are tried in finer steps."""
+"""Fraction of the first mode's frequency above which bandwidths are tried in finer steps."""
 _WITHIN = 1.003
 """Relative accuracy of the highest bandwidth."""
 _NOTICED = 20.0
 """Phase lag of hold and delay [deg] above which faster sampling is advised."""
 _CALM = (0.9, 0.8, 0.7, 0.6)
-"""Shares of the peak limit for single loops while integrators are strengthened: reserve for coupling."""
+"""Fractions of the peak limit for single loops while integrators are strengthened: reserve for coupling."""
 
 
 def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
     """Tune a controller to a specification without objective, evaluated on the whole sampled loop.
 
-    At the required bandwidth every loop's gain is 1 (default: the highest found, by trial from fast to slow and then by bisection). The
+    Every loop has a gain of 1 at the required bandwidth (default: the highest found, by trial from fast to slow and then by bisection). The
     family's law with the lowest peak of S is selected, first without additional notches, then with them. The whole loop must be stable by
-    its eigenvalues, with a peak of S below the specified one, also for all mode shifts within the spread. PI and PID then get the strongest
+    its eigenvalues, with a peak of S below the limit, also for all mode shifts within the spread. PI and PID then get the strongest
     integrators within the same peak of S (Astrom, Panagopoulos & Hagglund, Automatica 34 (1998) 585). LQG is tuned by its weights, in
-    platform coordinates. Raises `DesignError` for an unreachable bandwidth: with the reason, the highest one, and a remedy.
+    platform coordinates. Raises `DesignError` for an unreachable bandwidth, with the reason, the highest bandwidth found, and a remedy.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -44,7 +44,7 @@ def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
     >>> plant = integral_loop().plant
     >>> found = tune(plant, platform_loops(plant.coordinates), TuningSpec(PI_FAMILY, bandwidth=5.0))
     >>> print(found.reason)
-    PI: all gains pass 1 at 5 Hz; the peak of S with modes up to 2 % off is 0.5 dB, 6.02 dB allowed
+    PI: gain crossover of all loops at 5 Hz; the peak of S with mode shifts up to 2 % is 0.5 dB (6.02 dB allowed)
     """
     loops = platform_loops(loops.coordinates) if spec.family == LQG_FAMILY else loops
     require(_findings(plant, spec))
@@ -97,9 +97,10 @@ def trial_bandwidths(seen: View, steps: tuple[float, float]) -> list[float]:
 
 
 def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | None, Attempt | None]:
-    """Find the highest bandwidth with the specified margins, within 0.3 %, and its controller; or None.
+    """Find the highest bandwidth with the specified margins, within 0.3 %, and its controller; None for both without one.
 
-    The highest of `trial_bandwidths` is refined by bisection up to the next one. Other controllers may reach more.
+    The highest successful one of `trial_bandwidths` is refined by bisection up to the next one. Other controllers may reach higher
+    bandwidths.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -135,27 +136,27 @@ def _findings(plant: Plant, spec: TuningSpec) -> Iterator[Finding]:
     if spec.family != LQG_FAMILY:
         yield from notch_findings(spec.notches, plant.frequencies)
     elif spec.notches:
-        yield Finding("notches", f"{len(spec.notches)} are given for LQG, whose observer knows the modes", "Leave them out")
+        yield Finding("notches", f"got {len(spec.notches)} for LQG, whose observer models the modes", "Omit the notches")
     if spec.family == LQG_FAMILY and spec.expected is None:
-        yield Finding("LQG", "the observer's noise is missing", "State the gauges' noise and what disturbs the strokes")
+        yield Finding("LQG", "the observer's noise is missing", "Specify the noise of gauges and strokes")
 
 
 def _no_bandwidth(seen: View, spec: TuningSpec) -> Finding:
     places = trial_bandwidths(seen, spec.family.steps)
     best, advice = BandwidthTrial(seen, spec, places[-1]).best(), _help(seen, spec, places[-1])
-    what = f"no bandwidth is reached, {_tried(places)}; at the last {_reason(spec, best, places[-1])}"
+    what = f"no bandwidth is reached ({_tried(places)}); at the lowest, {_reason(spec, best, places[-1])}"
     return Finding("tuning", what, f"{advice[:1].upper()}{advice[1:]}")
 
 
 def _unreached(seen: View, spec: TuningSpec, best: Attempt | None, wanted: float) -> Finding:
     trial, reached = highest_bandwidth(seen, spec)
     tried = _tried(trial_bandwidths(seen, spec.family.steps))
-    rest, ask = f"no other bandwidth succeeds either, {tried}", "Allow a higher peak of S"
+    rest, ask = f"no other bandwidth succeeds either ({tried})", "Allow a higher peak of S"
     if trial is not None and reached is not None:
         top = _three_digits(trial.frequency)
-        rest = f"{top} Hz is the highest found with {_controller_name(spec, reached)}, {tried}"
-        ask = f"Ask for more, up to {top} Hz" if wanted < trial.frequency else f"Ask for {top} Hz or less"
-    what = f"at {_three_digits(wanted)} Hz {_reason(spec, best, wanted)}; {rest}"
+        rest = f"the highest bandwidth found is {top} Hz with {_controller_name(spec, reached)} ({tried})"
+        ask = f"Use a higher one, up to {top} Hz" if wanted < trial.frequency else f"Use {top} Hz or less"
+    what = f"at {_three_digits(wanted)} Hz, {_reason(spec, best, wanted)}; {rest}"
     return Finding("bandwidth", what, f"{ask}; {_help(seen, spec, wanted)}")
 
 
@@ -166,17 +167,17 @@ def _tried(places: list[float]) -> str:
 def _reason(spec: TuningSpec, best: Attempt | None, wanted: float) -> str:
     """Reason of failure at a bandwidth."""
     if best is None:
-        return f"{spec.family.name} has no law whose gain is 1 there"
+        return f"{spec.family.name} has no law with a loop gain of 1"
     found, called = best.judgement, _controller_name(spec, best)
     if not found.stable:
-        return f"the loop with {called} is unstable: it grows by {found.growth:.3g} 1/s{_offset_text(found)}"
+        return f"the loop with {called} is unstable (growth rate {found.growth:.3g} 1/s{_offset_text(found)})"
     allowed = spec.sensitivity
     if found.peak > allowed:
         above = _decibel(found.peak / allowed)
         peak = f"{_decibel(found.peak):.1f} dB at {_three_digits(found.frequency)} Hz{_offset_text(found)}"
         return f"the peak of S with {called} is {peak}, {above:.1f} dB above the {_decibel(allowed):.1f} dB allowed"
     far = max(found.bandwidths, key=lambda each: abs(each / wanted - 1.0))
-    return f"the gain of a loop with {called} first passes 1 at {_three_digits(far)} Hz already"
+    return f"the gain of a loop with {called} first falls below 1 at {_three_digits(far)} Hz"
 
 
 def _help(seen: View, spec: TuningSpec, wanted: float) -> str:
@@ -185,19 +186,19 @@ def _help(seen: View, spec: TuningSpec, wanted: float) -> str:
     if not spec.automatic and spec.family != LQG_FAMILY:
         trial, best = highest_bandwidth(seen, replace(spec, automatic=True))
         if trial is not None and best is not None and any(best.notches):
-            found.append(f"with {_notch_places(best)} {_three_digits(trial.frequency)} Hz is reached")
+            found.append(f"with {_notch_places(best)}, the bandwidth reaches {_three_digits(trial.frequency)} Hz")
     if seen.step is not None:
         acts = wanted if spec.family.notched else max(wanted, float(seen.modes[0]))
         lag = 360.0 * acts * (seen.plant.hardware.delay + 0.5 * seen.step)
         if lag > _NOTICED:
-            found.append(f"sample faster: zero-order hold and delay cost {lag:.0f} deg at {_three_digits(acts)} Hz")
+            found.append(f"sample faster: zero-order hold and delay cause {lag:.0f} deg of phase lag at {_three_digits(acts)} Hz")
     return "; ".join([*found, f"try {spec.family.others}, more damping, or a smaller spread of the modes"])
 
 
 def _sentence(spec: TuningSpec, best: Attempt, bandwidth: float) -> str:
-    spread = f" with modes up to {100.0 * spec.spread:g} % off" if spec.spread else ""
-    peak = f"the peak of S{spread} is {_decibel(best.judgement.peak):.1f} dB, {_decibel(spec.sensitivity):.3g} dB allowed"
-    return f"{_controller_name(spec, best)}: all gains pass 1 at {_three_digits(bandwidth)} Hz; {peak}"
+    spread = f" with mode shifts up to {100.0 * spec.spread:g} %" if spec.spread else ""
+    peak = f"the peak of S{spread} is {_decibel(best.judgement.peak):.1f} dB ({_decibel(spec.sensitivity):.3g} dB allowed)"
+    return f"{_controller_name(spec, best)}: gain crossover of all loops at {_three_digits(bandwidth)} Hz; {peak}"
 
 
 def _controller_name(spec: TuningSpec, best: Attempt) -> str:

@@ -1,4 +1,4 @@
-"""Plant for tuning: between the loops' commands and poses, at many frequencies, for several mode shifts."""
+"""Plant for tuning: from the loops' commands to their poses, at many frequencies, for several mode shifts."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from flexstage.control.systems.system import System
 _PLAIN, _PER_DECADE = 400, 60
 """Number of logarithmically spaced frequencies, and minimum per decade: 2 to 4 % apart."""
 _TURNED, _OF_RATE = 0.3, 0.4
-"""Highest bandwidth: a phase lag of hold and delay of 0.3 turns, 108 deg, beyond the lead of laws; at most this share of the rate."""
+"""Highest bandwidth: a phase lag of hold and delay of 0.3 turns, 108 deg, beyond the lead of laws; at most this fraction of the rate."""
 _OF_HIGHEST = 0.25
 """Highest bandwidth of a continuous loop, relative to the highest frequency: 5 times the plant's last mode."""
 _LOWEST, _BELOW_FASTEST = 1e-3, 0.01
-"""Lowest frequency over the first mode, at most over the highest bandwidth; for a free body with a mode at 0 Hz, over both."""
+"""Lowest frequency relative to the first mode, and its maximum relative to the highest bandwidth."""
 _AROUND = 21
 """Number of frequencies around each mode, at even steps of its resonance phase from -1.5 to 1.5 rad."""
 _SAME = 0.01
@@ -116,7 +116,7 @@ def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] |
 
 
 def first_alike(own: Array, loop: int, tolerance: float) -> Iterator[int]:
-    """Find the loops with the same responses as a `loop`: yields the indices of earlier equal loops in `own` (v, f, k), then its own."""
+    """Find the loops with the same responses `own` (v, f, k) as a `loop`: yields indices of earlier equal loops, then its own."""
     largest = np.max(np.abs(own[..., loop]))
     yield from (other for other in range(loop) if np.max(np.abs(own[..., other] - own[..., loop])) < tolerance * largest)
     yield loop

@@ -19,11 +19,11 @@ from flexstage.control.tuning.search import SETTLED, Field, last_mode
 from flexstage.control.tuning.spec import TuningSpec
 
 _BANDWIDTHS, _TRUSTS, _POSES = (0.25, 0.5, 1.0), (1.0, 30.0, 1000.0), (0.01, 0.1, 1.0)
-"""Grid of starts: bandwidths as shares of the first mode; factors on the assumed stroke noise; weights of the pose."""
+"""Grid of starts: bandwidths as fractions of the first mode; factors on the assumed stroke noise; weights of the pose."""
 _SLOWER, _SURER, _LOOSER = (0.01, 0.03, 0.1), (0.01, 1.0), (1e-4, 1e-3, 1e-2)
 """Grid if no other start is stable with shifted modes: a regulator that does not act on modes is robust to them."""
 _BEGUN, _TRUSTED = (0.25, 0.5, 1.0), (0.1, 1.0, 10.0)
-"""Grid around a known controller: shares of its bandwidth, and factors on the stroke noise assumed by its observer."""
+"""Grid around a known controller: fractions of its bandwidth, and factors on the stroke noise assumed by its observer."""
 _FIRST = (0.4, 1.2, 0.8)
 """Edges of the first simplex: factors of e for bandwidths, noise and weights of the pose. The grid's steps are twice as large."""
 _ROUNDS, _SMALLER, _EVALUATIONS = 2, 0.35, 190
@@ -33,7 +33,7 @@ _SHARPNESS = 16.0
 _STEEP = 20.0
 """Weight of a violated bound: an excess of 1 % costs as much as a fifth of an improvement by e."""
 _INSIDE = 0.985
-"""Share of the peak limit at the frequency grid, for peaks between its points."""
+"""Fraction of the peak limit at the frequency grid, for peaks between its points."""
 _NOISIER = 1.15
 """Noise factor that still counts as equal: with dominant gauge noise, as without floor vibration, rejection increases noise."""
 _UNSTABLE = 1e3
@@ -83,7 +83,7 @@ class RegulatorSpace:
 def weigh(searched: RegulatorSpace, against: Outcome, begun: LQG, bandwidth: float) -> LQG:
     """Optimise the weights relative to a known outcome: maximise the smallest improvement of the objective's quantities.
 
-    Downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308; its coefficients by dimension after Gao & Han, Computational
+    Downhill simplex (Nelder & Mead, Computer Journal 7 (1965) 308), with coefficients for the dimension (Gao & Han, Computational
     Optimization and Applications 51 (2012) 259). It starts from the best point of a grid. The grid is around the first mode and includes
     the controller `begun`. If the crossover at `bandwidth` [Hz] of `begun` is above the modes, the grid is around `begun`. The search is
     deterministic.

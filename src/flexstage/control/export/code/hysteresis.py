@@ -16,7 +16,7 @@ from flexstage.control.hysteresis.models.protocol import Hysteresis
 
 
 def hysteresis_step(name: str, model: Hysteresis, bias: Array) -> tuple[list[str], State]:
-    """Generate a function `double <name>(double *state, int axis, double value)` that advances one axis, and its initial state at the bias.
+    """Generate `double <name>_move(double *state, int axis, double value)`, which advances one axis, and its initial state at the bias.
 
     Raises `DesignError` for a model without a C form.
 
@@ -32,8 +32,8 @@ def hysteresis_step(name: str, model: Hysteresis, bias: Array) -> tuple[list[str
     elif isinstance(model, BoucWen):
         lines = _bouc_wen(name, model)
     else:
-        advice = "Export a loop with a Prandtl-Ishlinskii or Bouc-Wen hysteresis, or simulate this one without a compiler"
-        raise refuse("hysteresis", f"{type(model).__name__} has no C form", advice)
+        advice = "Export a loop with a Prandtl-Ishlinskii or Bouc-Wen hysteresis, or simulate this loop without a compiler"
+        raise refuse("hysteresis", f"{type(model).__name__} cannot be exported as C", advice)
     return [*head, *lines], State(name, start.shape, f"{name}_rest")
 
 
@@ -96,7 +96,7 @@ def _envelope(name: str, envelope: Envelope, axes: int) -> tuple[list[str], str]
 
 
 def hysteresis_inverse(name: str, model: PrandtlIshlinskii) -> list[str]:
-    """Generate `double <name>_invert(const double *plays, int axis, double value)`: the input for an output at the given plays.
+    """Generate `double <name>_invert(const double *plays, int axis, double value)`: the input for the output `value` at the given plays.
 
     The model's state does not change; z'_j = P_j z_j + sum_{i>j} p_i z_i are the plays of its inverse (see `inverse_state`).
 

@@ -28,7 +28,7 @@ class Core:
     """Control law as C: state arrays with sizes, settings, and statements.
 
     `locals` are declared at the head. `command` computes the command from errors and states. `begin` sets the states so that the command
-    equals the last applied one. `next` computes the next states into arrays `next_<state>`. `tables` are at file level.
+    equals the last applied stroke. `next` computes the next states into arrays `next_<state>`. `tables` are at file level.
     """
 
     states: tuple[tuple[str, int], ...]
@@ -149,13 +149,13 @@ def _settled(system: System) -> Array:
 
 def _gains(law: Decentralised, laws: list[PID], step: float) -> tuple[ProgramSetting, ...]:
     """Settings that may change at run time, with their units."""
-    named = f"gains of the loops {', '.join(law.loops.names)} [1]"
+    named = f"proportional gains of the loops {', '.join(law.loops.names)} [1]"
     follows = [step * tracking_rate(each.tracking_time, step) if each.integral else 0.0 for each in laws]
     return (
         ProgramSetting("proportional", np.array([each.proportional for each in laws]), named),
-        ProgramSetting("integral", np.array([each.integral for each in laws]), "[1/s]"),
-        ProgramSetting("derivative", np.array([each.derivative for each in laws]), "[s]"),
-        ProgramSetting("tracking", np.array(follows), "fraction of the saturated part that an integrator recovers per sample"),
+        ProgramSetting("integral", np.array([each.integral for each in laws]), "integral gains [1/s]"),
+        ProgramSetting("derivative", np.array([each.derivative for each in laws]), "derivative gains [s]"),
+        ProgramSetting("tracking", np.array(follows), "fraction of (applied - commanded) that an integrator follows per sample"),
     )
 
 

@@ -1,4 +1,4 @@
-"""Force feedback in the legs as C: inside a controller stepped at the legs' rate, or a separate function."""
+"""Force feedback in the legs as C: inside a controller stepped at the legs' rate, or as a separate function."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ def with_legs(outer: Program, given: Machine, legs: SampledLegs) -> Program:
     """Generate a controller program with inner loops, stepped every `legs.step`; the pose controller's outputs are held in between.
 
     Further inputs are `tension.<actuator>` [N], positive in tension. Outputs are `added`, the strokes of force feedback, and `total`, the
-    strokes of both loops within the amplifiers' limits; `volts` belong to the total. A tension that is not finite is held, and
-    `tension_status` reports it.
+    strokes of both loops within the amplifiers' limits; `volts` are the voltages of `total`. The last valid value replaces a tension that
+    is not finite, and `tension_status` reports this.
     """
     strokes = {channel.name: channel for channel in given.strokes()}
     own, total = [strokes[name] for name in legs.actuators], given.strokes("total.")
     further = (
-        Signal("added", tuple(Channel(f"added.{each.name}", each.unit) for each in own), "added by force feedback"),
+        Signal("added", tuple(Channel(f"added.{each.name}", each.unit) for each in own), "strokes added by force feedback"),
         Signal("total", total, "strokes of both loops, within the amplifiers' limits"),
         Signal("tension_status", tuple(Channel(f"status.tension.{each.name}", "1") for each in own), _STATUS),
     )
-    before = f"One call of the step every {outer.step:.12g} s"
+    before = f"Call the step every {outer.step:.12g} s"
     about = (*(line.replace(before, "Pose loop") for line in outer.about), _about(legs))
     inner = _settings(given, legs)
     tables = [line for each in inner for line in table(each.field, bounded(each, Precision.DOUBLE).values)]
@@ -50,14 +50,14 @@ def with_legs(outer: Program, given: Machine, legs: SampledLegs) -> Program:
     )
 
 
-_STATUS = "for each tension: 0 valid; 1 not finite, the last valid one is held"
+_STATUS = "for each tension: 0 valid; 1 not finite, replaced by the last valid value"
 
 
 def _about(legs: SampledLegs) -> str:
-    first = f"of {legs.turns} calls the first runs the pose loop, every {legs.turns * legs.step:.12g} s, from the readings of that call"
+    first = f"The first of {legs.turns} calls also runs the pose loop, every {legs.turns * legs.step:.12g} s, with the current readings"
     return (
-        f"One call of the step every {legs.step:.12g} s: {first}; all run force feedback in the legs of {', '.join(legs.actuators)}. "
-        "Tension is positive; total is the amplifiers' input."
+        f"Call the step every {legs.step:.12g} s: it runs force feedback in the legs of {', '.join(legs.actuators)}. {first}. "
+        "Tension is positive; total is the input of the amplifiers."
     )
 
 
@@ -108,9 +108,9 @@ def legs_beside(outer: Program, given: Machine, legs: SampledLegs, precision: Pr
     call = f"void {outer.name}_damp({outer.name}_state *state, const {outer.name}_parameters *set, {sizes})"
     flops = (6 if legs.order == 1 else 12) * len(places) + 5 * m
     notes = (
-        f"Force feedback in the legs of {', '.join(legs.actuators)}. Call it every {legs.step:.12g} s, {legs.turns} times to one of "
-        f"the step: {flops} additions and multiplications from tensions [N] to the strokes of both loops within what "
-        "the amplifiers give. These go to them, not what the step gives."
+        f"Force feedback in the legs of {', '.join(legs.actuators)}. Call it every {legs.step:.12g} s, {legs.turns} times per call of "
+        f"the step ({flops} additions and multiplications). It computes the strokes of both loops, within the amplifiers' limits, "
+        "from tensions [N]. Send these strokes to the amplifiers, not those of the step."
     )
     body = (
         f"double added[{m}] = {{0.0}}, gives[{len(places)}] = {{0.0}};",

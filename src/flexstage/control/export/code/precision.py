@@ -1,4 +1,4 @@
-"""Number type of a controller for hardware, and the conversion of C text to it."""
+"""Number type of a controller for hardware, and the conversion of C code to it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Precision(Enum):
 
     @property
     def tolerance(self) -> float:
-        """Tolerance of outputs relative to the largest output: the accumulated rounding of some hundred samples."""
+        """Tolerance of outputs relative to the largest output: the accumulated rounding error of some hundred samples."""
         return 1e-4 if self is Precision.SINGLE else 1e-11
 
     @property

@@ -11,9 +11,9 @@ from flexstage.base.number import Array
 from flexstage.control.export.code.text import number, table, wrap
 
 _SPARSE, _FEW, _ROWS = 0.2, 36, 8
-"""A matrix with more nonzero entries, or a larger share of them, is a table."""
+"""A matrix with more nonzero entries, or a larger fraction of them, becomes a table."""
 MULTIPLY = (
-    "/* sum += matrix vector; the matrix by groups of eight rows, each column by column: a compiler keeps eight sums at once. */",
+    "/* sum += matrix * vector, the matrix in groups of eight rows, each group by columns: a compiler keeps eight sums at once. */",
     "static void multiply(const double *matrix, int groups, int columns, const double *vector, double *sum)",
     "{",
     "    int group, column, row;",
@@ -46,7 +46,7 @@ class Code:
 def product(name: str, target: str, terms: Iterable[Term], size: int) -> Code:
     """Generate target[i] = sum over the terms of matrix[i, j] vector[j], for i below `size`; table names start with `name`.
 
-    Sparse matrices are unrolled, dense ones are tables.
+    Sparse matrices become single statements, dense matrices become tables.
 
     >>> product("seen", "y", [(np.array([[2.0, 0.0], [0.0, -1.0]]), "x")], 2).body
     ('y[0] = 2.0 * x[0];', 'y[1] = -x[1];')

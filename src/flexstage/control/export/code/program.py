@@ -56,8 +56,8 @@ class Program:
     """Fixed-step C99 program: the body of `code` is run every `step` [s].
 
     The header declares `<name>_input`, `_output`, `_state`, `<name>_init(state)` and `<name>_step(state, in, out)`. All numbers are
-    doubles, in SI units. It uses no heap; only tables are static. With `settings` both functions also have a `<name>_parameters` argument,
-    the settings and an enable flag; no library function is then called.
+    doubles, in SI units. It uses no heap; only tables are static. With `settings` both functions also have an argument `<name>_parameters`
+    (settings and an enable flag), and call no library function.
     """
 
     name: str
@@ -84,7 +84,7 @@ class Program:
             'extern "C" {',
             "#endif",
             "",
-            *comment("Time between two calls of the step [s], kept by the caller."),
+            *comment("Time between two calls of the step [s]; the caller must keep it."),
             f"#define {name.upper()}_PERIOD {number(self.step)}",
             "",
             *_signals(f"{name}_input", self.inputs),

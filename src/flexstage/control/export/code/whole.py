@@ -56,8 +56,8 @@ def loop_code(given: Machine, name: str = "loop") -> Program:
         inputs=(
             inputs(given)[0],
             Signal("disturbance", given.disturbances, "disturbances, constant over a sample"),
-            Signal("noise", given.read("noise."), "added to readings before rounding; NaN: lost"),
-            Signal("added", given.strokes("noise."), "added to free strokes"),
+            Signal("noise", given.read("noise."), "noise added to readings before rounding; NaN: lost reading"),
+            Signal("added", given.strokes("noise."), "noise added to free strokes"),
         ),
         outputs=(
             *outputs(given),

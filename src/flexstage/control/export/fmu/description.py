@@ -48,7 +48,7 @@ def description(program: Program, sources: Iterable[str]) -> bytes:
     )
     _co_simulation(root, program, sources)
     _units(root, [channel.unit for channel, _ in (*inputs, *outputs)])
-    ElementTree.SubElement(ElementTree.SubElement(root, "LogCategories"), "Category", name="logStatusError", description="refused calls")
+    ElementTree.SubElement(ElementTree.SubElement(root, "LogCategories"), "Category", name="logStatusError", description="rejected calls")
     ElementTree.SubElement(root, "DefaultExperiment", startTime="0.0", stopTime="1.0", stepSize=repr(program.step))
     variables = ElementTree.SubElement(root, "ModelVariables")
     for number, (channel, meaning) in enumerate((*inputs, *outputs)):

@@ -1,5 +1,5 @@
-/* FMI 2.0 for Co-Simulation around a program of fixed step: the functions of the standard, nothing else.
- * model.h says which program. Memory comes from the importer; the state is plain numbers, so it is copied to be kept. */
+/* FMI 2.0 for Co-Simulation around a fixed-step program: only the functions of the standard.
+ * model.h selects the program. The importer provides memory. The state contains only numbers, so that a copy saves it. */
 #include "model.h"
 
 #include <stddef.h>
@@ -36,7 +36,7 @@ typedef struct {
     void *environment;
 } Callbacks;
 
-/* Everything that changes: what is kept by getting, setting and serialising the state of the FMU. */
+/* All variables of the FMU state, which the importer can get, set and serialise. */
 typedef struct {
     model_state state;
     double in[MODEL_INPUTS];
@@ -65,7 +65,7 @@ static void at_rest(Kept *kept)
     kept->mode = INSTANTIATED;
 }
 
-/* Outputs of the sample at the start, of which nothing stays but what they show: there is none before it. */
+/* Compute the outputs of the first sample without a change of the state: there is no earlier sample. */
 static void look_ahead(Kept *kept)
 {
     model_state state = kept->state;
@@ -111,7 +111,7 @@ EXPORT Component NAMED(fmi2Instantiate)(String name, int type, String guid, Stri
     if (callbacks == NULL || callbacks->logger == NULL || callbacks->allocate == NULL || callbacks->release == NULL) return NULL;
     if (name == NULL || name[0] == '\0' || type != 1 || guid == NULL || strcmp(guid, MODEL_GUID) != 0) {
         callbacks->logger(callbacks->environment, name == NULL ? "?" : name, ERROR, "logStatusError",
-                          "%s", "it needs a name, the type Co-Simulation and the GUID of its modelDescription.xml");
+                          "%s", "instantiation needs a name, the type Co-Simulation and the GUID of modelDescription.xml");
         return NULL;
     }
     instance = callbacks->allocate(1, sizeof *instance);
@@ -142,7 +142,7 @@ EXPORT Status NAMED(fmi2SetupExperiment)(Component c, Boolean bounded, double to
 {
     Instance *instance = c;
     (void)bounded, (void)tolerance, (void)ends, (void)stop;
-    if (!is_in(instance, INSTANTIATED)) return told(instance, "the experiment is set up after instantiation only");
+    if (!is_in(instance, INSTANTIATED)) return told(instance, "the experiment can be set up only before initialisation");
     instance->kept.start = start;
     return OK;
 }
@@ -151,7 +151,7 @@ EXPORT Status NAMED(fmi2EnterInitializationMode)(Component c);
 EXPORT Status NAMED(fmi2EnterInitializationMode)(Component c)
 {
     Instance *instance = c;
-    if (!is_in(instance, INSTANTIATED)) return told(instance, "initialisation begins after instantiation only");
+    if (!is_in(instance, INSTANTIATED)) return told(instance, "initialisation can begin only once after instantiation or reset");
     instance->kept.mode = INITIALISING;
     return OK;
 }
@@ -160,7 +160,7 @@ EXPORT Status NAMED(fmi2ExitInitializationMode)(Component c);
 EXPORT Status NAMED(fmi2ExitInitializationMode)(Component c)
 {
     Instance *instance = c;
-    if (!is_in(instance, INITIALISING)) return told(instance, "it is not being initialised");
+    if (!is_in(instance, INITIALISING)) return told(instance, "the FMU is not in initialisation mode");
     look_ahead(&instance->kept);
     instance->kept.mode = STEPPING;
     return OK;
@@ -170,7 +170,7 @@ EXPORT Status NAMED(fmi2Terminate)(Component c);
 EXPORT Status NAMED(fmi2Terminate)(Component c)
 {
     Instance *instance = c;
-    if (!is_in(instance, STEPPING)) return told(instance, "it is not running");
+    if (!is_in(instance, STEPPING)) return told(instance, "the FMU is not in step mode");
     instance->kept.mode = TERMINATED;
     return OK;
 }
@@ -190,7 +190,7 @@ EXPORT Status NAMED(fmi2GetReal)(Component c, const Reference references[], size
     if (is_in(instance, INSTANTIATED | INITIALISING)) look_ahead(&instance->kept);
     for (i = 0; i < count; i++) {
         const Reference number = references[i];
-        if (number >= MODEL_INPUTS + MODEL_OUTPUTS) return told(instance, "there is no variable of this reference");
+        if (number >= MODEL_INPUTS + MODEL_OUTPUTS) return told(instance, "no variable has this value reference");
         values[i] = number < MODEL_INPUTS ? instance->kept.in[number] : instance->kept.out[number - MODEL_INPUTS];
     }
     return OK;
@@ -201,21 +201,21 @@ EXPORT Status NAMED(fmi2SetReal)(Component c, const Reference references[], size
 {
     Instance *instance = c;
     size_t i;
-    if (!is_in(instance, INSTANTIATED | INITIALISING | STEPPING)) return told(instance, "it takes no inputs any more");
+    if (!is_in(instance, INSTANTIATED | INITIALISING | STEPPING)) return told(instance, "inputs cannot be set after termination");
     for (i = 0; i < count; i++) {
-        if (references[i] >= MODEL_INPUTS) return told(instance, "there is no input of this reference");
+        if (references[i] >= MODEL_INPUTS) return told(instance, "no input has this value reference");
         instance->kept.in[references[i]] = values[i];
     }
     return OK;
 }
 
-/* There are no variables of other types: every reference to one is wrong. */
+/* Variables of other types do not exist: every reference to one is an error. */
 #define NO_GETTER(function, type)                                                                                              \
     EXPORT Status NAMED(function)(Component c, const Reference references[], size_t count, type values[]);                     \
     EXPORT Status NAMED(function)(Component c, const Reference references[], size_t count, type values[])                      \
     {                                                                                                                          \
         (void)references, (void)values;                                                                                        \
-        return count == 0 ? OK : told(c, "there are only real variables");                                                     \
+        return count == 0 ? OK : told(c, "the FMU has only real variables");                                                     \
     }
 NO_GETTER(fmi2GetInteger, int)
 NO_GETTER(fmi2GetBoolean, Boolean)
@@ -229,7 +229,7 @@ EXPORT Status NAMED(fmi2GetFMUstate)(Component c, void **kept)
 {
     const Instance *instance = c;
     if (*kept == NULL) *kept = instance->callbacks->allocate(1, sizeof(Kept));
-    if (*kept == NULL) return told(instance, "there is no memory for its state");
+    if (*kept == NULL) return told(instance, "out of memory for the state of the FMU");
     memcpy(*kept, &instance->kept, sizeof(Kept));
     return OK;
 }
@@ -260,7 +260,7 @@ EXPORT Status NAMED(fmi2SerializedFMUstateSize)(Component c, void *kept, size_t 
 EXPORT Status NAMED(fmi2SerializeFMUstate)(Component c, void *kept, char bytes[], size_t size);
 EXPORT Status NAMED(fmi2SerializeFMUstate)(Component c, void *kept, char bytes[], size_t size)
 {
-    if (size < sizeof(Kept)) return told(c, "its state does not fit into so few bytes");
+    if (size < sizeof(Kept)) return told(c, "the buffer is too small for the state of the FMU");
     memcpy(bytes, kept, sizeof(Kept));
     return OK;
 }
@@ -269,9 +269,9 @@ EXPORT Status NAMED(fmi2DeSerializeFMUstate)(Component c, const char bytes[], si
 EXPORT Status NAMED(fmi2DeSerializeFMUstate)(Component c, const char bytes[], size_t size, void **kept)
 {
     const Instance *instance = c;
-    if (size != sizeof(Kept)) return told(instance, "these bytes are not a state of it");
+    if (size != sizeof(Kept)) return told(instance, "the bytes are not a state of this FMU");
     if (*kept == NULL) *kept = instance->callbacks->allocate(1, sizeof(Kept));
-    if (*kept == NULL) return told(instance, "there is no memory for its state");
+    if (*kept == NULL) return told(instance, "out of memory for the state of the FMU");
     memcpy(*kept, bytes, sizeof(Kept));
     return OK;
 }
@@ -282,7 +282,7 @@ EXPORT Status NAMED(fmi2GetDirectionalDerivative)(Component c, const Reference u
                                                   size_t columns, const double change[], double result[])
 {
     (void)unknowns, (void)rows, (void)knowns, (void)columns, (void)change, (void)result;
-    return told(c, "it gives no derivatives");
+    return told(c, "the FMU provides no directional derivatives");
 }
 
 EXPORT Status NAMED(fmi2SetRealInputDerivatives)(Component c, const Reference references[], size_t count, const int orders[],
@@ -291,7 +291,7 @@ EXPORT Status NAMED(fmi2SetRealInputDerivatives)(Component c, const Reference re
                                                  const double values[])
 {
     (void)references, (void)count, (void)orders, (void)values;
-    return told(c, "its inputs are sampled: they have no derivatives");
+    return told(c, "inputs are sampled and have no derivatives");
 }
 
 EXPORT Status NAMED(fmi2GetRealOutputDerivatives)(Component c, const Reference references[], size_t count, const int orders[],
@@ -300,10 +300,10 @@ EXPORT Status NAMED(fmi2GetRealOutputDerivatives)(Component c, const Reference r
                                                   double values[])
 {
     (void)references, (void)count, (void)orders, (void)values;
-    return told(c, "its outputs are sampled: they have no derivatives");
+    return told(c, "outputs are sampled and have no derivatives");
 }
 
-/* Takes the samples, every MODEL_PERIOD from the start on, that lie at or behind `now` and before `now + step`. */
+/* Run the samples at multiples of MODEL_PERIOD from the start, up to but without `now + step`. */
 EXPORT Status NAMED(fmi2DoStep)(Component c, double now, double step, Boolean final);
 EXPORT Status NAMED(fmi2DoStep)(Component c, double now, double step, Boolean final)
 {
@@ -313,8 +313,8 @@ EXPORT Status NAMED(fmi2DoStep)(Component c, double now, double step, Boolean fi
     model_input in;
     model_output out;
     (void)final;
-    if (!is_in(instance, STEPPING)) return told(instance, "it is not running");
-    if (!(step >= 0.0)) return told(instance, "the step is negative or no number");
+    if (!is_in(instance, STEPPING)) return told(instance, "the FMU is not in step mode");
+    if (!(step >= 0.0)) return told(instance, "the step size is negative or not a number");
     memcpy(&in, kept->in, sizeof in);
     for (; kept->done * MODEL_PERIOD < end; kept->done += 1.0) {
         MODEL_STEP(&kept->state, &in, &out);
@@ -326,7 +326,7 @@ EXPORT Status NAMED(fmi2DoStep)(Component c, double now, double step, Boolean fi
 EXPORT Status NAMED(fmi2CancelStep)(Component c);
 EXPORT Status NAMED(fmi2CancelStep)(Component c)
 {
-    return told(c, "steps are done at once: there is none to be cancelled");
+    return told(c, "every step completes at once: no step can be cancelled");
 }
 
 #define NO_STATUS(function, type)                                                                                              \

@@ -21,9 +21,9 @@ _FOLDERS = {("linux", "x86_64"): ("linux64", "so"), ("darwin", "x86_64"): ("darw
 def fmu(program: Program, *, sources_only: bool = False) -> bytes:
     """Build an FMI 2.0 co-simulation unit (`.fmu`) of a program: `modelDescription.xml`, sources, and a library for this machine.
 
-    One communication step of the importer runs all samples of the program within it, at multiples of the program's step from the start. The
-    samples use the inputs set before the communication step. Equal program and compiler give equal bytes. Raises `DesignError` without a
-    compiler, or if FMI 2.0 has no name for this machine type; `sources_only` omits the library.
+    A communication step of the importer runs all samples of the program within the step. Sample times are multiples of the program's step
+    from the start. All samples use the inputs set before the communication step. Equal program and compiler give equal bytes. Raises
+    `DesignError` without a compiler, or if FMI 2.0 has no name for this machine type; `sources_only` omits the library.
 
     >>> from flexstage.control.export.code.controller import controller_code
     >>> from flexstage.control.example import integral_loop
@@ -57,7 +57,7 @@ def fmu_sources(program: Program) -> dict[str, str]:
 def _shared_name(program: Program) -> str:
     name, upper = program.name, program.name.upper()
     lines = [
-        "/* The program of the FMI 2.0 functions. */",
+        "/* The program called by the FMI 2.0 functions. */",
         "#ifndef MODEL_H",
         "#define MODEL_H",
         "",
@@ -85,8 +85,8 @@ def _count(signals: tuple[Signal, ...]) -> int:
 def _place() -> tuple[str, str]:
     kind = (sys.platform, platform.machine())
     if kind not in _FOLDERS:
-        what = f"no FMI 2.0 name for libraries of {kind[0]} on {kind[1]}, or no build for them"
-        raise refuse("functional mock-up unit", what, "Write it with sources only: its importer compiles them")
+        what = f"libraries of {kind[0]} on {kind[1]} have no FMI 2.0 name, or cannot be built"
+        raise refuse("functional mock-up unit", what, "Write the unit with sources only: the importer compiles them")
     return _FOLDERS[kind]
 
 

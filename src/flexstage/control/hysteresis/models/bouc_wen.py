@@ -1,4 +1,4 @@
-"""The Bouc-Wen model: an independent hysteresis model for tests of compensation."""
+"""The Bouc-Wen model: a hysteresis model that is independent of the play model, for tests of compensation."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from flexstage.control.hysteresis.models.protocol import Hysteresis, freeze_by_a
 from flexstage.control.hysteresis.models.shape import Range, major_loop
 
 _TINY = 1e-300
-"""A rate that replaces 0: the formulas reach their limits there, to rounding."""
+"""Value that replaces a rate of 0, small enough to give the limits of the formulas to rounding error."""
 
 
 @dataclass(frozen=True, eq=False)
 class BoucWen(Hysteresis):
     """Bouc-Wen hysteresis w = offset + d v - h,  dh/dt = A dv/dt - beta |dv/dt| h - gamma dv/dt |h|, each (axes,); initially h(v = 0) = 0.
 
-    (Low and Guo, J. Microelectromech. Syst. 4, 1995, 230-237, exponent 1.) `gain` d and `lag` A in m/V, `beta` and `gamma` in 1/V. Rate
-    independent. For a monotonic voltage change e = |dv|, s = sign(dv) and g = s h, dg/de = A - (beta -+ gamma) g for g below and above 0.
-    Exact solution with c = beta - gamma and C = beta + gamma:
+    (Low and Guo, J. Microelectromech. Syst. 4, 1995, 230-237, exponent 1.) `gain` d and `lag` A in m/V, `beta` and `gamma` in 1/V. The
+    model is rate independent. For a monotonic voltage change e = |dv|, s = sign(dv) and g = s h, dg/de = A - (beta -+ gamma) g for g below
+    and above 0. Exact solution with c = beta - gamma and C = beta + gamma:
 
-        g < 0:   g <- g e^{-c e} + A (1 - e^{-c e})/c   up to e* = ln(1 - c g/A)/c, where g is 0
-        g >= 0:  g <- g e^{-C e} + A (1 - e^{-C e})/C   over the rest
+        g < 0:   g <- g e^{-c e} + A (1 - e^{-c e})/c   up to e* = ln(1 - c g/A)/c, where g reaches 0 g >= 0:  g <- g e^{-C e} + A (1 -
+        e^{-C e})/C   for the remaining change
 
-    The state (axes, 2) is (v, h). Its inner loops do not close, which no Prandtl-Ishlinskii model reproduces. Raises `DesignError` unless
-    -beta < gamma <= beta (otherwise loops do not dissipate), and for a stroke that falls with rising voltage.
+    The state (axes, 2) is (v, h). Inner loops do not close, unlike in every Prandtl-Ishlinskii model. Raises `DesignError` unless -beta <
+    gamma <= beta (otherwise loops would not dissipate energy), and for a stroke that falls with rising voltage.
     """
 
     gain: Array
@@ -75,9 +75,9 @@ def _findings(model: BoucWen) -> Iterator[Finding]:
         gain, lag, beta, gamma = (float(getattr(model, name)[axis]) for name in ("gain", "lag", "beta", "gamma"))
         where = f"Bouc-Wen model of axis {axis}"
         if not np.all(np.isfinite([gain, lag, beta, gamma])) or lag <= 0.0:
-            yield Finding(where, f"lag is {lag:g} m/V (expected above 0), or a number is not finite", "Use finite numbers, the lag above 0")
+            yield Finding(where, f"lag is {lag:g} m/V, or a value is not finite", "Use finite values and a positive lag")
         elif not -beta < gamma <= beta:
-            what = f"gamma is {gamma:g} 1/V, not above {-beta:g} and at most {beta:g} (beta): its loops would not dissipate"
+            what = f"gamma is {gamma:g} 1/V (expected above {-beta:g} and at most beta, {beta:g}): loops would not dissipate energy"
             yield Finding(where, what, "Choose -beta < gamma <= beta")
         elif 2.0 * lag * beta / (beta + gamma) > gain * (1.0 + 1e-12):
             what = f"just after a reversal h changes by {2.0 * lag * beta / (beta + gamma):g} m/V, more than the gain {gain:g} m/V"
@@ -86,10 +86,10 @@ def _findings(model: BoucWen) -> Iterator[Finding]:
 
 @check_arguments
 def bouc_wen(stroke: float, volts: Range, width: float, *, sharpness: float = 4.0, skew: float = 0.5) -> BoucWen:
-    """Construct a Bouc-Wen stack of this `stroke` [m] between `volts`, with a settled major loop of relative `width` (0.15: 15 %).
+    """Construct a Bouc-Wen stack of this `stroke` [m] over `volts`, with a settled major loop of relative `width` (0.15: 15 %).
 
-    `sharpness` is beta times the range (the larger, the earlier h saturates), `skew` is gamma/beta. All loops scale with the lag: lag and
-    gain follow from two linear equations. Raises `DesignError` if no such loop rises everywhere.
+    `sharpness` is beta times the range (the larger, the earlier h saturates), `skew` is gamma/beta. All loops scale with the lag, so that
+    lag and gain follow from two linear equations. Raises `DesignError` if the stroke of such a loop would not rise everywhere.
 
     >>> model = bouc_wen(150e-6, (0.0, 1000.0), 0.15)
     >>> loop = major_loop(model, (0.0, 1000.0), count=101)
@@ -98,7 +98,7 @@ def bouc_wen(stroke: float, volts: Range, width: float, *, sharpness: float = 4.
     """
     span = volts[1] - volts[0]
     if not (stroke > 0.0 and span > 0.0 and 0.0 < width < 1.0):
-        what = f"no loop (got stroke {stroke:g} m, {volts[0]:g} V to {volts[1]:g} V, width {width:g})"
+        what = f"invalid loop (got stroke {stroke:g} m, {volts[0]:g} V to {volts[1]:g} V, width {width:g})"
         raise refuse("Bouc-Wen model", what, "Use a stroke above 0, ascending volts, and a width between 0 and 1")
     beta = sharpness / span
     largest = 0.5 * (1.0 + skew)

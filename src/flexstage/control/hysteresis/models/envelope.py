@@ -20,13 +20,13 @@ def freeze_rows(record: Any, *names: str) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Envelope:
-    """Piecewise linear function per axis, through `values` (axes, m) at `knots` (axes, m), m >= 2, with extrapolated end slopes.
+    """Piecewise linear function of each axis, through `values` (axes, m) at `knots` (axes, m), m >= 2, with extrapolated ends.
 
-    With slopes s_j = (y_{j+1} - y_j)/(k_{j+1} - k_j) the order of evaluation, also in generated code, is g(x) = y_0 + s_0 (x - k_0) +
-    sum_{j=1}^{m-2} (s_j - s_{j-1}) max(x - k_j, 0).
+    With slopes s_j = (y_{j+1} - y_j)/(k_{j+1} - k_j) the value, also in generated code, is g(x) = y_0 + s_0 (x - k_0) + sum_{j=1}^{m-2}
+    (s_j - s_{j-1}) max(x - k_j, 0).
 
-    The inverse of an ascending function swaps knots and values. A single axis may have shape (m,), and then serves any number of axes.
-    Raises `DesignError` for knots that do not ascend, different shapes, and numbers that are not finite.
+    The inverse of an ascending function swaps knots and values. An envelope of shape (m,) serves any number of axes. Raises `DesignError`
+    for knots that do not ascend, different shapes, and values that are not finite.
     """
 
     knots: Array
@@ -66,7 +66,7 @@ def _findings(envelope: Envelope) -> Iterator[Finding]:
             "envelope", f"different lengths (got knots {knots.shape}, values {values.shape})", "Use equal numbers of both, at least two"
         )
     elif not np.all(np.isfinite(knots)) or not np.all(np.isfinite(values)):
-        yield Finding("envelope", "a knot or a value is not finite", "Correct the numbers")
+        yield Finding("envelope", "a knot or a value is not finite", "Correct the knots and values")
     else:
         for axis, knot in np.argwhere(np.diff(knots) <= 0.0):
             what = f"knots must ascend (got knot {knot + 1} of axis {axis} at {knots[axis, knot + 1]:g} after {knots[axis, knot]:g})"
@@ -89,7 +89,7 @@ def straight(slope: Sequence[float] | Array, start: Sequence[float] | Array | fl
 
 
 def invert(envelope: Envelope) -> Envelope:
-    """Compute the inverse of an ascending envelope. Raises `DesignError` naming the piece that does not ascend.
+    """Compute the inverse of an ascending envelope. Raises `DesignError` for each piece that does not ascend.
 
     >>> bent = Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 3.0])
     >>> invert(bent).at(bent.at(np.array([[-1.0], [0.7], [5.0]]))).ravel().tolist()
@@ -103,11 +103,11 @@ def descent_findings(envelope: Envelope, where: str) -> list[Finding]:
     """Find the pieces of an envelope that do not ascend: the inverse is not unique there.
 
     >>> descent_findings(Envelope([0.0, 1.0, 2.0], [0.0, 2.0, 1.0]), "envelope")[0].what
-    'from 1 to 2 on axis 0 it goes from 2 to 1 (expected ascending values)'
+    'between 1 and 2 on axis 0 the value changes from 2 to 1 (expected ascending values)'
     """
     found = []
     for axis, piece in np.argwhere(np.diff(envelope.values) <= 0.0):
         (left, right), (low, high) = (each[axis, piece : piece + 2] for each in (envelope.knots, envelope.values))
-        what = f"from {left:g} to {right:g} on axis {axis} it goes from {low:g} to {high:g} (expected ascending values)"
-        found.append(Finding(where, what, "Limit the input to the ascending range, or identify from a record that ascends"))
+        what = f"between {left:g} and {right:g} on axis {axis} the value changes from {low:g} to {high:g} (expected ascending values)"
+        found.append(Finding(where, what, "Limit the input to the ascending range, or identify from a record with ascending strokes"))
     return found

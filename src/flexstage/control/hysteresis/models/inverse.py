@@ -15,14 +15,15 @@ from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlin
 
 @check_arguments
 def inverse(model: PrandtlIshlinskii) -> PrandtlIshlinskii:
-    """Compute the model that inverts `model` exactly, sample by sample: plays between the envelopes' inverses.
+    """Compute the model that inverts `model` exactly, sample by sample: plays between the inverse envelopes.
 
     With P_j = p_0 + ... + p_j (the slope of the virgin curve beyond r_j), its thresholds, weights and envelopes are
 
         s_j = sum_{i<=j} p_i (r_j - r_i),   q_0 = 1/p_0,   q_j = -p_j / (P_j P_{j-1}),   a' = b^-1,   b' = a^-1
 
-    (Kuhnen 2003, eqs. 17 to 19). It exists if and only if every P_j > 0 and both envelopes ascend; raises `DesignError` for each threshold
-    or piece that violates this. Model and inverse start from the unloaded state; `inverse_state` computes any other state of the inverse.
+    (Kuhnen 2003, eqs. 17 to 19). The inverse exists if and only if every P_j > 0 and both envelopes ascend. Raises `DesignError` for each
+    threshold or piece that violates this. Model and inverse start from the unloaded state; `inverse_state` gives the state of the inverse
+    for other states.
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> wanted = np.array([0.0, 70e-6, 60e-6, 5e-6])
@@ -50,10 +51,10 @@ def inverse_state(model: PrandtlIshlinskii, state: Array) -> Array:
 
 
 def inverse_findings(model: PrandtlIshlinskii) -> list[Finding]:
-    """Find the reasons why a model has no inverse: thresholds beyond which it does not rise, and envelope pieces that do not ascend.
+    """Find the reasons why a model has no inverse: thresholds beyond which its output does not rise, and falling envelope pieces.
 
     >>> inverse_findings(PrandtlIshlinskii([0.0, 50.0, 100.0], [1e-7, 5e-8, -2e-7]))[0].what
-    'the weights up to 2 (threshold 100) sum to -5e-08: beyond it the output does not rise with the input, and no inverse exists'
+    'the weights up to 2 (threshold 100) sum to -5e-08: beyond it, the output does not rise with the input, and no inverse exists'
     """
     around = [*descent_findings(model.before, "envelope before the plays"), *descent_findings(model.after, "envelope after the plays")]
     return [*_slope_findings(model), *around]
@@ -64,8 +65,8 @@ def _slope_findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
     for axis, place in np.argwhere(~(partial > 0.0)):
         threshold = model.thresholds[axis, place]
         what = f"the weights up to {place} (threshold {threshold:g}) sum to {partial[axis, place]:g}"
-        reason = f"{what}: beyond it the output does not rise with the input, and no inverse exists"
-        advice = "Identify with weights of 0 or more, the first positive, or omit this play"
+        reason = f"{what}: beyond it, the output does not rise with the input, and no inverse exists"
+        advice = "Identify the model with weights of 0 or more and a positive first weight, or omit this play"
         yield Finding(f"hysteresis of axis {axis}", reason, advice)
 
 

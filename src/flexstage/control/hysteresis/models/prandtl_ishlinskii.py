@@ -24,12 +24,12 @@ class PrandtlIshlinskii(Hysteresis):
         y   = b(sum_i p_i z_i)
 
     (Kuhnen, Eur. J. Control 9, 2003, 407-418, with the envelopes of Al Janaideh, Rakheja and Su, IEEE/ASME Trans. Mechatronics 16, 2011,
-    734-744.) `thresholds` (axes, n) ascend from r_0 = 0, the part without memory; `weights` (axes, n). For a stack x are volts, `before`
-    maps volts to volts, thresholds are in V, weights in m/V. `after` maps m to m with the gauge's offset, and y is the free stroke in
-    metres. The inverse has the same form with volts and metres exchanged (`inverse`). Initially all z_i = 0. With positive weights and
-    ascending `before`, the stroke lags the voltage in each loop, with dissipated energy of 0 or more.
+    734-744.) `thresholds` (axes, n) ascend from r_0 = 0, the play without memory; `weights` are (axes, n). For a stack, x is the voltage,
+    `before` maps volts to volts, thresholds are in V, weights in m/V. `after` maps metres to metres and includes the gauge's offset; y is
+    the free stroke [m]. The inverse has the same form with volts and metres exchanged (`inverse`). Initially all z_i = 0. With positive
+    weights and ascending `before`, the stroke lags the voltage, and no loop generates energy.
 
-    A single axis may have shape (n,). Raises `DesignError` for thresholds that do not ascend from 0, and different shapes.
+    For a single axis the shape (n,) is also accepted. Raises `DesignError` for thresholds that do not ascend from 0, and different shapes.
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> (1e6 * model.run(np.array([0.0, 500.0, 400.0, 0.0]))).round(9).tolist()
@@ -72,10 +72,10 @@ def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
         )
         return
     if not np.all(np.isfinite(thresholds)) or not np.all(np.isfinite(weights)):
-        yield Finding("hysteresis", "a threshold or a weight is not finite", "Correct the numbers")
+        yield Finding("hysteresis", "a threshold or a weight is not finite", "Correct the values")
     for axis in np.flatnonzero(thresholds[:, 0] != 0.0):
         what = f"the first threshold of axis {axis} must be 0 (got {thresholds[axis, 0]:g})"
-        yield Finding("thresholds", what, "Add the threshold 0: the part without memory, of any weight")
+        yield Finding("thresholds", what, "Add a play of threshold 0 (no memory), of any weight")
     for axis, place in np.argwhere(np.diff(thresholds) <= 0.0):
         what = f"thresholds of axis {axis} must ascend (got {thresholds[axis, place + 1]:g} after {thresholds[axis, place]:g})"
         yield Finding("thresholds", what, "Sort the thresholds")
@@ -83,6 +83,6 @@ def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
         if envelope.axes not in (1, model.axes):
             yield Finding(
                 f"envelope {name}",
-                f"wrong number of axes (got {envelope.axes}, expected {model.axes} as the plays)",
+                f"wrong number of axes (got {envelope.axes}, expected {model.axes}, as for the plays)",
                 "Use one per axis, or one for all",
             )

@@ -1,4 +1,4 @@
-"""Protocol of hysteresis models in a loop: a start, a step and a run."""
+"""Protocol of hysteresis models in a loop: start state, step and simulation."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from flexstage.base.number import Array, freeze
 class Hysteresis(Protocol):
     """Rate-independent hysteresis of `axes` actuators: the output depends on the order of the inputs, not on their times.
 
-    The input is monotonic between two samples, so that one update per sample is exact behind a hold. Inputs and outputs are (axes,); plants
-    map volts to metres of free stroke. The state's form belongs to the model.
+    The input must be monotonic between two samples, as after a hold; then one update per sample is exact. Inputs and outputs are (axes,);
+    models of stacks map volts to free strokes [m]. Each model has its own form of state.
     """
 
     @property
@@ -37,7 +37,7 @@ class Hysteresis(Protocol):
         ...
 
     def run(self, values: Array, state: Array | None = None) -> Array:
-        """Simulate outputs for inputs (k, axes), or (k,) of a single actuator, from `state` (default: the initial state).
+        """Simulate outputs for inputs (k, axes), or (k,) for a single actuator, from `state` (default: the initial state).
 
         Raises `DesignError` for inputs of another shape and for numbers that are not finite.
 
@@ -47,7 +47,7 @@ class Hysteresis(Protocol):
         """
         values = np.asarray(values, dtype=float)
         if values.shape[1:] != (self.axes,) and not (values.ndim == 1 and self.axes == 1):
-            raise refuse("hysteresis", f"inputs are {values.shape} for {self.axes} axes", f"Give (samples, {self.axes})")
+            raise refuse("hysteresis", f"inputs have the wrong shape (got {values.shape})", f"Use (samples, {self.axes})")
         if not np.all(np.isfinite(values)):
             raise refuse("hysteresis", "an input is not finite", "Correct the inputs")
         rows = values.reshape(len(values), self.axes)
@@ -58,7 +58,7 @@ class Hysteresis(Protocol):
 
 
 def freeze_by_axis(model: Any) -> None:
-    """Convert all numbers of a dataclass to read-only arrays (axes,).
+    """Convert all fields of a dataclass to read-only arrays (axes,).
 
     >>> from flexstage.control.hysteresis.models.bouc_wen import BoucWen
     >>> BoucWen(np.array([1e-7, 2e-7]), 4e-8, 4e-3, 2e-3).lag.tolist()

@@ -1,4 +1,4 @@
-"""Hysteresis of one stack scaled to others of its type: the same loop over other voltages and strokes."""
+"""Hysteresis of one stack, scaled to other stacks of its type: the same loop over other voltages and strokes."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class Stacks:
 
 
 def scale_to_stacks(model: PrandtlIshlinskii, volts: Range, stacks: Stacks) -> PrandtlIshlinskii:
-    """Scale a one-axis model over `volts` to n axes: major loops of the same form over each stack's own range and stroke.
+    """Scale a one-axis model with the range `volts` to n stacks: loops of the same form over each stack's range and stroke.
 
-    Scales the knots of the envelope before the plays, and values of the envelope after them; thresholds and weights do not change. The full
-    stroke is the stroke of the settled loop, with 0 at the loop's lower end. Raises `DesignError` for a model of more axes, and for invalid
-    ranges and strokes.
+    Scales the knots of the envelope before the plays, and the values of the envelope after the plays; thresholds and weights do not change.
+    The full stroke is the stroke of the settled loop, with 0 at the loop's lower end. Raises `DesignError` for a model of several axes, and
+    for invalid ranges and strokes.
 
     >>> model = PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8])
     >>> two = Stacks(np.array([0.0, -100.0]), np.array([1000.0, 400.0]), np.array([150e-6, 30e-6]))
@@ -36,7 +36,7 @@ def scale_to_stacks(model: PrandtlIshlinskii, volts: Range, stacks: Stacks) -> P
     [(150.0, 0.071429), (30.0, 0.071429)]
     """
     if model.axes != 1:
-        raise refuse("hysteresis", f"the model has {model.axes} axes", "Scale the model of one stack")
+        raise refuse("hysteresis", f"wrong number of axes (got {model.axes}, expected 1)", "Scale the model of one stack")
     require(_findings(volts, stacks))
     loop = major_loop(model, volts)
     stretch = (stacks.high - stacks.low) / (volts[1] - volts[0])
@@ -55,6 +55,6 @@ def _findings(volts: Range, stacks: Stacks) -> list[Finding]:
         found.append(Finding("volts", f"no range (got {volts[0]:g} V to {volts[1]:g} V)", "Use the lower voltage first"))
     for axis, (low, high, stroke) in enumerate(zip(stacks.low, stacks.high, stacks.stroke, strict=True)):
         if not (low < high and stroke > 0.0):
-            what = f"no stack range (got {low:g} V to {high:g} V and a stroke of {stroke:g} m)"
+            what = f"invalid range or stroke (got {low:g} V to {high:g} V, {stroke:g} m)"
             found.append(Finding(f"stack {axis}", what, "Use ascending volts and a positive stroke"))
     return found

@@ -18,8 +18,8 @@ Range: TypeAlias = tuple[float, float]
 class MajorLoop:
     """Settled major loop over a range: outputs (k, axes) of the branches `up` and `down` at ascending inputs `volts` (k,).
 
-    `stroke` (axes,) is the output span between the ends. `width` (axes,) is the largest distance of the branches at one input, relative to
-    `stroke`.
+    `stroke` (axes,) is the output span between the ends. `width` (axes,) is the largest distance between the branches at one input,
+    relative to `stroke`.
     """
 
     volts: Array
@@ -33,7 +33,7 @@ class MajorLoop:
 
     @property
     def width(self) -> Array:
-        """Largest distance of the branches at one input (axes,), relative to the stroke."""
+        """Largest distance between the branches at one input (axes,), relative to the stroke."""
         return np.max(self.down - self.up, axis=0) / self.stroke
 
 
@@ -42,7 +42,7 @@ def major_loop(model: Hysteresis, volts: Range, count: int = 401, cycles: int = 
 
     >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
     >>> loop = major_loop(PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8]), (0.0, 1000.0))
-    >>> (1e6 * loop.stroke).round(6).tolist(), loop.width.round(6).tolist()  # 5e-8 m/V times 200 V wide
+    >>> (1e6 * loop.stroke).round(6).tolist(), loop.width.round(6).tolist()  # width 5e-8 m/V times 200 V
     ([140.0], [0.071429])
     """
     up = np.linspace(*volts, count)

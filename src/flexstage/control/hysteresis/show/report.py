@@ -12,21 +12,21 @@ from flexstage.show.page import Head, Headline, Picture, Prose, page, section
 from flexstage.show.tables.caveats import warning_table
 
 _METHOD = (
-    "Generalised Prandtl-Ishlinskii model: plays of fixed thresholds, weights of 0 or more by least squares, a monotonic envelope of the "
-    "voltage before them. Size: the smallest with a cross-validation error within 5 % of the best. Samples "
-    "before the plays are known are omitted. The inverse is exact; its deviation from the applied voltage is the model error."
+    "Generalised Prandtl-Ishlinskii model: a monotonic envelope of the voltage, then plays with fixed thresholds and weights of 0 or more, "
+    "by least squares. Its size is the smallest with a cross-validation error within 5 % of the best. Samples that "
+    "depend on the unknown history are omitted. The inverse is exact; its deviation from the applied voltage is the model error."
 )
 
 
 def hysteresis_report(test: StackTest) -> str:
-    """Write a stack's test as an HTML page: loops with the model, error, inverse, tables.
+    """Return the HTML report of a stack's test: loops with the model, model error, inverse, tables.
 
     >>> from flexstage.control.hysteresis.example import example_test
     >>> hysteresis_report(example_test())[:15]
     '<!doctype html>'
     """
     drawn = to_svg(stack_figure(test), "stack", "Loops of the stack with the model, the model's error, and the volts of the inverse")
-    caption = "Grey: record. Blue: model and its error. Green: voltage from the inverse for the recorded strokes."
+    caption = "Grey: record. Blue: model and its error. Green: voltage of the inverse for the recorded strokes."
     stack, plays = stack_tables(test)
     sections = [
         section("Hysteresis", [Picture(drawn, caption), stack, Prose(_METHOD)]),
@@ -36,5 +36,5 @@ def hysteresis_report(test: StackTest) -> str:
     named = test.source or "record"
     origin = (("record", named), ("model", "measured"), ("flexstage", __version__))
     width, error = (percent(each, 3) for each in (test.hysteresis.width, test.hysteresis.rms))
-    said = Headline(f"The loops are {width} of the stroke wide. The rms model error is {error}.")
+    said = Headline(f"The loop width is {width} of the stroke. The rms model error is {error}.")
     return page(Head(named, "Hysteresis of a stack", origin, said), sections)
