@@ -250,7 +250,7 @@ def test_a_solid_within_another_one_clashes_for_both(buried: float) -> None:
     ("at", "said"),
     [
         ((0.03, 0.26, 0.0), "250 mm away"),
-        ((0.29, 0.0, 0.0), "260 mm away from the outline of platform, on its axis"),
+        ((0.29, 0.0, 0.0), "260 mm away from the outline of platform, along its axis"),
         ((0.0315, 0.0, 0.0), "1.5 mm away"),
         ((0.0305, 0.0, 0.0), None),
         ((0.02, 0.0, 0.0), None),
