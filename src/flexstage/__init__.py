@@ -1,8 +1,8 @@
 """flexstage: design and proof of flexure-based ultra-precision positioning stages.
 
-The public surface, name by name; what goes beyond describing a stage and analysing it stands in `solid`, `experiment`, `control` and
-`studies`. A name is imported from its home at first use (PEP 562), so `import flexstage` itself loads nothing; type checkers and editors
-read the same table from `__init__.pyi`.
+These names describe and analyse a stage; `solid`, `experiment`, `control` and `studies` contain the names for further tasks. A name is
+imported from its module at first use (PEP 562), so `import flexstage` itself loads nothing; type checkers and editors read the same names
+from `__init__.pyi`.
 """
 
 from importlib import import_module

@@ -130,16 +130,17 @@ def mixed(order):
 
 
 def test_the_ground_is_of_the_one_material_on_it():
-    assert ground_of(bar()) == Ground("steel", "all links on it are of it")
+    assert ground_of(bar()) == Ground("steel", "material of all links on it")
     assert not ground_of(bar()).stated
-    assert "Ground taken as steel: all links" in " ".join(drift_table(drift(bar(), lumped(bar()))).notes)
+    assert "Ground taken as steel: material of all links" in " ".join(drift_table(drift(bar(), lumped(bar()))).notes)
 
 
 @pytest.mark.parametrize("order", [1, -1])
 def test_a_ground_of_several_materials_is_asked_for(order):
     """Never guessed from how many links are of which, nor from their order."""
     stage = mixed(order)
-    with pytest.raises(fs.DesignError, match=r'ground: .* of aluminium, steel\. Specify it in the design: ground = "aluminium", or "none"'):
+    asked = r'ground: .* of aluminium, steel\. Specify the material in the design: ground = "aluminium"; "none"'
+    with pytest.raises(fs.DesignError, match=asked):
         drift(stage, lumped(stage))
     with pytest.raises(fs.DesignError, match="of no material"):
         ground_of(replace(bar(), parts={"rod": fs.Joint()}))

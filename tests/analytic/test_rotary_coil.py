@@ -130,5 +130,5 @@ def test_file_rig_budget_and_loop_take_it() -> None:
 
 
 def test_a_coil_without_torque_is_refused() -> None:
-    with pytest.raises(DesignError, match="torque_constant: it is zero"):
+    with pytest.raises(DesignError, match="torque_constant: must not be zero"):
         fs.loads(fs.dumps(turned(replace(COIL, torque_constant=0.0))))

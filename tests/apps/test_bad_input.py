@@ -89,7 +89,7 @@ def test_actuators_without_a_path_are_refused(flexstage: Command, tmp_path: Path
     assert len(left) == len(lines) - 1
     design.write_text("\n".join(left))
     for command in ("check", "mapping", "analyse"):
-        expect_refusal(flexstage(command, "stage.toml"), "B1/pzt", "B1/tip", "is not on a path from ground to platform")
+        expect_refusal(flexstage(command, "stage.toml"), "B1/pzt", "B1/tip", "is not in a chain of links from ground to platform")
 
 
 @pytest.mark.parametrize("joins", ['["tip", "ground"]', '["tip", "base"]'])
@@ -98,7 +98,7 @@ def test_actuators_looped_back_are_refused(flexstage: Command, tmp_path: Path, j
     design = tmp_path / "stage.toml"
     design.write_text(swapped('joins = ["tip", "platform"]', f"joins = {joins}")(design.read_text()))
     for command in ("check", "mapping", "analyse"):
-        expect_refusal(flexstage(command, "stage.toml"), "B1/pzt", "B1/tip", "is not on a path from ground to platform")
+        expect_refusal(flexstage(command, "stage.toml"), "B1/pzt", "B1/tip", "is not in a chain of links from ground to platform")
 
 
 def test_an_assignment_is_named_once(flexstage: Command) -> None:

@@ -111,4 +111,4 @@ def test_a_number_that_nothing_refers_to_is_a_warning(folder: Path, monkeypatch:
     (folder / "stage.toml").write_text(text)
     ended = flexstage("check", "stage.toml")
     assert ended.code == 0
-    assert "numbers.spare: no formula uses it" in " ".join((ended.out + ended.err).split())
+    assert "numbers.spare: no formula or requirement uses it" in " ".join((ended.out + ended.err).split())

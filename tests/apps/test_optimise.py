@@ -70,7 +70,7 @@ def test_a_front_is_shown(study_file, tmp_path, flexstage):
         ('maximise = "f1"', 'maximise = "f11"', "Use f1"),
         ('maximise = "f1"', "", "no objective is named"),
         ('maximise = "f1"', 'maximise = ["f1", "f1"]', "is an objective already"),
-        ('maximise = "f1"', "maximise = 3", "must be one or several texts (got 3)"),
+        ('maximise = "f1"', "maximise = 3", "must be one or several strings (got 3)"),
         ("starts = 2", "starts = 0", "optimise.starts: must be 1 or more (got 0). Use e.g. 1."),
         ("starts = 2", "start = 2", "Use starts"),
         ('"0.6 mm"', '"1.2 mm"', "expected 0.0012 to 0.002 m"),

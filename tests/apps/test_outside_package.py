@@ -111,7 +111,7 @@ def test_another_version_than_the_design_asks_for_is_refused(work, tmp_path):
 
 def test_without_the_package_the_kind_is_refused_with_what_to_do(without):
     assert 'parts.leaf.kind: unknown kind (got "taper")' in without
-    assert "Install the package of the kind, if another package provides it." in without
+    assert "If another package provides this kind, install the package." in without
 
 
 def test_without_the_package_its_controller_and_amplifier_are_refused_by_kind(without):

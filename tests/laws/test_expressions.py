@@ -180,12 +180,12 @@ def test_formulas_and_values_that_differ_are_told() -> None:
     found = stage()
     parts = dict(found.parts) | {"leaf": replace(found.parts["leaf"], length=0.05)}
     (told,) = check(replace(found, parts=parts))
-    assert str(told).startswith('parts.leaf.length: wrong value (got 0.05, expected 0.0312 in SI by its formula "arm*1.2")')
+    assert str(told).startswith('parts.leaf.length: wrong value (got 0.05, expected 0.0312 in SI from its formula "arm*1.2")')
 
 
 def test_a_number_is_not_worked_out_of_itself() -> None:
     found = set_text(stage(), "numbers.share", "arm/(1.3 m)")
-    with pytest.raises(DesignError, match="and so on arm"):
+    with pytest.raises(DesignError, match="and therefore on arm"):
         set_text(found, "numbers.arm", "share*1 m")
 
 

@@ -171,7 +171,7 @@ def test_a_value_of_another_file_is_changed_there(tmp_path):
     ("old", "new", "said"),
     [
         ('"fine.toml"', '"fne.toml"', ":5: stages.fine.file: fne.toml: file not found"),
-        ('"fine.toml"', '"top.toml"', ":5: stages.fine.file: the stage is its own file"),
+        ('"fine.toml"', '"top.toml"', ":5: stages.fine.file: the stage would contain itself"),
         ('"coarse/platform"', '"coarse/platfrm"', 'stages.fine.on: unknown body "coarse/platfrm". Use coarse/platform'),
         ("fine/left", "fine/lft", 'overrides."fine/lft.thickness"'),
         ("pose = {", 'pose = { mirror = "x",', "stages.fine.pose.mirror: a whole stage cannot be mirrored"),

@@ -384,7 +384,7 @@ BAD = {
     'actuators.like = "': ('goals.maximise = "width"\nactuators.like = "', 'goals.maximise: unknown measure "width"'),
     "requirements.f": (
         'requirements."loss.x" = "at most 1"\nrequirements.loss.x = "at most 1"\nrequirements.f',
-        "loss.x: it is given twice",
+        "loss.x: specified twice",
     ),
 }
 

@@ -250,7 +250,7 @@ def test_a_solid_within_another_one_clashes_for_both(buried: float) -> None:
     ("at", "said"),
     [
         ((0.03, 0.26, 0.0), "250 mm away"),
-        ((0.29, 0.0, 0.0), "260 mm away from the outline of platform, on its axis"),
+        ((0.29, 0.0, 0.0), "260 mm away from the outline of platform, along its axis"),
         ((0.0315, 0.0, 0.0), "1.5 mm away"),
         ((0.0305, 0.0, 0.0), None),
         ((0.02, 0.0, 0.0), None),
@@ -265,7 +265,7 @@ def test_a_gauge_beside_its_target_is_told(at: tuple[float, float, float], said:
 def test_copies_are_told_once() -> None:
     found = [finding.what for finding in contact_findings(case("hexapod"))]
     assert len(found) == 1
-    assert "alike: A2/front, A3/front, B1/front" in found[0]
+    assert "same for A2/front, A3/front, B1/front" in found[0]
 
 
 def test_a_face_lies_in_the_material_of_a_tube_not_in_its_bore() -> None:

@@ -125,7 +125,7 @@ def polygon(*corners: str) -> str:
         ('"stated paper 2"', '"published"', ['tags."parts.wire.length"', '"published"', "stated, derived or assumed"]),
         ('"stated paper 2"', '"stated papre 2"', ['tags."parts.wire.length"', '"papre"', "paper"]),
         ("tags = { length =", "tags = { lenght =", ['tags."parts.wire.lenght"', "unknown address", "length"]),
-        ("tags = { length =", "tags = { length = 1, x =", ["parts.wire.tags", "a tag is a text"]),
+        ("tags = { length =", "tags = { length = 1, x =", ["parts.wire.tags", "a tag must be a string"]),
         # the file
         ('format = "flexstage 1"', 'format = "flexstage 9"', ["format", '"flexstage 9"', '"flexstage 1"']),
         ('format = "flexstage 1"', "", ["format", "missing", '"flexstage 1"']),
@@ -138,7 +138,7 @@ def polygon(*corners: str) -> str:
         ("[placements]", "[links]\na.b.c.d = 1\n[placements]", ["links.a", "unknown key"]),
         # outlines
         ('mass = "1 kg"', polygon("0 0", "1 1"), ["bodies.platform.solids.s.outline", "got 2", "3 or more"]),
-        ('mass = "1 kg"', polygon("0 0", "1 1", "1 0", "0 1"), ["bodies.platform.solids.s.outline", "corner 1", "corner 3", "intersect"]),
+        ('mass = "1 kg"', polygon("0 0", "1 1", "1 0", "0 1"), ["bodies.platform.solids.s.outline", "corners 1 and 3", "intersect"]),
         ('mass = "1 kg"', polygon("0 0", "2 0", "0 0", "0 1"), ["bodies.platform.solids.s.outline", "intersect"]),
         ('mass = "1 kg"', polygon("0 0", "2 0", "1 0"), ["bodies.platform.solids.s.outline", "collinear"]),
     ],
@@ -253,7 +253,7 @@ def test_a_directory(tmp_path: Path) -> None:
 def test_pipes_and_devices_are_refused_unopened(tmp_path: Path, read: Callable[[Path], object]) -> None:
     os.mkfifo(tmp_path / "pipe")  # opening it would wait for a writer that never comes
     for path, kind in ((tmp_path / "pipe", "a pipe"), (Path("/dev/zero"), "a device")):
-        with pytest.raises(DesignError, match=f"^{path}: it is {kind}, no regular file"):
+        with pytest.raises(DesignError, match=rf"^{path}: not a regular file \(got {kind}\)"):
             read(path)
 
 
@@ -347,7 +347,7 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
         (part(Rod("steel", length=np.ones(2), diameter=np.ones(3))), ["batch", "(2,)", "(3,)", "broadcast"]),
         (part(ComplianceMatrix(matrix(x05=1e-7), (Freedom.RZ,))), ["parts.p.compliance at index 0, 5", "not symmetric", "1e-07"]),
         (part(ComplianceMatrix(matrix(x05=2e-6, x50=2e-6), (Freedom.RZ,))), ["parts.p.compliance", "not positive definite"]),
-        (part(ComplianceMatrix(matrix(x33=0.0), (Freedom.RZ,))), ["parts.p.compliance", "not positive definite", "Restricted"]),
+        (part(ComplianceMatrix(matrix(x33=0.0), (Freedom.RZ,))), ["parts.p.compliance", "not positive definite", "restricted part"]),
         (part(dataclasses.replace(STACK, preload=20.0, maximum_load=10.0)), ["parts.p.preload", "20 N", "maximum load, 10 N"]),
         (part(dataclasses.replace(STACK, voltage_low=100.0, voltage_high=-20.0)), ["parts.p.voltage_low", "100 V", "-20 V"]),
         (linked(Notch("steel", 0.001, 0.01, Circular(0.005))), ["links.l", 'part "p" is not axisymmetric', 'bends = "y"']),
@@ -378,7 +378,7 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
         (dataclasses.replace(STAGE, bodies={**STAGE.bodies, "ground": Body()}), ["bodies.ground", "implied"]),
         (
             dataclasses.replace(part(STACK), bodies=DANGLING, links={"pzt": Link(("ground", "tip"), "p", O, X)}),
-            ["pzt", "ground and tip", "not on a path from ground to platform"],
+            ["pzt", "ground and tip", "not in a chain of links from ground to platform"],
         ),
         (
             dataclasses.replace(STAGE, placements={**STAGE.placements, "L2": Placement("leg", Pose())}),
@@ -398,7 +398,7 @@ DANGLING = {"tip": Body(mass=1.0), **STAGE.bodies}
         ),
         (
             dataclasses.replace(STAGE, units={"leg": dataclasses.replace(UNIT, bodies={"platform": Body()})}),
-            ["units.leg.bodies.platform", "the stage has a body"],
+            ["units.leg.bodies.platform", "the stage also has a body"],
         ),
         (
             dataclasses.replace(STAGE, placements={"L" * 70: Placement("leg", Polar(0.1, 0.0, InstanceOrientation.AXIS))}),
@@ -457,7 +457,7 @@ NUMBERS = TEXT.replace('length = "30 mm"         # as drawn', 'length = "long"')
         ('"long"', '"long*arm"', ["parts.wire.length", "a quantity in m^2", "must be a length"]),
         ('"long"', '"sin(arm)*long"', ["parts.wire.length", '"sin(arm)"', "an angle", "a length"]),
         ('"long"', '"long/(arm - arm)"', ["parts.wire.length", "divides by 0"]),
-        ('"long"', '"sqrt(-long*long)"', ["parts.wire.length", "root", "below 0"]),
+        ('"long"', '"sqrt(-long*long)"', ["parts.wire.length", "root", "negative"]),
         ('"long"', '"long*1e300*1e300"', ["parts.wire.length", "finite"]),
         ('"long"', '"long^2"', ["parts.wire.length", '"^"', "arm*arm"]),
         ('"long"', '"2 long"', ["parts.wire.length", "long", "2*long"]),

@@ -120,7 +120,7 @@ def on_platform(body: Body) -> Mechanism:
             ["bodies.bar.of", '"pad"', '"platform"'],
         ),
         (with_bar(lent(), "bar"), ["bodies.bar.of", '"bar"', "remove it"]),
-        (on_platform(replace(PLATE, of="ground")), ["bodies.platform.of", "cannot be of another body"]),
+        (on_platform(replace(PLATE, of="ground")), ["bodies.platform.of", "cannot belong to another body"]),
         (lent(solids={}, mass=1.0), ["units.leg.bodies.lug", '"platform"', "mass not allowed"]),
         (lent(reference=(0.0, 0.0, 0.0)), ["units.leg.bodies.lug", "reference not allowed"]),
         (on_platform(Body(mass=1.0)), ["units.leg.bodies.lug", 'its solids belong to "platform"', "specified mass"]),

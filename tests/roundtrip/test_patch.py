@@ -118,7 +118,7 @@ def test_unwritable_paths_are_told(tmp_path: Path, path: str) -> None:
 def test_a_device_is_never_replaced(tmp_path: Path) -> None:
     fifo = tmp_path / "pipe"
     os.mkfifo(fifo)
-    with pytest.raises(DesignError, match="no regular file"):
+    with pytest.raises(DesignError, match="not a regular file"):
         write(fifo, "new")
     assert stat.S_ISFIFO(fifo.stat().st_mode)
 

@@ -28,7 +28,7 @@ PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
     ],
 )
 def test_a_text_is_no_number(made):
-    with pytest.raises(fs.DesignError, match=r"must be a number \(got the text '.*'\)"):
+    with pytest.raises(fs.DesignError, match=r"must be a number \(got the string '.*'\)"):
         made()
 
 
@@ -117,7 +117,7 @@ def test_what_does_not_fit_into_memory_is_refused_with_what_would(monkeypatch):
     monkeypatch.setattr("flexstage.base.processes.memory.ALWAYS", 0.0)
     for read in (fs.ideal, fs.lumped):
         with pytest.raises(
-            fs.DesignError, match=r"3 bodies and .* links need about .* GB of memory, and 1e-06 GB are there\. About \d+ bodies"
+            fs.DesignError, match=r"3 bodies and .* links need about .* GB of memory, but only 1e-06 GB is available\. About \d+ bodies"
         ):
             read(STAGE)
 

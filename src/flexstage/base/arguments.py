@@ -62,8 +62,8 @@ class MismatchError(Exception):
     def refusal(self, where: str) -> DesignError:
         """Return the error as a `DesignError` for the field or parameter `where`.
 
-        >>> str(MismatchError(3.0, "a text", "Give a str").refusal("Leaf.material"))
-        'Leaf.material: must be a text (got 3.0). Give a str.'
+        >>> str(MismatchError(3.0, "a string", "Give a str").refusal("Leaf.material"))
+        'Leaf.material: must be a string (got 3.0). Give a str.'
         """
         return refuse(where + self.place, f"must be {self.expected} (got {_shown(self.value)})", self.advice)
 
@@ -88,9 +88,9 @@ class CheckedFields:
 
 
 def check_arguments(function: Callable[P, T]) -> Callable[P, T]:
-    """Decorate a function to convert or refuse its arguments by its annotations.
+    """Decorate a function to convert or refuse its arguments according to its annotations.
 
-    Raises `DesignError` with the name of the parameter. For a stage instead of a model or result created from the stage, raises `TypeError`
+    Raises `DesignError` with the name of the parameter. If a stage is passed instead of a model or result of the stage, raises `TypeError`
     with the probable call.
 
     >>> def bend(ends: tuple[str, ...], *, load: float = 1.0) -> float:
@@ -99,7 +99,7 @@ def check_arguments(function: Callable[P, T]) -> Callable[P, T]:
     2.0
     >>> check_arguments(bend)("ab")
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: bend: ends: must be several values (got the text 'ab'). Use a tuple or a list of them.
+    flexstage.base.finding.DesignError: bend: ends: must be several values (got the string 'ab'). Use a tuple or a list of them.
     """
 
     @functools.wraps(function)
@@ -277,7 +277,7 @@ def _no_word(value: Any, words: list[str]) -> MismatchError:
 def _text(value: Any) -> Any:
     if isinstance(value, str):
         return value
-    raise MismatchError(value, "a text", "Give a str")
+    raise MismatchError(value, "a string", "Give a str")
 
 
 def _flag(value: Any) -> Any:
@@ -326,7 +326,7 @@ def _as_float(value: Any) -> float:
 
 
 def _no_number(value: Any) -> MismatchError:
-    advice = "Use a number in SI units, e.g. 0.4 * fs.mm; texts with units are for design files (fs.load)"
+    advice = "Use a number in SI units, e.g. 0.4 * fs.mm; strings with units are for design files (fs.load)"
     return MismatchError(value, "a number", advice if isinstance(value, str) else "Use a number or an array in SI units")
 
 
@@ -426,7 +426,7 @@ def _protocol(kind: type, value: Any) -> Any:
 
 
 def _shown(value: Any) -> str:
-    text = f"the text {value!r}" if isinstance(value, str) else "None" if value is None else _of_class(value)
+    text = f"the string {value!r}" if isinstance(value, str) else "None" if value is None else _of_class(value)
     return text if len(text) <= 60 else f"{text[:60]}..."
 
 

@@ -60,7 +60,7 @@ class DesignError(ValueError):
 
 
 class LowerBoundError(DesignError):
-    """Error for a quantity with a known lower `bound` only."""
+    """Error for a quantity for which only a lower `bound` is known."""
 
     def __init__(self, findings: Iterable[Finding], bound: float) -> None:
         super().__init__(findings)
@@ -92,8 +92,8 @@ def refuse(where: str, what: str, advice: str) -> DesignError:
 def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Merge equal errors of several objects of one file (`file: name`) into one with all names.
 
-    >>> print(*join_findings([Finding("a.csv: S1", "no unit", "State it"), Finding("a.csv: S2", "no unit", "State it")]))
-    a.csv: S1, S2: no unit. State it.
+    >>> print(*join_findings([Finding("a.csv: S1", "no unit", "Add it"), Finding("a.csv: S2", "no unit", "Add it")]))
+    a.csv: S1, S2: no unit. Add it.
     """
     groups: dict[tuple[str, str, str], list[str]] = {}
     for finding in findings:
@@ -126,7 +126,7 @@ def _worst(group: Sequence[Finding]) -> Finding:
 
 
 def name_first(names: Sequence[str], most: int = 8) -> str:
-    """Return a text with the first `most` names and the number of the other names.
+    """Return a string with the first `most` names and the number of the other names.
 
     >>> name_first(["b2"]), name_first(["b2", "b3", "b4", "b5"], most=2)
     ('b2', 'b2, b3 and 2 more')

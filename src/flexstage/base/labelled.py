@@ -11,13 +11,13 @@ from flexstage.base.notebook import InNotebook
 from flexstage.base.number import Array
 
 NOISE = 1e-9
-NOISE_RULE = "0: rounding noise, below 1e-9 of the geometric mean of the largest entries (SI) in the row and the column."
-"""Rule, as text for table notes, by which rounding noise is shown as 0."""
+NOISE_RULE = "Entries below 1e-9 of the geometric mean of the largest entries (SI) in their row and column are rounding noise, shown as 0."
+"""Note for tables: the rule by which rounding noise is shown as 0."""
 
 
 @dataclass(frozen=True, eq=False)
 class Matrix(InNotebook):
-    """Matrix (..., rows, columns) with names on both axes; `unit` is one text, or a text for every entry."""
+    """Matrix (..., rows, columns) with names on both axes; `unit` is one string, or a string for every entry."""
 
     values: Array
     rows: tuple[str, ...]
@@ -67,7 +67,7 @@ class Matrix(InNotebook):
         return xarray.DataArray(self.values, dims=(*batch, "row", "column"), coords=coords, attrs={"unit": self.unit})
 
     def __str__(self) -> str:
-        """Return a text with names, units and six digits; of a batch, the first design.
+        """Return a string with names, units and six digits; for a batch, of the first design.
 
         >>> import numpy as np
         >>> print(Matrix(np.array([[1.0, -0.025]]), ("B1",), ("x", "rx"), (("1", "m/rad"),)))

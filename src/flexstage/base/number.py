@@ -138,7 +138,7 @@ _ALIKE = 1e-9
 def index_of_largest(values: Array, slack: Array | float = 0.0) -> Array:
     """Return the index of the largest real value along the last axis; among equal values, the first index.
 
-    Values within 1e-9 (relative) or `slack` (absolute) of the largest are equal. The order breaks ties, not rounding.
+    Values within 1e-9 (relative) or `slack` (absolute) of the largest count as equal, so that rounding errors do not decide a tie.
 
     >>> int(index_of_largest(np.array([1.0, 3.0 - 1e-15, 3.0])))
     1
@@ -163,7 +163,7 @@ def argsort_descending(values: Array, alike: float = _ALIKE) -> list[int]:
 
 
 def distinct_values(values: Array) -> Array:
-    """Return the distinct values above 0 in ascending order; of values within 1e-9 of one another, only the least.
+    """Return the distinct values above 0 in ascending order; of values that differ by less than 1e-9 (relative), only the least.
 
     >>> distinct_values(np.array([2.0, 1.0, 2.0 + 1e-12])).tolist()
     [1.0, 2.0]

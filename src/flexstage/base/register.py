@@ -1,4 +1,4 @@
-"""Registers of kinds: the layer's own kinds, and kinds that other packages provide by entry points."""
+"""Registers of kinds: the layer's own kinds, and kinds that other packages provide through entry points."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Register(Generic[Entry]):
         offers = [offer for offer in _offered(self.group) if offer.name == kind]
         if len(offers) + (kind in self.own) > 1:
             who = ", ".join([*(["flexstage"] if kind in self.own else []), *(_distribution(offer) for offer in offers)])
-            raise refuse(f"{self.group}: {kind}", f"it is offered by {who}", "Uninstall all of these packages but one")
+            raise refuse(f"{self.group}: {kind}", f"several packages provide it: {who}", "Uninstall all of these packages but one")
         return self.own[kind] if kind in self.own else _load(offers[0]) if offers else None
 
     def offer(self, kind: str) -> str:
@@ -54,7 +54,7 @@ class Register(Generic[Entry]):
 def origin(module: str) -> str:
     """Return name and version of the installed package that contains a module; empty for flexstage and scripts.
 
-    Digests include this text, because results of a class may change with its package's version.
+    Digests include this string, because results of a class may change with its package's version.
 
     >>> origin("flexstage.parts.leaf")
     ''
@@ -94,5 +94,5 @@ def _load(offer: EntryPoint) -> Entry:  # type: ignore[type-var]
     try:
         return offer.load()
     except Exception as error:
-        what = f"{_distribution(offer)} offers it, and it cannot be loaded: {type(error).__name__}: {error}"
-        raise refuse(f"{offer.group}: {offer.name}", what, "Install that package again, or ask who maintains it") from error
+        what = f"{_distribution(offer)} provides it, but it cannot be loaded: {type(error).__name__}: {error}"
+        raise refuse(f"{offer.group}: {offer.name}", what, "Reinstall this package, or ask its maintainer") from error

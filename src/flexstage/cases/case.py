@@ -1,4 +1,4 @@
-"""A shipped case: the description in its design file, with changed parameters, and the initial file for a user."""
+"""Shipped cases: the description with default or changed parameters, and the design file as a start for users."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ FILES = Path(__file__).parent / "files"
 
 @dataclass(frozen=True)
 class Case:
-    """A shipped case in the design file of its `name`, and a one-line summary."""
+    """Shipped case: the design file of its `name`, and a one-line `summary`."""
 
     name: str
     summary: str
 
     def build(self, stated: Mapping[str, Stated] | None = None) -> Mechanism:
-        """Build the description with some `stated` parameters: texts with units, or SI numbers; arrays make it a batch.
+        """Build the description with some `stated` parameters: strings with units, or SI numbers; arrays make it a batch.
 
         Tags of changed numbers are removed: their source does not contain the new values.
 
@@ -34,7 +34,7 @@ class Case:
         return with_parameters(_description(self.name), stated or {})
 
     def text(self, stated: Mapping[str, Stated], heading: str) -> str:
-        """The design file with comments, with some `stated` parameters, under a new `heading`."""
+        """Return the design file with comments, some `stated` parameters and a new `heading`."""
         own = {PREFIX + parameter(_description(self.name), name).name: value for name, value in stated.items()}
         text = file_text(self.name)
         head = "".join(f"# {line}".rstrip() + "\n" for line in heading.splitlines())
@@ -42,7 +42,7 @@ class Case:
 
 
 def file_text(name: str) -> str:
-    """The design file of a case as it is shipped.
+    """Return the design file of a case as shipped.
 
     >>> file_text("leaf-guide").splitlines()[0][:9]
     '# A guide'

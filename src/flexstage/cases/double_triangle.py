@@ -1,7 +1,7 @@
-"""The double-triangular stage of Shin & Moon, for examples: three direct horizontal units inside, three vertical ones with levers outside.
+"""The double-triangular stage of Shin & Moon, for examples: three direct horizontal units inside, three vertical lever units outside.
 
-Two consistent parameter sets complete the values that the paper does not print: `SM_REF_A` for formulas (it cannot be built) and
-`SM_REF_B`, buildable, the case `double-triangle`. Every value is tagged stated, derived or assumed.
+Two consistent parameter sets complete the values that the paper does not print: `SM_REF_A` for checking formulas (it cannot be built), and
+`SM_REF_B`, the case `double-triangle`, which can be built. Every value is tagged stated, derived or assumed.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ SM_REF_A, SM_REF_B, SM_REF_B_REFITTED = "double-triangle-a", "double-triangle", 
 
 
 def double_triangle(name: str = SM_REF_B, parameters: Mapping[str, Stated] | None = None) -> Mechanism:
-    """The case of that name, its numbers without their formulas; with some changed `parameters`.
+    """Return the case of that name with some changed `parameters`; its values are numbers without formulas.
 
     >>> double_triangle(parameters={"long_arm": "80 mm"}).units["vertical"].links["front"].at[0]
     0.08
@@ -34,7 +34,7 @@ EQUATION_3: dict[str, tuple[tuple[Freedom, ...], tuple[Freedom, ...]]] = {
     "pole_neck": ((Freedom.X,), ROTATIONS),
     "stack_vertical": ((Freedom.X,), ()),
 }
-"""DOFs of a vertical unit in Eq. 3 of the paper: (elastic, free) DOFs of each part, the others locked."""
+"""DOFs of a vertical unit in Eq. 3 of the paper: (elastic, free) DOFs of each part; the others are locked."""
 
 TABLE_2_FEA = EQUATION_3 | {"foot_notch": ((Freedom.X, Freedom.RZ), ()), "pole_neck": ((Freedom.X, Freedom.RY, Freedom.RZ), (Freedom.RX,))}
 """Eq. 3 with the bending of front and pole hinges, which closes the gap to the FEA column of Table 2."""

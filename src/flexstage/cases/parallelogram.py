@@ -10,7 +10,7 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 def parallelogram() -> Mechanism:
-    """A platform on two leaves, pushed by one stack: the case `parallelogram`, its numbers without their formulas.
+    """Return the case `parallelogram`, a platform on two leaves pushed by one stack; its values are numbers without formulas.
 
     >>> sorted(parallelogram().links)
     ['left', 'right']

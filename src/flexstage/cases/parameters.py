@@ -1,4 +1,4 @@
-"""Parameters of a case: the named numbers of its file without formulas, and the stage with changed ones."""
+"""Parameters of a case (the named numbers without formulas in its file), and the stage with changed parameters."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from flexstage.mechanism.grammar.node import NumberNode, number_findings
 from flexstage.mechanism.mechanism import Mechanism
 
 Stated: TypeAlias = str | float | Array
-"""A parameter of a user: a text with its unit, or a number or an array of numbers in SI."""
+"""Parameter value of a user: a string with its unit, or a number or an array of numbers in SI."""
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a case: its name, its quantity, and its default `value` [SI]."""
+    """Parameter of a case: name, quantity, and default `value` [SI]."""
 
     name: str
     quantity: Quantity
@@ -34,7 +34,7 @@ class Parameter:
 
 
 def parameters(stage: Mechanism) -> dict[str, Parameter]:
-    """The parameters of a case by name.
+    """Return the parameters of a case by name.
 
     >>> from flexstage.cases.registry import case
     >>> [*parameters(case("double-triangle"))][-3:]
@@ -45,7 +45,7 @@ def parameters(stage: Mechanism) -> dict[str, Parameter]:
 
 
 def parameter(stage: Mechanism, name: str, where: str = "") -> Parameter:
-    """The parameter of that name. Raises `DesignError` at `where` with the nearest names.
+    """Return the parameter of that name. Raises `DesignError` at `where` with the nearest names.
 
     >>> from flexstage.cases.registry import case
     >>> parameter(case("double-triangle"), "long_arm").text
@@ -58,7 +58,7 @@ def parameter(stage: Mechanism, name: str, where: str = "") -> Parameter:
 
 
 def with_parameters(stage: Mechanism, stated: Mapping[str, Stated], where: str = "parameters") -> Mechanism:
-    """The case with the `stated` parameters: texts with units, numbers or arrays in SI; its formulas are re-evaluated.
+    """Return the case with the `stated` parameters: strings with units, numbers or arrays in SI. Formulas are re-evaluated.
 
     Raises `DesignError` with all errors: unknown names, wrong units, values out of bounds.
 

@@ -34,7 +34,7 @@ _SUMMARIES = {
     "resonator": "one axis: a plate of polysilicon on four straight legs, as published with formulas",
     "quad-suspension": "one axis: four masses on blade springs and silica fibres, as published for a detector",
     "voice-coil-xy": "two axes of long travel: carriages on double parallelograms, pushed by voice coils",
-    "long-travel-xy": "two axes of +-5 mm on plain leaves, which weight presses and pulls: for large displacements",
+    "long-travel-xy": "two axes of +-5 mm on plain leaves, loaded by weight: for large displacements",
     "three-rrr": "x, y and rz: a plate on three legs of notches, levers and stacks (3-RRR)",
     "stewart": "six axes: a Stewart platform on six amplified actuators",
     "scott-russell": "one axis: a stack amplified by a Scott Russell linkage of notches",
@@ -49,11 +49,11 @@ CASES: Mapping[str, Case] = {name: Case(name, line) for name, line in _SUMMARIES
 
 @check_arguments
 def case(name: str, parameters: Mapping[str, Stated] | None = None) -> Mechanism:
-    """The description of a shipped case, its numbers as a file shows them; with some changed `parameters`.
+    """Return the description of a shipped case with some changed `parameters`.
 
-    A parameter is named as in `flexstage new --list-parameters`, and is a text with its unit, or a number in SI. Arrays make
-    the description a batch. Constant numbers are rounded to twelve digits. Raises `DesignError` with the nearest name for an unknown
-    case or parameter, and for invalid values.
+    Parameters have the names in `flexstage new --list-parameters`; a value is a string with its unit, or a number in SI. Arrays make the
+    description a batch. Constant numbers are rounded to twelve digits. Raises `DesignError` with the nearest name for an unknown case or
+    parameter, and for invalid values.
 
     >>> import numpy as np
     >>> case("hexapod", {"slope": "50 deg", "neck_thickness": np.array([2.5e-3, 3e-3])}).parts["neck"].thickness.tolist()
@@ -68,7 +68,7 @@ def _as_shipped(name: str) -> Mechanism:
 
 
 def shipped_case(name: str) -> Case:
-    """The shipped case of that name. Raises `DesignError` with the nearest name for an unknown one.
+    """Return the shipped case of that name. Raises `DesignError` with the nearest name for an unknown case.
 
     >>> shipped_case("hexapod").summary
     'six axes: six flexure struts in three pairs'
@@ -80,18 +80,18 @@ def shipped_case(name: str) -> Case:
 
 @dataclass(frozen=True)
 class Variant:
-    """A shipped case by name, and the parameters in which it differs from that case: names and SI values."""
+    """Shipped case by name, with changed parameters: names and SI values."""
 
     case: str
     stated: tuple[tuple[str, Any], ...] = ()
 
     @property
     def start(self) -> Mechanism:
-        """The description with the changed parameters."""
+        """Description with the changed parameters."""
         return shipped_case(self.case).build(dict(self.stated))
 
     def value(self, name: str) -> Any:
-        """The value of a parameter [SI].
+        """Return the value of a parameter [SI].
 
         >>> round(Variant("hexapod", (("rise", 0.01),)).value("rise"), 9)
         0.01
@@ -99,7 +99,7 @@ class Variant:
         return parameter(self.start, name).value
 
     def mechanism_at(self, values: Mapping[str, Number]) -> Mechanism:
-        """The description at other `values` of some parameters [SI], numbers or arrays: not rounded, and without tags.
+        """Return the description with other `values` of some parameters [SI] (numbers or arrays), not rounded and without tags.
 
         >>> Variant("hexapod").mechanism_at({"neck_radius": 0.005}).parts["neck"].profile
         Circular(radius=0.005)

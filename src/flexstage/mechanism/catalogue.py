@@ -1,4 +1,4 @@
-"""Catalogues of materials, actuators and sensors, each number with its source: the shipped one, and files of users."""
+"""Catalogues of materials, actuators and sensors, each value with its source: the shipped catalogue, and files of users."""
 
 from __future__ import annotations
 

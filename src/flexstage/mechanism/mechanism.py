@@ -36,7 +36,7 @@ PLATFORM = "platform"
 NOT_GROWING = "none"
 """Value for the ground's material that means no thermal expansion."""
 EVERYWHERE = "all"
-"""Name in `temperatures` for all bodies without their own temperature."""
+"""Name in `temperatures` for all bodies without an entry."""
 
 NAMED = ("materials", "parts", "bodies", "links", "units", "placements", "sensors", "gauges", "payloads", "forces", "stops")
 """Sections of a description with entries by name."""
@@ -65,15 +65,15 @@ class NamedNumber(Description):
 class Link(Description):
     """Elastic connection (a part) between two bodies, or between as many bodies as the part has ports.
 
-    `joins` names the bodies; the relative twist is the motion of the second body against the first. `part` names an entry of the
+    `joins` names the bodies; the relative twist is the motion of the second body relative to the first. `part` names an entry of the
     mechanism's parts. The link frame has its origin at the part's centre `at`, and x along `along` (first to second body). The z axis is
     along `bends`, the axis of compliant rotation, which is required for parts that are not axisymmetric. `free` overrides the ideal degrees
     of freedom of the part. Instead of `at` and `along`, two ends can be specified: `start` at the first body, `end` at the second.
 
     A part with ports (a superelement) joins a body at each named port; several ports may join the same body. The link frame is then the
-    frame of the part's axes. With two ports, `free` are the degrees of freedom of the second port's body against the first port's body,
-    about the second port's origin. `circuit` names the input of a force actuator. Force actuators of one circuit are in series on one
-    amplifier and share the input. A `-` before the name reverses the polarity (push-pull).
+    frame of the part's axes. With two ports, `free` lists the degrees of freedom of the second port's body relative to the first port's
+    body, in the link frame. `circuit` names the input of a force actuator. Force actuators of one circuit are in series on one amplifier
+    and share the input. A `-` before the name reverses the polarity (push-pull).
     """
 
     joins: Joins
@@ -104,7 +104,7 @@ class Link(Description):
 
 @dataclass(frozen=True, eq=False)
 class Unit(Description):
-    """Sub-assembly drawn once in its own frame and placed by a pattern: its `bodies` and `links`.
+    """Sub-assembly of `bodies` and `links`, drawn once in a local frame and placed by a pattern.
 
     Links may also join bodies of the stage (`ground`, `platform`, ...) and of other instances (`W/carriage`). `stiffness` is the unit's
     stiffness in actuator coordinates for the mapped model (default: computed for a direct or a lever unit).
@@ -130,7 +130,7 @@ class Placement(Description):
 
 @dataclass(frozen=True, eq=False)
 class Probe(Description):
-    """Gauges (displacement sensors) for the motion of `body` against `base`, along or about the x axis of the pattern's frame.
+    """Gauges (displacement sensors) for the motion of `body` relative to `base`, along or about the x axis of the pattern's frame.
 
     The measuring point is the frame's origin. For a gap gauge, x points to the target: the gap opens if the target moves along +x.
     `positive` specifies whether the reading increases with an opening or a closing gap. Other gauges have no `positive`: their reading
@@ -148,7 +148,7 @@ class Probe(Description):
 class LinkProbe(Description):
     """Gauge on a link of the expanded stage (`B1/pzt`), for its deformation along or about the link's x axis.
 
-    It measures the motion of the second body against the first: positive for elongation. `B1-B3/pzt` names the links of three gauges.
+    It measures the motion of the second body relative to the first: positive for elongation. `B1-B3/pzt` names the links of three gauges.
     """
 
     gauge: str
@@ -159,8 +159,8 @@ class LinkProbe(Description):
 class GaugeSum(Description):
     """Weighted sum of other gauges of one quantity, by name: `{S1 = 0.5, S2 = -0.5}`.
 
-    The sum replaces its members: the pose is computed from sums and from gauges that are not in a sum. Noise, steps and range are specified
-    for the members.
+    The sum replaces its members: the platform's pose is computed from sums and from gauges that are not in a sum. Noise, steps and range
+    are specified for the members.
     """
 
     sum: Mapping[str, Annotated[Number, RATIO]]
@@ -171,7 +171,7 @@ GaugePlace: TypeAlias = Probe | LinkProbe | GaugeSum
 
 @dataclass(frozen=True, eq=False)
 class Stop(Description):
-    """Stop of a stroke: at the origin of the pattern's frame, `body` can move by `gap` along x against `base`.
+    """Stop of a stroke: at the origin of the pattern's frame, `body` can move by `gap` along x relative to `base`.
 
     `gap_negative` is the limit in the opposite direction (default: none). A key such as `E1-E3` names three stops.
     """
@@ -196,8 +196,8 @@ class Force(Description):
 class StrokePath(Description):
     """Load path of a stage: `drive` (a coordinate such as `platform.y`, a stack, a load) varies between the two values of `to`.
 
-    The values are texts with units, relative to the static equilibrium. Equilibria are computed at a number of `points`. `hold` has the
-    constant conditions, for example:
+    The values are strings with units, relative to the static equilibrium. Equilibria are computed at a number of `points`. `hold` specifies
+    the constant conditions, for example:
 
     - `{"platform.x": "-20 N"}`: a permanent load along a coordinate;
     - `{"platform.rz": "0"}`: a coordinate fixed at its static equilibrium;
@@ -244,15 +244,15 @@ class Aperture(Description):
 class Mechanism(InNotebook, Description):
     """Description of a stage, for all models.
 
-    A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`placements`), with `gauges`. Body
-    `ground` is implied, body `platform` is the moving part. `overrides` are values of single links that replace those of the shared part,
-    by address (`horizontal/front.thickness`, `B2/front.thickness`). `max_mode_frequency` is the frequency limit of listed modes.
+    A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`placements`), with `gauges`. The body
+    `ground` exists implicitly, the body `platform` is the moving part. `overrides` replace values of the shared part for single links, by
+    address (`horizontal/front.thickness`, `B2/front.thickness`). `max_mode_frequency` is the frequency limit of listed modes.
 
     `stops` limit strokes; `paths` are load paths for requirements. `ground` names the ground's material, for its expansion (`none`: no
-    expansion). `temperatures` are temperature changes since manufacture, by body (also `ground`), and for `all` other bodies. The
-    temperature of a part is the mean of its bodies. `packages` are required packages with kinds of parts, gauges and measures, with
-    optional versions: `tapered-leaf >= 1`. With `elastic_bodies`, the lumped model includes the flexibility of bodies, estimated from their
-    outlines. `formulas`, by address, compute values from `numbers`; the description stores the computed values.
+    expansion). `temperatures` are temperature changes since manufacture, by body (including `ground`); the entry `all` is for all other
+    bodies. The temperature of a part is the mean of its bodies. `packages` lists required packages that provide kinds of parts, gauges and
+    measures, with optional versions: `tapered-leaf >= 1`. With `elastic_bodies`, the lumped model includes the flexibility of bodies,
+    estimated from their outlines. `formulas`, by address, compute values from `numbers`; the description stores the computed values.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a description", "stage")
@@ -313,7 +313,7 @@ def every_body(mechanism: Mechanism) -> Iterator[tuple[str, Body]]:
 
 
 def posed(gauges: Mapping[str, GaugePlace]) -> dict[str, Probe]:
-    """Return the gauges that have poses of their own: not gauges on links, not sums of gauges.
+    """Return the gauges that have a pose, without gauges on links and sums of gauges.
 
     >>> list(posed({"D": GaugeSum({"S1": 1.0, "S2": -1.0}), "SG": LinkProbe("strain", "B1/pzt")}))
     []

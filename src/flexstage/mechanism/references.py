@@ -1,4 +1,4 @@
-"""References between the entries of a description, found by the fields that hold names."""
+"""References between the entries of a description, found by the fields that contain names."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def references(value: Any, where: str) -> Iterator[tuple[str, str, str]]:
 
 
 def renamed(value: Any, names: Collection[str], change: Callable[[str, str], str]) -> Any:
-    """Return a value in which each text of the fields `names` is replaced by `change(field, text)`.
+    """Return a value in which each string of the fields `names` is replaced by `change(field, string)`.
 
     A value without such fields is returned unchanged.
 

@@ -73,7 +73,7 @@ def isolate(mechanism: Mechanism, copy: str, *, guide: Vector | None = None) -> 
     unit = drawn_units(mechanism)[units[copy]]
     joint = next((link for link in unit.links.values() if PLATFORM in (owner_of(unit.bodies, body) for body in link.bodies)), None)
     if joint is None:
-        raise refuse(copy, "its unit does not join the platform", "Use a unit with an output")
+        raise refuse(copy, "its unit does not join the platform", "Use a unit that joins the platform")
     own = {name: body if body.of is None else replace(body, solids={}) for name, body in unit.bodies.items()}
     used = {name: mechanism.units[name] for name in ancestry(mechanism, units[copy])}
     others = {*mechanism.units, *units} - {copy, *used}

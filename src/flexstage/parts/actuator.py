@@ -17,9 +17,10 @@ from flexstage.parts.shape import Elastic, Order
 class Actuator(Elastic):
     """Part with an `input` of a physical quantity.
 
-    A stroke actuator (`input` is a displacement) has a free deformation s per unit of stroke u. Its force is k (dx - s u). For a force
-    actuator, `input` is a force or a current. It exerts `wrench` per unit of input on its second face, and the opposite wrench on its first
-    face. A force actuator leaves all degrees of freedom free; its stiffness is a separate term. A positive input pushes the faces apart.
+    A stroke actuator (`input` is a displacement) has a free deformation s per unit of stroke u. Its force is k (dx - s u) for a relative
+    displacement dx of its faces. The `input` of a force actuator is a force or a current. The actuator exerts `wrench` per unit of input on
+    its second face, and the opposite wrench on its first face. A force actuator leaves all degrees of freedom free; its stiffness is a
+    separate term. A positive input pushes the faces apart.
     """
 
     input: ClassVar[Quantity] = DISPLACEMENT
@@ -36,7 +37,7 @@ class Actuator(Elastic):
 
     @property
     def free_deformation(self) -> Array:
-        """Free deformation (..., 6) of the second face against the first per unit of stroke, in the link's frame.
+        """Free deformation (..., 6) of the second face relative to the first, per unit of stroke, in the link's frame.
 
         Zero for a force actuator.
         """
@@ -50,9 +51,9 @@ class Actuator(Elastic):
 
 @dataclass(frozen=True, eq=False)
 class ForceLimit:
-    """Limit of a force actuator's input: `held` for continuous use, `short` for short use (None: unknown).
+    """Limit of a force actuator's input: `held` is the continuous limit, `short` the short-time limit (None: unknown).
 
-    `clips`: the limit acts at once (saturation), unlike a thermal limit.
+    If `clips`, the limit cuts off the input immediately (saturation), unlike a thermal limit.
     """
 
     name: str
@@ -182,6 +183,6 @@ class ChargedActuator(StrokeActuator):
     @property
     def orders(self) -> Iterator[Order]:
         """Order relation: the bias is within the voltage range."""
-        yield Order("voltage_low", self.voltage_low, self.voltage_high, "voltage_high", "Exchange them", VOLTAGE)
+        yield Order("voltage_low", self.voltage_low, self.voltage_high, "voltage_high", "Exchange both values", VOLTAGE)
         advice = "Use a bias within the range of the stack"
         yield Order("bias", self.bias, self.voltage_high, "voltage_high", advice, VOLTAGE, strict=False)

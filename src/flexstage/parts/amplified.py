@@ -44,7 +44,7 @@ _Deformation: TypeAlias = tuple[_Shift, _Shift, _Shift, _Turn, _Turn, _Turn]
 
 
 class BetweenFaces(StrokeActuator):
-    """Stroke actuator with the force f = k (dx - s u): 6x6 stiffness k about its centre, free deformation s per unit of stroke u."""
+    """Stroke actuator with the force f = k (dx - s u): k is the 6x6 stiffness about its centre, s the free deformation per stroke u."""
 
     diagonal: _Diagonal | None
     matrix: _Matrix | None
@@ -68,14 +68,14 @@ class BetweenFaces(StrokeActuator):
 
     @property
     def between(self) -> Array:
-        """Stiffness k (..., 6, 6) [SI] about the centre, for motion of the second face against the first."""
+        """Stiffness k (..., 6, 6) [SI] about the centre, for motion of the second face relative to the first."""
         if self.diagonal is not None:
             return stack(self.diagonal)[..., None] * np.eye(6)
         return np.linalg.inv(stack(self.compliance)) if self.matrix is None else stack(self.matrix)
 
     @property
     def mirrored(self) -> Self:
-        """Mirror image across y: couplings, products of inertia and deformations that are odd in y change sign."""
+        """Mirror image in the x-z plane: couplings, products of inertia and deformations that are odd in y change sign."""
         return replace(self, **dict(_reversed(self)))  # pyright: ignore[reportArgumentType] (its kinds are dataclasses)
 
     @property
@@ -94,7 +94,7 @@ class BetweenFaces(StrokeActuator):
         """Errors of the stiffness: it must be specified exactly once, and be symmetric and positive definite."""
         stated = [name for name in ("diagonal", "matrix", "compliance") if getattr(self, name) is not None]
         if len(stated) != 1:
-            result = f"both {' and '.join(stated)} specified" if stated else "stiffness across its axis missing"
+            result = f"both {' and '.join(stated)} specified" if stated else "6x6 stiffness missing"
             yield Finding("", result, "Specify one of diagonal (six stiffnesses), matrix (6x6 stiffness) or compliance (6x6)")
             return
         if stated[0] != "diagonal":
@@ -119,10 +119,10 @@ class Amplified(BetweenFaces, ChargedActuator):
     """Amplified piezo actuator between its two faces: f = k (dx - s u).
 
     `stroke` is the full free stroke of the output along x. `deformation` is the free deformation (x, y, z, rx, ry, rz) of the second face
-    against the first at full stroke (default: the stroke along x). It can describe contracting actuators and parasitic motion. Exactly one
-    of `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` specifies the 6x6 about the centre at constant voltage. Half of `mass`
-    and of `inertia` is at each face, about the centre. `free` are the degrees of freedom of the ideal model. `resonance` (one face fixed,
-    the other free) is information only: internal modes are not modelled.
+    relative to the first at full stroke (default: the stroke along x). It can describe contracting actuators and parasitic motion. Exactly
+    one of `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` specifies the 6x6 stiffness about the centre at constant voltage.
+    Half of `mass` and of `inertia` is at each face, about the centre. `free` lists the degrees of freedom of the ideal model. `resonance`
+    (one face fixed, the other free) is information only: internal modes are not modelled.
     """
 
     kind: ClassVar[str] = "amplified"
@@ -173,9 +173,10 @@ class Amplified(BetweenFaces, ChargedActuator):
 class SteppingDrive(BetweenFaces):
     """Stepping drive, self-locking without power: inertia drive, inchworm, screw.
 
-    The stroke is the whole `travel` along x, half to either side, in steps of `resolution`. Exactly one of `diagonal` (x, y, z, rx, ry,
-    rz), `matrix` and `compliance` specifies the 6x6 about the centre while locked. `holding_force` is the slip force along x: the load
-    limit in both directions. Half of `mass` is at each face. The model is linear: no backlash, no step forces.
+    The stroke is the whole `travel` along x, half of it on each side of the nominal position, in steps of `resolution`. Exactly one of
+    `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` specifies the 6x6 stiffness of the locked drive about its centre.
+    `holding_force` is the slip force along x: the load limit in both directions. Half of `mass` is at each face. The model is linear,
+    without backlash or step forces.
     """
 
     kind: ClassVar[str] = "stepper"

@@ -17,7 +17,7 @@ from flexstage.spatial.frame import Frame, axes
 
 
 class Solid(Description):
-    """Solid outline of a body, of one `material`, with its geometry in its own frame at its centre.
+    """Solid component of a body, of one `material`. Its geometry refers to a local frame at its centre.
 
     In this frame, a cylinder's axis is x; the height of a block or an extrusion is along z.
     """
@@ -53,11 +53,11 @@ class Solid(Description):
 
     @property
     def mirrored(self) -> Solid:
-        """Mirror image across y in the drawing frame; the solid itself if it is symmetric."""
+        """Mirror image in the x-z plane of the drawing frame; the solid itself if it is symmetric."""
         return self
 
     def contains(self, points: Array, slack: float) -> Array:
-        """Return a mask of the points (n, 3), in the solid's frame, that are inside or within `slack` [m] of it (first design)."""
+        """Return a mask of the points (n, 3), in the solid's frame, that are in the solid or within `slack` [m] of it (first design)."""
         half = 0.5 * first_design(np.real(self.sides), 1)
         return np.all(np.abs(points) <= half + slack, axis=1)
 
@@ -66,8 +66,8 @@ class Solid(Description):
 class Block(Solid):
     """Rectangular block centred at `at`, x edge along `along`, z edge along `up` (perpendicular to `along`).
 
-    Without directions, its edges are parallel to the axes of the drawing frame. `hole` has the sides (x, y) [m] of a centred rectangular
-    through hole along the block's z edge. `subtract`: the block is a hole, see `Body`.
+    Without directions, its edges are parallel to the axes of the drawing frame. `hole` gives the side lengths (x, y) [m] of a centred
+    rectangular through hole along the block's z edge. `subtract`: the block is a hole, see `Body`.
     """
 
     material: str
@@ -236,7 +236,7 @@ class Extrusion(Solid):
 
 @dataclass(frozen=True, eq=False)
 class Sphere(Solid):
-    """Ball centred at `at`. `subtract`: the ball is a hollow, see `Body`."""
+    """Ball centred at `at`. `subtract`: the ball is a cavity, see `Body`."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "sphere")
     material: str
@@ -280,12 +280,12 @@ class Inertia(Description):
 
     @property
     def mirrored(self) -> Inertia:
-        """Inertia of the mirror image across y."""
+        """Inertia of the mirror image in the x-z plane."""
         return replace(self, xy=-self.xy, yz=-self.yz)
 
 
 def across(vector: Vector) -> Vector:
-    """Return the mirror image of a point or a direction across y.
+    """Return the mirror image of a point or a direction in the x-z plane.
 
     >>> across((1.0, 2.0, 3.0))
     (1.0, -2.0, 3.0)
@@ -295,15 +295,15 @@ def across(vector: Vector) -> Vector:
 
 @dataclass(frozen=True, eq=False)
 class Imported(Solid):
-    """Imported solid: the STEP `file`, its origin at `at`, x axis along `along`, z axis along `up`.
+    """Solid imported from the STEP `file`, with its origin at `at`, x axis along `along`, z axis along `up`.
 
     Rigid-body models use specified values in the file's axes: `size` (sides) and `middle` of the bounding box, `mass`, `centre` of mass,
     and `inertia` about the centre of mass. The solid model compares these values with the file (tolerance 0.1 %). `sha256` is the digest of
     the file's bytes: it identifies the version, and caches use it instead of the file.
 
     `wall` is the thickness of the thinnest wall, for the mesh (default: the shortest side). A relative path is relative to the design file.
-    If the file has several solids, `solid` is the name or the number (`#2`). `reflected`: use the mirror image of the file's solid across
-    its x-z plane, with the specified middle, centre and inertia.
+    If the file has several solids, `solid` selects one by name or number (`#2`). `reflected`: use the mirror image of the file's solid in
+    its x-z plane; `middle`, `centre` and `inertia` describe the mirror image.
     """
 
     material: str
@@ -323,7 +323,7 @@ class Imported(Solid):
 
     @property
     def mirrored(self) -> Imported:
-        """Mirror image across y."""
+        """Mirror image in the x-z plane."""
         middle, centre, inertia = across(self.middle), across(self.centre), self.inertia.mirrored
         return replace(self, middle=middle, centre=centre, inertia=inertia, reflected=not self.reflected)
 
@@ -352,7 +352,7 @@ class Imported(Solid):
 
 @dataclass(frozen=True, eq=False)
 class SolidWithHoles(Solid):
-    """Solid with `holes` cut by other solids of its body, in the frame of its centre."""
+    """Solid with `holes`: subtracted solids of its body, drawn in the frame of the solid's centre."""
 
     solid: Solid
     holes: tuple[Solid, ...]
@@ -412,7 +412,7 @@ class PlacedSolid:
 
 
 def pierce(solids: Mapping[str, PlacedSolid]) -> dict[str, PlacedSolid]:
-    """Return the solids of one body by name; those that `subtract` become holes in the others.
+    """Return the solids of one body by name; solids with `subtract` become holes in the others of equal material.
 
     >>> plate, bolt = Block("steel", (0.1, 0.1, 0.01)), Cylinder("steel", 0.005, 0.02, subtract=True)
     >>> placed = {"plate": PlacedSolid(plate, plate.frame), "bolt": PlacedSolid(bolt, bolt.frame)}

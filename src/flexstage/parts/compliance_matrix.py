@@ -36,8 +36,8 @@ class ComplianceMatrix(Elastic):
 
     Entries are in m/N, rad/N (= m/(N m)) and rad/(N m); the matrix is symmetric and positive definite. `free` are the ideal degrees of
     freedom. `replaces` names the drawn part that the matrix replaces. The drawn part supplies the shape for the solid model, and the
-    material for drift and structural damping. `mass` is a point mass at the part's centre, half of it on each end. With `inertia` about its
-    `centre` of mass, along the axes of the link frame, the mass is a rigid solid.
+    material for drift and structural damping. `mass` is a point mass at the part's centre; half of it belongs to each end. With `centre` of
+    mass or `inertia` about that centre, in the axes of the link frame, the mass is a rigid solid.
     """
 
     kind: ClassVar[str] = "compliance_matrix"
@@ -57,21 +57,21 @@ class ComplianceMatrix(Elastic):
 
     @property
     def mirrored(self) -> ComplianceMatrix:
-        """Mirror image across y: entries that couple y, rx or rz with other motions are reversed."""
+        """Mirror image in the x-z plane: entries that couple y, rx or rz with x, z or ry change sign."""
         inertia = None if self.inertia is None else self.inertia.mirrored
         centre = None if self.centre is None else across(self.centre)
         return replace(self, compliance=mirror_rows(self.compliance), centre=centre, inertia=inertia)
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors: an inertia or a centre without a mass."""
+        """Errors: inertia or centre without a mass, or a compliance that is not symmetric and positive definite."""
         for name in ("centre", "inertia"):
             if getattr(self, name) is not None and np.any(np.real(self.mass) == 0.0):
                 yield Finding(name, "specified without a mass", "Specify the mass too")
         yield from definite_findings("compliance", stack(self.compliance))
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Return the inverse of the compliance, and half of the mass or of the rigid solid at each end, both at the centre."""
+        """Return the stiffness (inverse of the compliance) and the mass matrix with half of the mass at each end, both about the centre."""
         return Stated(np.linalg.inv(stack(self.compliance)), self.carried)
 
     @property

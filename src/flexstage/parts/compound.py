@@ -39,10 +39,10 @@ class Composition:
 
 
 class Compound(Elastic):
-    """Compound part, which its members replace at expansion: members of the link `B1/pivot` are named `B1/pivot.left`, ...
+    """Compound part, replaced by its members at expansion. Members of the link `B1/pivot` are named `B1/pivot.left`, ...
 
-    Its numbers have addresses as in any part; they may be arrays and complex. Equal members should be the same object, so that their
-    stiffness law is computed only once.
+    Its numeric fields have addresses as in any part; the values may be arrays and complex. Equal members should be the same object, so that
+    their stiffness law is computed only once.
     """
 
     @property
@@ -64,7 +64,7 @@ class Compound(Elastic):
 def radial_leaf(leaf: Leaf, joins: tuple[str, str], direction: tuple[Number, Number], *, centre: Number, height: Number = 0.0) -> Member:
     """Return a leaf as member of a compound, along a unit `direction` (x, y) from the compound's z axis.
 
-    Its middle is at the distance `centre` [m] from the axis and at z = `height` [m]. It bends about z.
+    The leaf's middle is at the distance `centre` [m] from the axis and at z = `height` [m]. The leaf bends about z.
 
     >>> radial_leaf(Leaf("steel", 0.02, 0.001, 0.01), ("first", "second"), (0.0, 1.0), centre=0.015).at
     (0.0, 0.015, 0.0)

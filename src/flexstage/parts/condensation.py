@@ -22,9 +22,9 @@ from flexstage.spatial.frame import Frame, axes, mirror, twist_transform
 SYMMETRIC = 1e-6
 """Largest accepted asymmetry of an entry relative to the largest entry of the matrix."""
 RIGID = 1e-3
-"""Largest accepted stiffness of a rigid motion, as rounding of the file, relative to the softest elastic motion."""
+"""Largest accepted stiffness of a rigid motion (rounding error of the file), relative to the softest elastic motion."""
 STATED = 1e-3
-"""Largest accepted relative deviation of specified mass, centre (over the distance of the ports) and inertia from the matrices."""
+"""Largest accepted relative deviation of specified mass, centre (divided by the distance of the ports) and inertia from the matrices."""
 _NEGATIVE = 1e-8
 _NOTHING = 1e-10
 _MASSLESS = 1e-13
@@ -34,12 +34,13 @@ MOST_MODES = 1000
 
 @dataclass(frozen=True, eq=False)
 class Condensed:
-    """Superelement reduced to p ports and m fixed-interface modes [SI]. A port's twist is at its origin in its axes; ports in file order.
+    """Superelement reduced to p ports and m fixed-interface modes [SI].
 
-    `stiffness` (6 (p - 1), 6 (p - 1)) is for all ports except the first, which is fixed. `squares` (m,) are the squared angular frequencies
-    of the mass-normalised modes. `inertia` (6 p + m, 6 p + m) is for all coordinates. `damping` (6 (p - 1) + m, 6 (p - 1) + m) is for the
-    ports except the first, and the modes (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3) about it, in the part's axes, are
-    computed from rigid motions. `error` is the stiffness of rigid motions, which is removed, relative to the softest elastic motion.
+    A port's twist is about the port's origin, in its axes; the ports are in the order of their rows in the file. `stiffness` (6 (p - 1), 6
+    (p - 1)) is for all ports except the first, which is fixed. `squares` (m,) are the squared angular frequencies of the mass-normalised
+    modes. `inertia` (6 p + m, 6 p + m) is for all coordinates. `damping` (6 (p - 1) + m, 6 (p - 1) + m) is for the ports except the first,
+    and the modes (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3) about the centre, in the part's axes, are computed from
+    rigid motions. `error` is the stiffness of rigid motions, which is removed, relative to the softest elastic motion.
     """
 
     stiffness: Array
@@ -135,10 +136,10 @@ def _loss_findings(damping: Array, motion: Array) -> Iterator[Finding]:
     largest = float(np.max(np.abs(damping), initial=0.0))
     left = float(np.max(np.abs(damping[:, : len(motion)] @ motion)))
     if left > RIGID * largest * float(np.max(np.abs(motion))):
-        what = f"it resists rigid motions, like mass-proportional damping (got {left:.3g}, largest entry {largest:.3g})"
-        yield Finding("damping matrix", what, "Export the damping of material and joints only; use damping for the whole stage")
+        what = f"resists rigid motions, like mass-proportional damping (got {left:.3g}, largest entry {largest:.3g})"
+        yield Finding("damping matrix", what, "Export only the damping of material and joints; specify other damping for the whole stage")
     elif float(np.linalg.eigvalsh(damping)[0]) < -_NEGATIVE * len(damping) * largest:
-        yield Finding("damping matrix", "it has a negative eigenvalue", "Export the damping of the unloaded part")
+        yield Finding("damping matrix", "has a negative eigenvalue", "Export the damping of the unloaded part")
 
 
 def _shape_findings(part: Superelement, matrices: Mapping[str, MatrixLike]) -> Iterator[Finding]:
@@ -146,7 +147,7 @@ def _shape_findings(part: Superelement, matrices: Mapping[str, MatrixLike]) -> I
         yield Finding("ports", f"too few ports (got {len(part.ports)}, expected 2 or more)", "Specify all interface frames")
     moved = [name for name, port in part.ports.items() if any(np.ndim(each) for each in (*port.at, *port.along, *port.up))]
     if moved and any(np.ptp(np.real(each)) for name in moved for port in (part.ports[name],) for each in (*port.at, *port.along, *port.up)):
-        yield Finding(f"ports.{moved[0]}", "it varies between designs, but the file is for one position", "Keep the ports fixed")
+        yield Finding(f"ports.{moved[0]}", "its pose varies between designs, but the file is for one pose", "Keep the ports fixed")
     sizes = {name: matrix.shape for name, matrix in matrices.items()}
     for name, shape in sizes.items():
         if len(shape) != 2 or shape[0] != shape[-1]:
@@ -158,8 +159,8 @@ def _shape_findings(part: Superelement, matrices: Mapping[str, MatrixLike]) -> I
     for name in part.order:
         port = part.ports[name]
         if port.row + 5 > len(rows):
-            what = f"its six rows end at {port.row + 5}, beyond the {len(rows)} rows: 6 x {len(part.ports)} ports and internal coordinates"
-            yield Finding(f"ports.{name}.row", what, "Use the number of its first row, from 1")
+            what = f"its six rows end at row {port.row + 5}, but the matrices have {len(rows)} rows"
+            yield Finding(f"ports.{name}.row", what, "Use the number of its first row, counted from 1")
             continue
         if np.any(rows[port.row - 1 : port.row + 5]):
             yield Finding(
@@ -185,9 +186,9 @@ def _entry_findings(name: str, matrix: MatrixLike) -> Iterator[Finding]:
     if off[row, column] > SYMMETRIC * largest:
         what = (
             f"not symmetric: entry ({row + 1}, {column + 1}) is {matrix[row, column]:.6g} and its transpose "
-            f"{matrix[column, row]:.6g}, {off[row, column] / largest:.2g} of the largest entry, at most {SYMMETRIC:g} expected"
+            f"{matrix[column, row]:.6g}; they differ by {off[row, column] / largest:.2g} of the largest entry (at most {SYMMETRIC:g})"
         )
-        yield Finding(name, what, "Export the whole matrix, not a triangle, of a model without rotors or contact")
+        yield Finding(name, what, "Export the whole matrix, not only a triangle, of a model without rotors or contact")
 
 
 def _split(part: Superelement, *matrices: MatrixLike) -> _Split:
@@ -209,7 +210,7 @@ def _solve_within(inner: MatrixLike, force: Array) -> Array:
         try:
             factors = scipy.sparse.linalg.splu(inner.tocsc(), diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         except RuntimeError:
-            raise refuse("stiffness matrix", "the internal coordinates have a free motion with fixed ports", advice) from None
+            raise refuse("stiffness matrix", "internal coordinates can move freely while the ports are fixed", advice) from None
         if np.min(factors.U.diagonal()) <= 0.0:
             raise refuse("stiffness matrix", "zero or negative stiffness of an internal motion with fixed ports", advice)
         return factors.solve(force)
@@ -268,8 +269,8 @@ def _rigid_findings(part: Superelement, at_ports: Array, in_file: Array, frames:
         return 0.0, [Finding("stiffness matrix", "no relative motion of the ports has stiffness", "Check the file")]
     if left > RIGID * softest:
         what = (
-            f"stiffness of rigid motions of all ports:  {left:.3g} N/m (rotations over {_span(frames) * 1e3:.4g} mm), "
-            f"{left / stiffest:.2g} of its stiffest motion and {left / softest:.2g} of its softest; at most {RIGID:g} expected"
+            f"rigid motion of all ports has a stiffness of {left:.3g} N/m (rotations scaled by {_span(frames) * 1e3:.4g} mm): "
+            f"{left / stiffest:.2g} of the stiffest elastic motion and {left / softest:.2g} of the softest (expected at most {RIGID:g})"
         )
         return left / softest, [Finding("ports", what, _hint(part, at_ports, in_file, frames))]
     least = float(np.linalg.eigvalsh(at_ports[6:, 6:])[0])
@@ -285,15 +286,15 @@ def _hint(part: Superelement, at_ports: Array, in_file: Array, frames: list[Fram
         scale, energy = _in_si(part, units)
         if units is not part.units and _is_free(energy * scale * in_file * scale[:, None], frames):
             far = "farther apart" if part.units is FileUnits.SI else "closer"
-            return f'They are free with units = "{units.value}", or with the ports a thousand times {far}'
+            return f'Rigid motions are free with units = "{units.value}", or with the ports a thousand times {far}'
     if _is_free(at_ports, [Frame(np.eye(3), frame.position) for frame in frames]):
-        return "They are free if all ports have the axes of the part: remove along and up"
+        return "Rigid motions are free if all ports have the axes of the part: remove along and up"
     for first, second in itertools.combinations(range(len(frames)), 2):
         swapped = list(frames)
         swapped[first], swapped[second] = frames[second], frames[first]
         if _is_free(at_ports, swapped):
-            return f"They are free if the rows of {part.order[first]} and {part.order[second]} are exchanged"
-    return "Check positions and axes of the ports, the order of the rows (x, y, z, rx, ry, rz), and that the model is free"
+            return f"Rigid motions are free if the rows of {part.order[first]} and {part.order[second]} are exchanged"
+    return "Check positions and axes of the ports and the order of the rows (x, y, z, rx, ry, rz); export a model without supports"
 
 
 def _is_free(at_ports: Array, frames: list[Frame]) -> bool:
@@ -315,9 +316,9 @@ def _mass_findings(part: Superelement, seen: Array, span: float) -> tuple[float,
     findings: list[Finding] = []
     if np.max(np.abs(seen[:3, :3] - mass * np.eye(3))) > STATED * mass:
         what = f"rigid motions along x, y and z have the masses {along[0]:.6g}, {along[1]:.6g} and {along[2]:.6g} kg, which should be equal"
-        findings.append(Finding("mass matrix", what, "Export the whole mass matrix: mass on the ports or on some directions is missing"))
+        findings.append(Finding("mass matrix", what, "Export the whole mass matrix: mass at the ports or in some directions is missing"))
     elif np.max(np.abs(lever + lever.T)) > STATED * span:
-        what = "its coupling of translations and rotations is not that of a rigid body"
+        what = "translations and rotations are not coupled as in a rigid body"
         findings.append(Finding("mass matrix", what, "Check positions and axes of the ports, and export the consistent mass matrix"))
     return mass, centre, moments, [*findings, *_stated_findings(part, mass, centre, moments, span)]
 
@@ -327,19 +328,19 @@ def _stated_findings(part: Superelement, mass: float, centre: Array, moments: Ar
     if part.mass is not None:
         stated = float(np.real(np.ravel(part.mass)[0]))
         if abs(stated - mass) > STATED * max(abs(stated), abs(mass)):
-            yield Finding("mass", f"wrong mass (got {stated:.6g} kg, expected {mass:.6g} kg by rigid motions of the matrices)", advice)
+            yield Finding("mass", f"wrong mass (got {stated:.6g} kg, expected {mass:.6g} kg from rigid motions of the matrices)", advice)
     if part.centre is not None:
         stated = np.real(first_design(stack(part.centre), 1))
         off = float(np.linalg.norm(stated - centre))
         if off > STATED * span:
-            what = f"wrong centre ({off * 1e3:.4g} mm from that of the matrices, ({_millimetres(centre)}) mm)"
+            what = f"wrong centre of mass ({off * 1e3:.4g} mm from the centre ({_millimetres(centre)}) mm of the matrices)"
             yield Finding("centre", what, advice)
     if part.inertia is not None:
         stated = np.real(first_design(tensor(part.inertia), 2))
         off = float(np.max(np.abs(stated - moments)))
         if off > STATED * max(float(np.trace(stated)), float(np.trace(moments))):
             result = ", ".join(f"{each:.4g}" for each in np.diag(moments))
-            yield Finding("inertia", f"it differs by {off:.4g} kg m^2 from that of the matrices (xx, yy, zz = {result})", advice)
+            yield Finding("inertia", f"differs by {off:.4g} kg m^2 from the inertia of the matrices (xx, yy, zz = {result})", advice)
 
 
 def _millimetres(place: Array) -> str:
@@ -360,7 +361,7 @@ def _negative_findings(inertia: MatrixLike) -> Iterator[Finding]:
     root = 1.0 / np.sqrt(np.where(diagonal > _MASSLESS * largest, diagonal, largest or 1.0))
     least = float(np.linalg.eigvalsh(inertia * root * root[:, None])[0])
     if least < -_NEGATIVE * len(root):
-        what = f"negative mass of a motion (least eigenvalue {least:.3g}, the diagonal scaled to 1)"
+        what = f"negative mass of a motion (least eigenvalue {least:.3g}, with the diagonal scaled to 1)"
         yield Finding("mass matrix", what, "Export the consistent or the lumped mass matrix, with all its digits")
 
 
@@ -381,7 +382,7 @@ def _modes(part: Superelement, split: _Split) -> tuple[Array, Array]:
     squares, shapes = squares[: part.modes][few], shapes[:, : part.modes][:, few]
     if len(squares) > MOST_MODES:
         what = f"too many internal coordinates (got {len(squares)}, expected {MOST_MODES} at most)"
-        raise refuse("modes", what, 'Limit the number of modes (modes = 20), or their frequency (below = "2 kHz")')
+        raise refuse("modes", what, 'Limit the number of modes (e.g. modes = 20) or their frequency (e.g. below = "2 kHz")')
     return squares, np.vstack([np.zeros((split.ports, len(squares))), shapes])
 
 
@@ -407,7 +408,7 @@ def _dense(matrix: MatrixLike) -> Array:
 
 @check_arguments
 def superelement(part: Superelement) -> Superelement:
-    """Return the part with absolute paths and the current digest of its files; raises `DesignError` as `condense`.
+    """Return the part with absolute paths and the current digest of its files; raises `DesignError` like `condense`.
 
     Use it for parts created in Python from new files. A design file specifies the digest.
     """

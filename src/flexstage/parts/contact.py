@@ -129,7 +129,7 @@ def hertz(part: Contact, material: Material) -> Hertz:
 
 
 def contact_stiffness(part: Contact, material: Material) -> Array:
-    """Compute the stiffness (..., 6, 6) about the ball's centre: the sum of its contacts, without contact moments.
+    """Compute the stiffness (..., 6, 6) about the ball's centre: the sum over its contacts, without contact moments.
 
     On a flat, rolling and spinning about the contact point are free. About the ball's centre, the stiffness has terms k_t R and k_t R^2.
 
@@ -149,7 +149,7 @@ def _both(part: Contact, material: Material) -> tuple[Material, Material]:
     for name, each in ((part.material, material), (part.counter, material.counter)):
         if each.is_cubic:
             what = f"contacts require isotropic materials ({name} is a crystal)"
-            raise refuse(f"contact of {part.material} on {part.counter}", what, 'Use its measured stiffness (kind = "spring")')
+            raise refuse(f"contact of {part.material} on {part.counter}", what, 'Use the measured stiffness (kind = "spring")')
     return material, material.counter
 
 

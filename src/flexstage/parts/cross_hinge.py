@@ -62,7 +62,7 @@ class CrossHinge(Compound):
     def orders(self) -> Iterator[Order]:
         """Order relations: leaves thinner than wide, crossing each other, without interference."""
         yield Order("angle", self.angle, np.pi, "a straight angle", "Use the angle between the leaves", ANGLE)
-        yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
+        yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values, or rotate the link's bends")
         middle = self.width if self.middle_width is None else self.middle_width
         yield Order("thickness", self.thickness, middle, "the middle width", "Make the middle leaf wider")
         yield Order("width", 0.5 * (self.width + middle), self.spacing, "the spacing", "Increase the spacing of the leaves", strict=False)

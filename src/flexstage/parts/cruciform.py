@@ -101,7 +101,7 @@ def cross(thickness: Number, width: Number) -> Cross:
 
 @dataclass(frozen=True, eq=False)
 class Cruciform(Shaped):
-    """Cruciform torsion hinge of two crossed leaves: `length` along x, `thickness` and `width` of both leaves, along y and z.
+    """Cruciform torsion hinge of two equal crossed leaves: `length` is along x, the `width` of one leaf along y, of the other along z.
 
     Ideal degree of freedom: rotation about x.
     """
@@ -131,4 +131,4 @@ class Cruciform(Shaped):
     @property
     def orders(self) -> Iterator[Order]:
         """Order relation: leaves thinner than wide."""
-        yield Order("thickness", self.thickness, self.width, "the width", "Exchange them")
+        yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values")

@@ -15,8 +15,9 @@ from flexstage.parts.gauge import Instrument
 class Encoder(Instrument):
     """Linear encoder: displacement of a scale on a body along the gauge's x axis, positive along +x.
 
-    `range` is the total travel of the scale. Each `period` of the scale is divided into `steps` (one: the period is the step).
-    `noise_density` is white noise; `bandwidth` is in Hz. Rotation of the scale has no first-order effect.
+    `range` is the total travel of the scale. Each `period` of the scale is divided into `steps`; with `steps` 1, a step is one period.
+    `noise_density` is the amplitude density of white noise [m/Hz^0.5], `bandwidth` the measurement bandwidth [Hz]. Rotation of the scale
+    has no first-order effect.
     """
 
     kind: ClassVar[str] = "encoder"

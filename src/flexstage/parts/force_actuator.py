@@ -18,7 +18,7 @@ from flexstage.parts.stated import Stated, point_masses
 
 @dataclass(frozen=True, eq=False)
 class ForceActuator(ThrustActuator):
-    """Force actuator along x between two bodies, positive pushing them apart; without stiffness.
+    """Force actuator without stiffness, along x between two bodies. A positive force pushes the bodies apart.
 
     `maximum` is the largest force in either direction [N] (default: unknown). Half of `mass` is on each body.
     """

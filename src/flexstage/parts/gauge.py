@@ -25,10 +25,10 @@ class SensorSense(Enum):
 class Instrument(Description):
     """Common properties of every `kind` of gauge; `parts.GAUGES` lists the kinds.
 
-    A gauge measures one `freedom` of a body's motion against its base, in the gauge's frame: a displacement [m] or a rotation [rad]. `gap`:
-    the gauge faces a target along x, and its sense (opening or closing gap) is specified. `inside`: the gauge is on a link. `range` is the
-    total measuring span, `resolution` the quantisation step [m, rad]. White `noise_density` [m/Hz^0.5, rad/Hz^0.5] and `bandwidth` [Hz] are
-    `None` if unknown.
+    A gauge measures one `freedom` of a body's motion relative to its base, in the gauge's frame: a displacement [m] or a rotation [rad]. If
+    `gap`, the gauge measures the gap to a target along x and requires a sense (opening or closing gap). If `inside`, the gauge is on a
+    link. `range` is the total measuring span, `resolution` the quantisation step [m, rad]. The amplitude density of white noise,
+    `noise_density` [m/Hz^0.5, rad/Hz^0.5], and the `bandwidth` [Hz] are `None` if unknown.
     """
 
     kind: ClassVar[str]
@@ -58,7 +58,11 @@ class DisplacementGauge(Instrument):
 
 @dataclass(frozen=True, eq=False)
 class Gauge(DisplacementGauge):
-    """Displacement gauge: measuring `range` (total span), `resolution` (quantisation step), white `noise_density`, `bandwidth`."""
+    """Displacement gauge: change of the gap to a target along the gauge's x axis.
+
+    `range` is the total measuring span [m], `resolution` the quantisation step [m], `noise_density` the amplitude density of white noise
+    [m/Hz^0.5], and `bandwidth` the measurement bandwidth [Hz].
+    """
 
     kind: ClassVar[str] = "gauge"
     range: Annotated[Number, DISPLACEMENT, POSITIVE]
@@ -89,7 +93,8 @@ def combine_gauges(members: Sequence[tuple[Number, Instrument]]) -> Combination:
     """Combine weighted gauges with independent errors into one.
 
     With weights w_i, the range is sum |w_i| r_i and the resolution sum |w_i| q_i (worst signs). The noise density is (sum w_i^2
-    n_i^2)^(1/2), or `None` if one is unknown. The bandwidth is that of the members if all are equal, else `None`.
+    n_i^2)^(1/2), or `None` if one is unknown. The bandwidth is the common bandwidth of the members; `None` if they differ or one is
+    unknown.
 
     >>> pair = combine_gauges([(0.5, Gauge(range=1e-4, noise_density=3e-11)), (-0.5, Gauge(range=1e-4, noise_density=4e-11))])
     >>> round(1e6 * float(pair.range), 6), round(1e12 * float(pair.noise_density), 6)

@@ -32,9 +32,9 @@ class LeafEnds(Enum):
 class Leaf(Shaped):
     """Leaf spring: `length` along x, `thickness` along y, `width` along z.
 
-    Ideal degrees of freedom: translation along y, bending about z, twist about x. With `section` beam, the stiffness law omits plate action
-    and restrained warping. For a plate, `ends` free omits only restrained warping. `inner_modes` is the number of bending modes and of
-    torsion modes in the lumped model.
+    Ideal degrees of freedom: translation along y, bending about z, twist about x. For the section `BEAM`, the stiffness law omits plate
+    action and restrained warping. For a plate with `FREE` ends, it omits only restrained warping. `inner_modes` is the number of bending
+    modes and of torsion modes in the lumped model.
 
     A leaf that is not straight when free has an initial `curvature` about z (positive: towards y), or a `face_temperature_difference` (face
     +y minus face -y). It is mounted straight. Models of large displacements include the mounting stress; other models assume a straight
@@ -92,4 +92,4 @@ class Leaf(Shaped):
     @property
     def orders(self) -> Iterator[Order]:
         """Order relation: the leaf is thinner than wide."""
-        yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
+        yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values, or rotate the link's bends")

@@ -35,7 +35,7 @@ class Material(Description):
     """Linear-elastic material.
 
     An isotropic material has `young` [Pa], and `poisson` [-] or `shear_modulus` [Pa] (or both, if consistent). A crystal of cubic symmetry
-    has `c11`, `c12`, `c44` [Pa] instead. `crystal` are its directions along the stage's x and z axes (default: 100 and 001).
+    has `c11`, `c12`, `c44` [Pa] instead. `crystal` gives the crystal directions along the stage's x and z axes (default: 100 and 001).
 
     `density` [kg/m^3] is required. Optional: `expansion` [1/K], `loss_factor` [-], and the stress limits `yield_stress`, `fatigue_limit`,
     `allowable_stress` [Pa]. The least limit governs.
@@ -124,13 +124,13 @@ class Material(Description):
             if np.any(result <= -1.0) or np.any(result >= 0.5):
                 yield Finding(
                     "shear_modulus",
-                    f"invalid Poisson's ratio of young and shear_modulus (got {first:.4g}, expected -1 to 0.5)",
-                    "Correct one of them",
+                    f"young and shear_modulus give an invalid Poisson's ratio (got {first:.4g}, expected -1 to 0.5)",
+                    "Correct young or shear_modulus",
                 )
             elif np.any(apart > _AGREES):
                 stated = float(np.ravel(np.real(self.contraction))[0])
-                what = f"Poisson's ratio {first:.4g} of young and shear_modulus contradicts poisson, {stated:.4g}"
-                yield Finding("shear_modulus", what, "Specify two of the three, or three consistent ones")
+                what = f"young and shear_modulus give the Poisson's ratio {first:.4g}, but poisson is {stated:.4g}"
+                yield Finding("shear_modulus", what, "Specify two of young, poisson and shear_modulus, or three consistent values")
 
     def _cubic_faults(self) -> Iterator[Finding]:
         missing = [name for name in _CUBIC if getattr(self, name) is None]
@@ -139,7 +139,7 @@ class Material(Description):
             return
         double = [name for name in ("young", "poisson", "shear_modulus") if getattr(self, name) is not None]
         if double:
-            yield Finding(double[0], "redundant with c11, c12 and c44, which determine it by direction", "Remove one of them")
+            yield Finding(double[0], "redundant: c11, c12 and c44 determine it for each direction", "Remove it, or remove c11, c12 and c44")
         c11, c12, _ = (np.real(each) for each in self._constants)
         if np.any(c11 <= np.abs(c12)) or np.any(c11 + 2.0 * c12 <= 0.0):
             yield Finding("c11", "unstable crystal (expected c11 > |c12| and c11 + 2 c12 > 0)", "Check c11, c12 and c44")

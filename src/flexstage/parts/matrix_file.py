@@ -33,8 +33,8 @@ _CHUNK = 2**20
 def read_matrices(part: Superelement) -> tuple[MatrixLike, ...]:
     """Read stiffness, mass and optional damping from a superelement's files: real matrices of any shape, in the files' units.
 
-    Raises `DesignError` for an unspecified, missing, damaged or too large file, another version (digest), an unknown array, or complex
-    numbers.
+    Raises `DesignError` for a file that is unspecified, missing, damaged, too large or has a wrong digest, for an unknown array, and for
+    complex numbers.
     """
     require(_statement_findings(part))
     for path in map(Path, part.files):
@@ -83,10 +83,10 @@ def _version_findings(part: Superelement) -> Iterator[Finding]:
     result = digest_of(part.files)
     named = " and ".join(Path(path).name for path in part.files)
     if not part.sha256:
-        yield Finding("sha256", f"digest of {named} missing", f'For the current version, add sha256 = "{result}"')
+        yield Finding("sha256", f"digest of {named} missing", f'To accept the current version, add sha256 = "{result}"')
     elif result != part.sha256.lower():
         what = f"wrong digest of {named} (got sha256 {result[:12]}..., expected {part.sha256[:12]}...)"
-        yield Finding("sha256", what, f'Restore that version, or use sha256 = "{result}"')
+        yield Finding("sha256", what, f'Restore the expected version, or accept this one with sha256 = "{result}"')
 
 
 def _missing_findings(path: Path, names: tuple[str, ...], result: Mapping[str, MatrixLike]) -> Iterator[Finding]:
@@ -108,7 +108,7 @@ def _plain(path: Path, name: str, matrix: MatrixLike) -> MatrixLike:
 
 
 def _npz(path: Path, names: tuple[str, ...]) -> dict[str, MatrixLike]:
-    advice = "Write it with numpy.savez(file, K=..., M=...), arrays of numbers only"
+    advice = "Write it with numpy.savez(file, K=..., M=...), with numeric arrays only"
     try:
         with zipfile.ZipFile(path) as archive:
             sizes = {info.filename.removesuffix(".npy"): info.file_size for info in archive.infolist()}
@@ -139,7 +139,7 @@ def _mat(path: Path, names: tuple[str, ...]) -> dict[str, MatrixLike]:
 _READERS: Mapping[str, Callable[[Path, tuple[str, ...]], dict[str, MatrixLike]]] = {".mat": _mat, ".npz": _npz}
 
 
-_MARKET = "Write it with scipy.io.mmwrite, or as the code exports Matrix Market files: real or integer, general or symmetric"
+_MARKET = "Write it with scipy.io.mmwrite or the finite-element code: real or integer entries, general or symmetric"
 
 
 @contextlib.contextmanager
@@ -162,7 +162,7 @@ def _market_head(path: Path) -> tuple[int, int, int]:
     size = path.stat().st_size
     if entries * _LEAST_ENTRY > 2 * size:
         raise refuse(str(path), f"truncated file ({entries} entries in its header, {size} bytes)", "Copy or export it again")
-    _require_room(path, "its matrix", 8 * rows * columns if form == "array" else 24 * entries)
+    _require_room(path, "its entries", 8 * rows * columns if form == "array" else 24 * entries)
     return rows, columns, entries if symmetry == "general" else 2 * entries
 
 
@@ -170,11 +170,11 @@ def _size_findings(stiffness: tuple[Path, int, int, int], *others: tuple[Path, i
     """Errors of inconsistent sizes, before memory allocation."""
     path, rows, columns, entries = stiffness
     if rows != columns or entries < rows:
-        what = f"invalid stiffness (got {rows} x {columns} with {entries} entries at most, expected a square matrix with an entry per row)"
+        what = f"invalid stiffness (got {rows} x {columns} with {entries} entries at most, expected a square matrix, an entry in every row)"
         yield Finding(str(path), what, "Export the whole matrix over ports and internal coordinates")
     for other, *size, _ in others:
         if size != [rows, columns]:
-            what = f"wrong size (got {' x '.join(map(str, size))}, expected {rows} x {columns} as the stiffness in {path.name})"
+            what = f"wrong size (got {' x '.join(map(str, size))}, expected {rows} x {columns}, like the stiffness in {path.name})"
             yield Finding(str(other), what, "Export all matrices over the same coordinates")
 
 
@@ -182,11 +182,11 @@ def _matrix_market(path: Path) -> MatrixLike:
     with _read_as_market(path):
         result = scipy.io.mmread(str(path))
     whole = result.tocsc() if scipy.sparse.issparse(result) else result
-    return _plain(path, "it", whole.toarray() if scipy.sparse.issparse(whole) and max(whole.shape) <= LARGEST_DENSE else whole)
+    return _plain(path, "entries", whole.toarray() if scipy.sparse.issparse(whole) and max(whole.shape) <= LARGEST_DENSE else whole)
 
 
 def _require_room(path: Path, what: str, size: float) -> None:
     def fits(there: float) -> str:
-        return f"Reduce it in its finite-element code (Craig-Bampton, Guyan) to matrices of {gigabytes(there / _COPIES)}"
+        return f"Reduce the model in the finite-element code (Craig-Bampton, Guyan) to matrices of at most {gigabytes(there / _COPIES)}"
 
     require_memory(str(path), what, _COPIES * size, fits)

@@ -41,4 +41,4 @@ class Membrane(Elastic):
     @property
     def orders(self) -> Iterator[Order]:
         """Order relation: the hub is smaller than the rim."""
-        yield Order("inner", self.inner, self.outer, "the outer diameter", "Exchange them")
+        yield Order("inner", self.inner, self.outer, "the outer diameter", "Exchange both values")

@@ -15,11 +15,11 @@ from flexstage.parts.shape import Profiled
 
 @dataclass(frozen=True, eq=False)
 class Neck(Profiled):
-    """Two-axis neck hinge, round or rectangular, with a thickness that varies by its profile.
+    """Two-axis neck hinge, round or rectangular. Its thickness varies along x according to the `profile`.
 
     Without `width` the neck is round: `thickness` is its smallest diameter, and a circular profile gives a toroid. A rectangular neck has
-    `thickness` along y and `width` along z; the profile increases both. Ideal degrees of freedom: the three rotations. Torsion is ideally
-    free, because locked torsion would transmit a couple; other models use its stiffness.
+    `thickness` along y and `width` along z; the profile increases both towards the ends. Ideal degrees of freedom: the three rotations.
+    Torsion is ideally free, because locked torsion would transmit a couple; other models use its stiffness.
     """
 
     kind: ClassVar[str] = "neck"

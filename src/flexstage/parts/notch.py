@@ -36,5 +36,5 @@ class Notch(Profiled):
     @property
     def orders(self) -> Iterator[Order]:
         """Order relation: the neck is thinner than wide."""
-        yield Order("thickness", self.thickness, self.width, "the width", "Exchange them, or turn the link's bends")
+        yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values, or rotate the link's bends")
         yield from super().orders

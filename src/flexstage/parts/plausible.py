@@ -1,4 +1,4 @@
-"""Plausibility check: usual ranges of the numbers of materials, stacks, gauges and hinges (`plausible.toml`).
+"""Plausibility check: usual ranges of properties of materials, stacks, gauges, hinges and bodies (`plausible.toml`).
 
 A value outside its range is a warning, not an error. The usual cause is a wrong unit.
 """
@@ -100,7 +100,7 @@ def _finding(rule: Mapping[str, Any], where: str, item: Any) -> Finding | None:
 
 
 def implausible(items: Iterable[tuple[str, Any]]) -> Iterator[Finding]:
-    """Return a warning for each number of the named items that is outside its usual range.
+    """Return a warning for each value of the named items that is outside its usual range.
 
     >>> [finding.where for finding in implausible([("materials.steel", Material(young=200e6, poisson=0.3, density=7800.0))])]
     ['materials.steel.young']

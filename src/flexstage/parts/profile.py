@@ -1,6 +1,6 @@
 """Profiles of flexure hinges: thickness of the cross-section along the hinge.
 
-A profile has the half length a of the hinge and the added height w(s) >= 0 on each side. The station s in [-1, 1] is at x = a s. The
+A profile gives the half length a of the hinge and the height w(s) >= 0 added on each side. The station s in [-1, 1] is at x = a s. The
 thickness at the station is t + 2 w.
 """
 
@@ -51,7 +51,7 @@ class Straight(Description):
 class Contour(Description):
     """Profile specified by the height of its cuts as a function of the station, symmetric about the middle.
 
-    `TOLD_BY` is its key and name in files. At both ends, the profile meets the adjacent blocks at an angle.
+    `TOLD_BY` is the key and the name that identify it in files. At both ends, the profile meets the adjacent blocks at an angle.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]]
@@ -225,7 +225,7 @@ class Vee(Contour):
 
 @dataclass(frozen=True, eq=False)
 class FreeForm(Contour):
-    """Free-form profile by a table of `heights`, added on each side, at `stations` from the middle to an end. The least height is zero.
+    """Free-form profile from a table: `heights` added on each side, at `stations` from the middle to an end. The least height is zero.
 
     Between stations, the profile is a cubic Hermite spline with the slopes of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 1984). The
     spline equals PCHIP for the table and its mirror image: it is smooth, and stays between adjacent heights.

@@ -55,9 +55,11 @@ class ReinforcedLeaf(Leaf):
     def orders(self) -> Iterator[Order]:
         """Order relations: thinner than wide, flexures within the length, fillets within the flexures, middle thicker."""
         yield from super().orders
-        half, advice = 0.5 * self.length, "Make it longer or the flexures shorter"
+        half, advice = 0.5 * self.length, "Make the leaf longer or the flexures shorter"
         yield Order("flexure_length", self.flexure_length, half, "half the length", advice)
-        yield Order("thickness", self.thickness, self.reinforced_thickness, "the reinforced_thickness", "Exchange them", strict=False)
+        yield Order(
+            "thickness", self.thickness, self.reinforced_thickness, "the reinforced_thickness", "Exchange both values", strict=False
+        )
         if self.fillet is not None:
             yield Order("fillet", self.fillet, self.step, "the height of the step", "Make the fillet smaller", strict=False)
             yield Order("fillet", self.fillet, self.flexure_length, "the flexure_length", "Make the fillet smaller")

@@ -37,7 +37,7 @@ class RotaryCoil(Coil):
 
     A positive torque turns the second body in the positive sense about x; a negative `torque_constant` reverses it. `stiffness` is the
     magnets' stiffness about x, `damping` the coil's damping about x. `angular_travel` is the whole angle over which the torque constant is
-    valid. All other numbers are as for a `VoiceCoil`. The masses are point masses: specify moments of inertia in the bodies.
+    valid. All other fields are as for a `VoiceCoil`. The masses are point masses: specify moments of inertia in the bodies.
     """
 
     kind: ClassVar[str] = "rotary_coil"
@@ -90,4 +90,4 @@ class RotaryCoil(Coil):
         """Errors: a torque constant of zero, and errors of a coil."""
         yield from super().faults
         if not np.all(self.torque_constant):
-            yield Finding("torque_constant", "it is zero", 'Give for example "0.2 N m/A"')
+            yield Finding("torque_constant", "must not be zero", 'Use e.g. "0.2 N m/A"')

@@ -98,11 +98,11 @@ class Section:
         return axial + 0.5 * self.height * about_z + 0.5 * self.width * about_y
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return the largest shear stress [Pa] of a torque [N m]; `uniform` is the fraction of Saint-Venant torsion, not of warping."""
+        """Return the largest shear stress [Pa] of a torque [N m]; `uniform` is the fraction of Saint-Venant torsion; the rest warps."""
         raise NotImplementedError
 
     def each(self, function: Callable[[Number], Any]) -> Self:
-        """Return the section with a function applied to each of its numbers."""
+        """Return the section with a function applied to each of its fields."""
         return type(self)(**{item.name: function(getattr(self, item.name)) for item in fields(self)})
 
     @property
@@ -215,7 +215,7 @@ def circle(diameter: Number, shear: Number = ROUND) -> Circle:
 
 
 def rectangle_torsion(thickness: Number, width: Number) -> Array:
-    """Compute the Saint-Venant torsion constant J [m^4] of a rectangle, exact to rounding.
+    """Compute the Saint-Venant torsion constant J [m^4] of a rectangle, exact to rounding error.
 
     J = a^3 c / 3 (1 - (192/pi^5) (a/c) sum over odd n of tanh(n pi c / 2a) / n^5), a <= c (Timoshenko & Goodier, Theory of Elasticity,
     section 109). The sum is (31/32) zeta(5) minus a series in exp(-n pi c / a); after four terms its remainder is below 1e-17.
@@ -238,7 +238,7 @@ def rectangle_torsion(thickness: Number, width: Number) -> Array:
 
 
 def cowper_rectangle(poisson: Number) -> Number:
-    """Return the shear factor of a rectangular prism, (12 + 11 nu) / (10 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966; as SPACAR Light).
+    """Return the shear factor of a rectangular prism, (12 + 11 nu) / (10 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966), as in SPACAR Light.
 
     >>> round(cowper_rectangle(0.3), 6)
     1.176923
@@ -247,7 +247,7 @@ def cowper_rectangle(poisson: Number) -> Number:
 
 
 def cowper_circle(poisson: Number) -> Number:
-    """Return the shear factor of a circular prism, (7 + 6 nu) / (6 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966; as SPACAR Light).
+    """Return the shear factor of a circular prism, (7 + 6 nu) / (6 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966), as in SPACAR Light.
 
     >>> round(cowper_circle(0.3), 6)
     1.128205

@@ -41,9 +41,9 @@ from flexstage.parts.stated import Stated
 
 @dataclass(frozen=True, eq=False)
 class Order:
-    """Order relation of two numbers of a part: `small`, in the `field`, must be below `large`, named `other`.
+    """Required inequality of two values of a part: `small`, the value of `field`, must be below `large`, described by `other`.
 
-    If not `strict`, the numbers may be equal.
+    If not `strict`, the values may be equal.
     """
 
     field: str
@@ -73,12 +73,12 @@ class Elastic(Description):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations between its numbers."""
+        """Order relations between its values."""
         yield from ()
 
     @property
     def push(self) -> Number | None:
-        """Preload along x that pushes its ends apart [N]; negative: pulls."""
+        """Preload [N] along x that pushes its ends apart; negative if it pulls them together."""
         return None
 
     @property
@@ -97,22 +97,22 @@ class Elastic(Description):
 
     @property
     def mirrored(self) -> Elastic | None:
-        """Mirror image across y; `None` for a kind without one. Instances with such a part cannot be mirrored."""
+        """Mirror image in the x-z plane; `None` if the kind has none. Instances with such a part cannot be mirrored."""
         return None
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Other errors of its numbers, by field."""
+        """Other errors of its values, by field."""
         yield from ()
 
 
 def reversed_or_none(value: Number | None) -> Number | None:
-    """Return the negative of a number (mirror across y), or `None` for an unspecified number."""
+    """Return the negative of a value (for a mirror image), or `None` for an unspecified value."""
     return None if value is None else -value
 
 
 class Shaped(Elastic):
-    """Part with a shape: x along it, centre at the origin, symmetric about the three coordinate planes.
+    """Part with a shape: x axis along the part, origin at its centre, symmetric about the three coordinate planes.
 
     A kind implements `span` and `throat`. Defaults are for a constant section; `Profiled` parts override them. A `slender` part bends along
     its whole length: its ends may shift sideways.
@@ -229,11 +229,11 @@ class Profiled(Shaped):
     def orders(self) -> Iterator[Order]:
         """Order relations: fillets and the arc of the tip are within the length; the stations of a table increase from the middle."""
         if isinstance(self.profile, Filleted):
-            advice = "Two fillets take 2 r of the length: make it longer or the radius smaller"
+            advice = "Two fillets require 2 r of the length: increase the length or reduce the radius"
             yield Order("profile.radius", self.profile.radius, 0.5 * self.profile.length, "half the length", advice, strict=False)
         if isinstance(self.profile, Vee):
             most = 0.5 * self.profile.length / np.sin(self.profile.slope)
-            advice = "Make the length or the angle larger, or the radius smaller"
+            advice = "Increase the length or the angle, or reduce the radius"
             yield Order("profile.radius", self.profile.radius, most, "the radius of an arc over the whole length", advice, strict=False)
         if isinstance(self.profile, FreeForm):
             yield from _table_orders(self.profile)

@@ -32,11 +32,11 @@ from flexstage.parts.stated import Stated, point_masses
 
 @dataclass(frozen=True, eq=False)
 class ShearPiezo(ChargedActuator):
-    """Shear piezo actuator: a block of plates along x. The stroke u moves its second face along y against the first face.
+    """Shear piezo actuator: a block of plates along x. The stroke u moves its second face along y relative to the first face.
 
     The block has `length` L along x, `width` along y and `depth` along z. `stiffness` k is the stiffness along y with parallel faces,
-    `axial_stiffness` k_a along x. They determine the modulus E = k_a L / A and the shear compliance 1/k - L^3 / (12 E I_z). Other degrees
-    of freedom are as for a uniform block. The blocked force is stroke x stiffness. Half of `mass` is at each face.
+    `axial_stiffness` k_a the stiffness along x. They determine the modulus E = k_a L / A and the shear compliance 1/k - L^3 / (12 E I_z).
+    The other stiffness terms are those of a uniform block. The blocked force is stroke x stiffness. Half of `mass` is at each face.
     """
 
     kind: ClassVar[str] = "shear_piezo"
@@ -107,5 +107,5 @@ class ShearPiezo(ChargedActuator):
     def faults(self) -> Iterator[Finding]:
         """Errors: a bending compliance above the total compliance."""
         if np.any(np.real(self.shear_compliance) <= 0.0):
-            what = "too large for a block of these dimensions and axial stiffness: its bending compliance exceeds the total"
+            what = "too large for a block of these dimensions and axial stiffness: its bending compliance exceeds the total compliance"
             yield Finding("stiffness", what, "Check length, width and both stiffnesses")

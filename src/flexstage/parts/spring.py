@@ -37,7 +37,7 @@ class Spring(Elastic):
 
     Specify exactly one of `stiffness` along x, `diagonal` (x, y, z, rx, ry, rz), and `matrix`, a symmetric 6x6 about the centre. With
     `stiffness`, the other degrees of freedom have zero stiffness. The stiffness may be negative (magnets); only the whole stage must be
-    stable. `free` are the free degrees of freedom of the ideal model (default: all).
+    stable. `free` lists the free degrees of freedom of the ideal model (default: all).
 
     With a `length` L, the spring pivots at both ends: a tension F adds the transverse stiffness F / L. Without a length, it acts at one
     point. `preload` is the initial force that pushes the ends apart (negative: pulls). With `free_length`, the preload is k (free_length -
@@ -80,7 +80,7 @@ class Spring(Elastic):
 
     @property
     def mirrored(self) -> Spring:
-        """Mirror image across y: the spring with mirrored stiffness."""
+        """Mirror image in the x-z plane: the spring with mirrored stiffness."""
         return self if self.matrix is None else replace(self, matrix=mirror_rows(self.matrix))
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
@@ -109,7 +109,7 @@ class Spring(Elastic):
         if self.matrix is not None:
             yield from symmetry_findings("matrix", self.whole)
         if self.free_length is not None and self.preload is not None:
-            yield Finding("free_length", "preload specified too", "Remove one of them: the preload is k (free_length - length)")
+            yield Finding("free_length", "preload specified too", "Remove one of both: free_length determines the preload")
         if self.length is None and (self.free_length is not None or self.preload is not None):
-            what = "length missing: with a preload, the stiffness across the axis is force over length"
-            yield Finding("length", what, 'Add its length between its ends, e.g. length = "20 mm"')
+            what = "length missing: with a preload, the stiffness across the axis is preload over length"
+            yield Finding("length", what, 'Add the length between the ends, e.g. length = "20 mm"')

@@ -20,8 +20,8 @@ _QUARTER: Array = np.kron(np.eye(2), np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]
 class Stated:
     """Specified matrices of a part without a shape, about its centre and in its frame, SI.
 
-    `stiffness` (..., 6, 6) and the optional viscous `damping` (..., 6, 6) are for motion of the second end against the first. `mass` (...,
-    12, 12) is for the twists of both ends.
+    `stiffness` (..., 6, 6) and the optional viscous `damping` (..., 6, 6) are for motion of the second end relative to the first. `mass`
+    (..., 12, 12) is for the twists of both ends.
     """
 
     stiffness: Array
@@ -94,7 +94,7 @@ def turns_into_itself(matrix: Array) -> bool:
 
 
 def mirror_rows(rows: tuple[tuple[Number, ...], ...]) -> tuple[tuple[Number, ...], ...]:
-    """Return the mirror image of a 6x6 across y: entries that couple y, rx or rz with x, z or ry change sign.
+    """Return the mirror image of a 6x6 in the x-z plane: entries that couple y, rx or rz with x, z or ry change sign.
 
     >>> mirror_rows(tuple(map(tuple, np.ones((6, 6)).tolist())))[0]
     (1.0, -1.0, 1.0, -1.0, 1.0, -1.0)
@@ -118,7 +118,7 @@ def symmetry_findings(where: str, matrix: Array) -> Iterator[Finding]:
         flat = [each.reshape(-1, 6, 6) for each in (unequal, real, mirrored)]
         at = tuple(np.argwhere(flat[0])[0])
         what = f"not symmetric: {flat[1][at]:.6g} and {flat[2][at]:.6g} SI"
-        yield Finding(f"{where} at index {at[1]}, {at[2]}", what, "Use equal entries on both sides")
+        yield Finding(f"{where} at index {at[1]}, {at[2]}", what, "Use equal entries on both sides of the diagonal")
 
 
 def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
@@ -134,7 +134,7 @@ def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
     lowest = np.min(np.linalg.eigvalsh(np.real(matrix) / safe[..., :, None] / safe[..., None, :]))
     if not unequal and lowest <= 0.0:
         what = f"not positive definite: the lowest eigenvalue of its scaled form is {lowest:.3g}"
-        yield Finding(where, what, "Check signs and units of its entries; use Restricted for a locked degree of freedom, not zero")
+        yield Finding(where, what, "Check signs and units of its entries; to lock a degree of freedom, use a restricted part, not zero")
 
 
 def negative_part(matrix: Array, lengths: Array) -> Array:

@@ -15,8 +15,8 @@ from flexstage.parts.gauge import Instrument
 class StrainGauge(Instrument):
     """Strain gauge on a link: elongation between the link's faces, including the free stroke of a stack.
 
-    Its numbers are elongations, not strains: measuring `range` (total span) and `resolution` (quantisation step) [m], white `noise_density`
-    [m/Hz^0.5]; `bandwidth` is in Hz.
+    All values are elongations, not strains. `range` is the total measuring span [m], `resolution` the quantisation step [m],
+    `noise_density` the amplitude density of white noise [m/Hz^0.5], and `bandwidth` the measurement bandwidth [Hz].
     """
 
     kind: ClassVar[str] = "strain"

@@ -24,7 +24,7 @@ class FileUnits(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Port(Description):
-    """Port (interface frame) of a superelement, in the part's axes: origin `at`, x along `along`, z along `up` (perpendicular to it).
+    """Port (interface frame) of a superelement, in the part's axes: origin `at`, x along `along`, z along `up`, perpendicular to x.
 
     The six coordinates (x, y, z, rx, ry, rz) of a port are its twist at its origin, in its axes. In the file's matrices, they begin at
     `row`, counted from 1.
@@ -58,9 +58,9 @@ class Superelement(Elastic):
     statics and total mass. Either a number of `modes` is kept (0: Guyan condensation, AIAA J. 3, 380, 1965), or the modes `below` a
     frequency, or all modes.
 
-    `mass`, `centre` of mass and `inertia` about it, in the part's axes, are compared with the matrices. `loss_factor` is the loss factor of
-    the stiffness. `reflected`: use the mirror image of the file's part across its x-z plane, with ports, mass, centre and inertia. The
-    model is linear: small motions, no buckling, unknown thermal expansion.
+    `mass`, `centre` of mass and `inertia` about this centre, in the part's axes, are compared with the matrices. `loss_factor` is the loss
+    factor of the stiffness. `reflected`: use the mirror image of the file's part in its x-z plane; `ports`, `mass`, `centre` and `inertia`
+    describe the mirror image. The model is linear: small motions, no buckling, unknown thermal expansion.
     """
 
     kind: ClassVar[str] = "superelement"
@@ -93,7 +93,7 @@ class Superelement(Elastic):
 
     @property
     def mirrored(self) -> Superelement:
-        """Mirror image across its x-z plane, with ports and specified mass properties."""
+        """Mirror image in the x-z plane, including ports and specified mass properties."""
         ports = {name: replace(port, at=across(port.at), along=across(port.along), up=across(port.up)) for name, port in self.ports.items()}
         centre = None if self.centre is None else across(self.centre)
         inertia = None if self.inertia is None else self.inertia.mirrored

@@ -16,7 +16,8 @@ from flexstage.parts.gauge import Instrument
 class Tilt(Instrument):
     """Tilt gauge: right-handed rotation of a body about the gauge's x axis, independent of position.
 
-    Measuring `range` (total span) and `resolution` (quantisation step) [rad], white `noise_density` [rad/Hz^0.5], `bandwidth` [Hz].
+    `range` is the total measuring span [rad], `resolution` the quantisation step [rad], `noise_density` the amplitude density of white
+    noise [rad/Hz^0.5], and `bandwidth` the measurement bandwidth [Hz].
     """
 
     kind: ClassVar[str] = "tilt"

@@ -77,7 +77,7 @@ class Moments:
         return Moments(self.volume, self.first + self.volume[..., None] * by, moved)
 
     def within(self, frame: Frame) -> Moments:
-        """Return the moments in the frame in which `frame` is described."""
+        """Return the moments in the parent frame of `frame`."""
         turn = frame.rotation
         second = turn @ self.second @ np.swapaxes(turn, -1, -2)
         return Moments(self.volume, (turn @ self.first[..., None])[..., 0], second).shift(frame.position)
@@ -102,7 +102,7 @@ def common_moments(solids: Sequence[Drawn]) -> Iterator[tuple[Number, Moments]]:
     """Yield densities and moments that correct the sum over a body's solids for their common volumes (most are negative).
 
     A subtracted solid removes its intersection with other solids of its material: P minus H is the union of P and H, minus H. Raises
-    `DesignError` if a common volume cannot be computed: of several materials, or of outlines other than prisms along one axis.
+    `DesignError` if a common volume cannot be computed: of different materials, or of outlines other than prisms along one axis.
 
     >>> from flexstage.parts.body import Block
     >>> from flexstage.spatial.frame import identity

@@ -147,7 +147,7 @@ class Coil(ThrustActuator):
         return None if self.resistance is None else rms**2 * self.resistance
 
     def warming(self, rms: Number) -> Number | None:
-        """Return the temperature rise [K], i^2 R times the thermal resistance; None if a number is missing.
+        """Return the temperature rise [K], i^2 R times the thermal resistance; None if a value is missing.
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0).warming(2.0)
         80.0
@@ -156,7 +156,7 @@ class Coil(ThrustActuator):
 
     @property
     def heat_current(self) -> Number | None:
-        """Direct current [A] whose heat i^2 R reaches the limit of temperature rise; None if a number is missing.
+        """Direct current [A] whose heat i^2 R reaches the limit of temperature rise; None if a value is missing.
 
         >>> VoiceCoil(force_constant=10.0, resistance=5.0, thermal_resistance=4.0, temperature_rise=80.0).heat_current
         2.0
@@ -168,7 +168,7 @@ class Coil(ThrustActuator):
     @property
     def orders(self) -> Iterator[Order]:
         """Order relation: the continuous current does not exceed the peak current."""
-        advice = "Exchange them"
+        advice = "Exchange both values"
         yield Order("continuous_current", self.continuous_current, self.peak_current, "the peak current", advice, CURRENT, strict=False)
 
     @property
@@ -176,23 +176,24 @@ class Coil(ThrustActuator):
         """Errors: a voltage drive or a voltage limit without a resistance."""
         for name, asked in (("drive", self.drive is Supply.VOLTAGE), ("voltage", self.voltage is not None)):
             if asked and self.resistance is None:
-                what = "resistance missing, required for the current of a voltage"
+                what = "resistance missing: it determines the current for a voltage"
                 yield Finding(name, what, 'Add e.g. resistance = "5 ohm"')
 
 
 @dataclass(frozen=True, eq=False)
 class VoiceCoil(Coil):
-    """Voice coil along x: force = `force_constant` x current between two bodies, positive pushing them apart.
+    """Voice coil along x: force = `force_constant` x current between two bodies. A positive force pushes them apart.
 
     `mass` is the coil's mass, on the body selected by `coil`; `magnet_mass` is the magnet's mass, on the other body. Both are point masses
     at the link's centre. `stiffness` is the magnets' stiffness along x (negative: unstable about the middle). `damping` is the coil's
     damping (eddy currents in its former). With `drive` "voltage", back-EMF adds the damping k_f^2 / R. `travel` is the whole range of
-    motion along x with a constant `force_constant`, half to either side.
+    motion along x with a constant `force_constant`, half of it on each side of the middle.
 
     `temperature_rise` is the coil's limit relative to its surroundings, and `thermal_resistance` the thermal resistance between them.
     `duty` is the duty cycle of the current in short use. The input is the static current: V/R for a voltage drive.
 
-    Not modelled: change of R with temperature, saturation, and the current lag L/R under a voltage drive, significant above R / (2 pi L).
+    The model neglects the change of R with temperature, saturation, and the current lag L/R of a voltage drive (significant above R / (2 pi
+    L)).
     """
 
     kind: ClassVar[str] = "voice_coil"

@@ -25,7 +25,7 @@ class Convex:
     edges: Array
 
     def within(self, frame: Frame) -> Convex:
-        """Return this polytope in the frame in which `frame` is described."""
+        """Return this polytope in the parent frame of `frame`."""
         turn = frame.rotation.T
         return Convex(frame.position + self.points @ turn, self.normals @ turn, self.edges @ turn)
 

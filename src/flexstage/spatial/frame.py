@@ -40,7 +40,7 @@ class Frame:
     mirrored: bool = False
 
     def within(self, outer: Frame) -> Frame:
-        """Return this frame relative to the frame in which `outer` is described.
+        """Return this frame relative to the parent frame of `outer`.
 
         >>> inner = Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))
         >>> inner.within(Frame(turn_z(np.pi / 2), np.zeros(3))).position.round(12).tolist()

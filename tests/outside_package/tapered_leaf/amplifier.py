@@ -10,12 +10,12 @@ from flexstage.control.study.hardware.amplifiers import AmplifierForm
 
 @dataclass(frozen=True)
 class Switching(AmplifierForm):
-    """An amplifier that switches at its `carrier`."""
+    """Amplifier that switches at the `carrier` frequency."""
 
     kind: ClassVar[str] = "switching"
     carrier: Annotated[float, FREQUENCY, POSITIVE] = 100e3
 
     @property
     def settings(self) -> AmplifierSettings:
-        """First order at a tenth of the carrier."""
+        """First-order lag at a tenth of the carrier frequency."""
         return AmplifierSettings(bandwidth=0.1 * self.carrier)

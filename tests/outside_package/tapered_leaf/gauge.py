@@ -12,7 +12,7 @@ from flexstage.parts.gauge import DisplacementGauge
 
 @dataclass(frozen=True, eq=False)
 class Interferometer(DisplacementGauge):
-    """An interferometer over `travel`, its `fringe` divided into `steps`."""
+    """Interferometer with the range `travel`; a `fringe` has several `steps`."""
 
     kind: ClassVar[str] = "interferometer"
     travel: Annotated[Number, DISPLACEMENT, POSITIVE]
@@ -22,7 +22,7 @@ class Interferometer(DisplacementGauge):
 
     @property
     def range(self) -> Number:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """All of its travel."""
+        """Total travel."""
         return self.travel
 
     @property

@@ -14,8 +14,8 @@ from flexstage.base.units.quantity import DISPLACEMENT
 
 @partial(MeasureKind, "sag", DISPLACEMENT)
 def sag(bench: StageResults, _: Measure) -> Array:
-    """Sag of the first mode if it stood upright.
+    """Static sag of the first mode under gravity along its motion.
 
-    g / (2 pi f)^2 of the first natural frequency f [m].
+    g / (2 pi f)^2 [m], with the first natural frequency f.
     """
     return 9.80665 / (2.0 * np.pi * bench.modes.frequencies[..., 0]) ** 2

@@ -13,7 +13,7 @@ from flexstage.parts.leaf import Leaf
 
 @dataclass(frozen=True, eq=False)
 class BladePair(Compound):
-    """Two leaves of `length` side by side along y, `distance` apart."""
+    """Two parallel leaves of `length`, at a `distance` along y."""
 
     kind: ClassVar[str] = "blade_pair"
     material: str

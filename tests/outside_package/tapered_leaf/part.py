@@ -53,5 +53,5 @@ class Taper(Shaped):
     @property
     def orders(self) -> Iterator[Order]:
         """Thinnest in its middle, and thinner than wide."""
-        yield Order("thickness", self.thickness, self.end_thickness, "the end_thickness", "Exchange them")
-        yield Order("end_thickness", self.end_thickness, self.width, "the width", "Exchange them, or turn the link's bends")
+        yield Order("thickness", self.thickness, self.end_thickness, "the end_thickness", "Exchange both values")
+        yield Order("end_thickness", self.end_thickness, self.width, "the width", "Exchange both values, or rotate the link's bends")

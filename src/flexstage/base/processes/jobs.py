@@ -104,7 +104,7 @@ class Worker:
         self._send(function)
 
     def ask(self, *arguments: Any) -> None:
-        """Send arguments to the worker: they start a call, or answer the function's question. An ended worker reports `ENDED` at once."""
+        """Send arguments to the worker: they start a call, or answer the function's question. An ended worker reports `ENDED`."""
         self._send(arguments)
 
     def call(self, *arguments: Any) -> Any:
@@ -137,7 +137,7 @@ class Worker:
         """Return the last line of the standard error of the process."""
         self._log.seek(0)
         lines = self._log.read().decode(errors="replace").strip().splitlines()
-        return lines[-1][:300] if lines else "it said nothing"
+        return lines[-1][:300] if lines else "no error output"
 
     def end(self) -> None:
         """End the process at once."""
@@ -221,7 +221,7 @@ class Line:
         self.say(Word.TOLD, value)
 
     def say(self, word: Word, value: Any) -> None:
-        """Send a message of a kind to the caller."""
+        """Send a message of the given kind to the caller."""
         _write(self._answers, pickle.dumps((word, value)))
 
     def hear(self) -> Any:

@@ -9,7 +9,7 @@ from pathlib import Path
 from flexstage.base.finding import refuse
 
 _USABLE = 0.9
-"""Usable share of free memory."""
+"""Usable fraction of the free memory."""
 ALWAYS = 3e7
 """Memory requirement [bytes] up to which `require_memory` does not check."""
 
@@ -25,11 +25,11 @@ def require_memory(where: str, what: str, needed: float, fits: Callable[[float],
         return  # a query takes longer than most such computations
     there = available()
     if needed > there:
-        raise refuse(where, f"{what} need about {gigabytes(needed)} of memory, and {gigabytes(there)} are there", fits(there))
+        raise refuse(where, f"{what} need about {gigabytes(needed)} of memory, but only {gigabytes(there)} is available", fits(there))
 
 
 def gigabytes(size: float) -> str:
-    """Return a memory size as text.
+    """Return a memory size as a string with its unit.
 
     >>> gigabytes(1.5e9)
     '1.5 GB'

@@ -44,7 +44,7 @@ _LANES = (
 
 
 def machine_lanes() -> tuple[Lanes, ...]:
-    """Return the vector lanes of this architecture, widest first; for an unknown architecture, two lanes by the compiler.
+    """Return the vector lanes of this architecture, widest first; for an unknown architecture, two lanes chosen by the compiler.
 
     >>> len(machine_lanes()) > 0
     True
@@ -93,8 +93,8 @@ def kernel_lanes() -> Lanes:
     if stated and stated not in result:
         from flexstage.base.finding import refuse  # requires more than the standard library
 
-        what = f"it is {stated}, and kernels run here with {', '.join(result)}, or are off"
-        raise refuse(SWITCH, what, "Set it to one of these, or leave it empty for the fastest")
+        what = f"unsupported value (got {stated}, expected {', '.join(result)} or off)"
+        raise refuse(SWITCH, what, "Use one of these values, or leave the variable empty for the fastest kernels")
     return result[stated] if stated else next(iter(result.values()))
 
 

@@ -24,11 +24,11 @@ class Step:
 
 
 Progress = Callable[[Step], None]
-"""Callback for every step, called in the caller's process and thread. An exception in it stops the computation and cleans up."""
+"""Callback for every step, called in the caller's process and thread. An exception in the callback stops the computation and cleans up."""
 
 
 def duration(seconds: float) -> str:
-    """Return an approximate time as text.
+    """Return an approximate time as a string.
 
     >>> duration(0.2), duration(40.0), duration(90.0), duration(9000.0)
     ('1 s', '40 s', '2 minutes', '2.5 hours')

@@ -16,7 +16,7 @@ _Found = TypeVar("_Found")
 def one_thread(function: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
     """Decorate a function to run with one linear-algebra thread; the caller's number of threads is restored.
 
-    Sums over a single thread are bit-identical from run to run.
+    Sums in a single thread are bit-identical in every run.
 
     >>> one_thread(divmod)(7, 2)
     (3, 1)

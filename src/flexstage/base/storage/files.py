@@ -1,4 +1,4 @@
-"""Import of files of other programs: only regular files. HDF5 and MAT files are read in a separate process with limits.
+"""Import of files of other programs; only regular files are read. HDF5 and MAT files are read in a separate process with limits.
 
 The HDF5 and MAT libraries may crash, hang without an exception, or exhaust memory. They run in a worker process that reads many files. The
 worker is replaced if it dies, hangs or is interrupted. If the operating system supports it, CPU time and memory are limited. HDF5 data in
@@ -46,24 +46,24 @@ def require_regular(path: Path) -> None:
 
     >>> require_regular(Path("/dev/null"))
     Traceback (most recent call last):
-    flexstage.base.finding.DesignError: /dev/null: it is a device, no regular file. Name a file, or save what it gives as one.
+    flexstage.base.finding.DesignError: /dev/null: not a regular file (got a device). Use a file, or save the data to a file.
     """
     try:
         mode = path.stat().st_mode
     except FileNotFoundError:
         raise refuse(str(path), "file not found", "Check the path") from None
     except (OSError, ValueError) as error:
-        raise refuse(str(path), f"it cannot be read ({_error_text(error)})", "Name a file that can be read") from None
+        raise refuse(str(path), f"it cannot be read ({_error_text(error)})", "Use a readable file") from None
     if stat.S_ISREG(mode):
         return
     kinds = {stat.S_ISDIR: "a folder", stat.S_ISFIFO: "a pipe", stat.S_ISSOCK: "a socket"}
     kind = next((name for test, name in kinds.items() if test(mode)), "a device")
-    raise refuse(str(path), f"it is {kind}, no regular file", "Name a file, or save what it gives as one")
+    raise refuse(str(path), f"not a regular file (got {kind})", "Use a file, or save the data to a file")
 
 
 @dataclass(frozen=True, eq=False)
 class HdfArray:
-    """Array of an HDF5 file: path, shape, and kind of numbers (numpy's letter, `t` for texts, `r` for references).
+    """Array of an HDF5 file: path, shape, and kind of numbers (numpy's letter, `t` for strings, `r` for references).
 
     `size` is the number of bytes per number. `columns` are the kinds by column name for a table. `attributes`, `texts` and `references`
     (paths of referenced objects) are the other contents of the array.
@@ -101,7 +101,7 @@ class Hdf:
         return _ask(_one_array, self.path, needed, name, tuple(spans), column)
 
     def texts(self, name: str, column: str = "") -> tuple[str, ...]:
-        """Read an array of texts, or a column of a table."""
+        """Read an array of strings, or a column of a table."""
         return tuple(_ask(_some_texts, self.path, self.path.stat().st_size, name, column))
 
 
@@ -131,7 +131,7 @@ class MatlabObject:
 
 
 def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | MatlabObject]]:
-    """Read (name, value) of all arrays, texts and objects of a MAT file of version 4 or 5; structures have paths (`test.u`).
+    """Read (name, value) of all arrays, strings and objects of a MAT file of version 4 or 5; structures have paths (`test.u`).
 
     Raises `DesignError` for an unreadable file.
 
@@ -148,7 +148,7 @@ def mat(path: Path) -> list[tuple[str, Array | tuple[str, ...] | MatlabObject]]:
 
 
 def _advise_less(there: float) -> str:
-    return f"Read less of it, export it in parts, or free memory: {gigabytes(there / _COPIES)} of numbers would fit"
+    return f"Read less data, export the file in parts, or free memory: {gigabytes(there / _COPIES)} of numbers would fit"
 
 
 @contextlib.contextmanager
@@ -193,7 +193,7 @@ class Child:
         self._lock = threading.Lock()
 
     def ask(self, read: Callable[..., Any], path: Path, arguments: tuple[Any, ...], seconds: float, memory: float) -> Any:
-        """Return the result of `read` for a file, or raise as `Worker.call`. After a failure, the next request starts a new worker."""
+        """Return the result of `read` for a file; raises as `Worker.call` does. After a failure, the next request starts a new worker."""
         with self._lock:
             known = self._worker
             if known is None or self._owner != os.getpid() or known.process.poll() is not None:
@@ -232,7 +232,7 @@ def _ask(read: Callable[..., Any], requested: Path, size: int, *arguments: Any) 
 def _how_it_ended(code: int, seconds: float) -> str:
     """Reason of a failed request without an answer."""
     if -code == getattr(signal, "SIGXCPU", None):
-        return f"reading it took more than {seconds:.3g} s of the processor"
+        return f"reading it took more than {seconds:.3g} s of CPU time"
     return "the library that reads it crashed" + (f" (signal {-code})" if code < 0 else "")
 
 
@@ -250,7 +250,7 @@ def _answer(_line: Line, read: Callable[..., Any], path: Path, arguments: tuple[
     try:
         return read(path, *arguments)
     except MemoryError:
-        return _WrongError("", f"reading it takes more than {gigabytes(memory)} of memory", "Export it again, or in parts")
+        return _WrongError("", f"reading it takes more than {gigabytes(memory)} of memory", "Export the file again, or in parts")
     except Exception as error:  # noqa: BLE001
         return _answer_to_error(error, path, is_mat=read is _mat)
 
@@ -265,15 +265,15 @@ def _answer_to_error(error: Exception, path: Path, *, is_mat: bool) -> _WrongErr
     said = _error_text(error)
     if is_mat:
         size = path.stat().st_size
-        advice = "It breaks off or is damaged: copy or save it again (MAT files of version 5 cannot be read in part)"
+        advice = "The file is truncated or damaged: copy or save it again (MAT files of version 5 cannot be read in part)"
         return _WrongError("", f"it cannot be read as a MAT file ({said}); it has {size} bytes", advice)
     if "truncated file" in said:
         numbers = said.partition("truncated file: ")[2].rstrip(")") or said
-        return _WrongError("", f"the file breaks off ({numbers})", "HDF5 cannot be read in part: copy or export it again")
+        return _WrongError("", f"truncated file ({numbers})", "HDF5 files cannot be read in part: copy or export the file again")
     return _WrongError("", f"it cannot be read as HDF5 ({said})", "Check the file, or export it again")
 
 
-_ELSEWHERE = "its data are in another file", "Only the file that is named is read: copy all data into it"
+_ELSEWHERE = "its data are in another file", "Copy all data into this file: other files are not read"
 
 
 @contextlib.contextmanager
@@ -309,7 +309,7 @@ def _members(name: str, group: Any) -> Iterator[tuple[str, Any]]:
 
     for key in group:
         if isinstance(key, bytes):
-            raise ValueError("a name in it is no text")
+            raise ValueError("a name in the file is not a string")
         link = group.get(key, getlink=True)
         if isinstance(link, h5py.ExternalLink):
             raise _WrongError(f"{name}/{key}".lstrip("/"), *_ELSEWHERE)

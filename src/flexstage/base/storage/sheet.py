@@ -1,8 +1,8 @@
 """Decomposition of results into labelled matrices and sheets, for CSV, pandas, xarray, MATLAB and notebooks.
 
 Each sheet or matrix has the path of its data in the document (`docs/json.md`). Records in a sequence or mapping are the rows of one sheet.
-Nested records are the rows of another sheet, which repeats the row names of the first sheet. An array along names has one row per name,
-another array one row per entry.
+Nested records are the rows of another sheet, which repeats the row names of the first sheet. An array along names has one row per name, any
+other array one row per entry.
 """
 
 from __future__ import annotations
@@ -218,7 +218,7 @@ def is_cell(value: Any) -> bool:
 
 
 def plain_cell(value: Any) -> Any:
-    """Return a cell as plain Python numbers and texts.
+    """Return a cell as plain Python numbers and strings.
 
     >>> plain_cell(np.float64(2.0)), plain_cell(("a", "b"))
     (2.0, 'a, b')

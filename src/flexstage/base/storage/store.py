@@ -48,9 +48,9 @@ def cache_folder() -> Path:
     try:
         place = Path(stated).expanduser().absolute() if stated else user_cache_path("flexstage", appauthor=False, opinion=False)
     except (RuntimeError, OSError) as error:
-        raise refuse(FOLDER_VARIABLE, f'unknown folder "{stated}" ({error})', "Name the folder by its whole path") from None
+        raise refuse(FOLDER_VARIABLE, f'unknown folder "{stated}" ({error})', "Use an absolute path") from None
     if not place.is_absolute():  # the user's home is unknown
-        raise refuse(FOLDER_VARIABLE, "it is not set, and the user's home is not known", "Name a folder for what may be computed again")
+        raise refuse(FOLDER_VARIABLE, "not set, and the home folder is unknown", "Set it to a folder for cached results")
     return place
 
 
@@ -200,9 +200,9 @@ def _open_temporary(path: str | os.PathLike[str]) -> PendingFile:
     try:
         target = Path(path).resolve()
         if target.is_dir():
-            raise refuse(where, "this is a directory", "Name a file in it")
+            raise refuse(where, "not a file but a folder", "Use a file in it")
         if target.exists() and not target.is_file():
-            raise refuse(where, "this is no regular file", "Name a file")
+            raise refuse(where, "not a regular file", "Use a regular file")
         if target.exists() and not os.access(target, os.W_OK):  # renaming would replace it
             raise PermissionError(errno.EACCES, "the file is write-protected")
         remove_leftovers(target.parent)
@@ -232,8 +232,8 @@ def make_temporary_folder() -> Path:
         remove_leftovers(Path(tempfile.gettempdir()))
         return Path(tempfile.mkdtemp(prefix=f"flexstage-{process_mark()}-"))
     except OSError as error:
-        what = f"no folder for temporary files can be made ({error.strerror or error})"
-        raise refuse("TMPDIR", what, "Let the environment variable TMPDIR name a folder with room that can be written to") from None
+        what = f"cannot create a folder for temporary files ({error.strerror or error})"
+        raise refuse("TMPDIR", what, "Set the environment variable TMPDIR to a writable folder with free space") from None
 
 
 @contextmanager
@@ -287,7 +287,7 @@ def _is_abandoned(entry: os.DirEntry[str], ours: re.Match[str]) -> bool:
 
 
 def process_mark() -> str:
-    """Return a text that identifies this process, unique among machines with a shared disk.
+    """Return a string that identifies this process, unique among machines with a shared disk.
 
     >>> has_ended(process_mark(), time.time())
     False

@@ -110,8 +110,8 @@ def _pair(sign: str, first: Expression, second: Expression, text: str, scope: Sc
     if sign in "*/":
         return Amount(value, left.dimension.times(right.dimension, Fraction(1 if sign == "*" else -1)))
     if left.dimension.powers != right.dimension.powers:
-        word, joint = ("adds", "and") if sign == "+" else ("takes", "less")
-        what = f'"{text}" {word} unlike quantities: {left.noun()} {joint} {right.noun()}'
+        word = "adds" if sign == "+" else "subtracts"
+        what = f'"{text}" {word} different quantities: {left.noun()} and {right.noun()}'
         raise ExpressionError(what, "Use the same unit for both")
     return Amount(value, left.dimension)
 
@@ -120,10 +120,10 @@ def _call(function: str, argument: Expression, text: str, scope: Scope) -> Amoun
     inner = argument.amount(scope)
     if function == "sqrt":
         if np.any(np.real(inner.value) < 0.0):
-            raise ExpressionError(f'"{text}" is the root of a number below 0', "Check its sign")
+            raise ExpressionError(f'"{text}" is the square root of a negative number', "Check its sign")
         return Amount(freeze(np.sqrt(inner.value)), _ONE.times(inner.dimension, Fraction(1, 2)))
     if inner.dimension.powers != ANGLE_POWERS:
-        what = f'"{text}" needs an angle and has {inner.noun()}'
+        what = f'"{text}" requires an angle (got {inner.noun()})'
         raise ExpressionError(what, "Write the angle with its unit, for example sin(30 deg)")
     return Amount(freeze(FUNCTIONS[function](inner.value)), _ONE)
 
@@ -140,7 +140,7 @@ def parse_expression(text: str) -> Expression:
     """
     if len(text) > LONGEST:
         raise ExpressionError(
-            f"the expression has {len(text)} characters, at most {LONGEST} are read", "Name parts of the formula in [numbers]"
+            f"formula too long (got {len(text)} characters, expected at most {LONGEST})", "Name parts of the formula in [numbers]"
         )
     return _Parser(common_spelling(text)).whole()
 
@@ -155,12 +155,12 @@ def evaluate(expression: Expression, scope: Scope) -> Amount:
     with np.errstate(all="ignore"):
         result = expression.amount(scope)
     if not np.all(np.isfinite(result.value)):
-        raise ExpressionError("its value is not finite", "Check the numbers it is made of")
+        raise ExpressionError("its value is not finite", "Check the numbers in the formula")
     return result
 
 
 def is_plain(text: str) -> bool:
-    """Return whether a text has the form of one number with an optional unit, valid or not.
+    """Return whether a string has the form of one number with an optional unit, valid or not.
 
     >>> is_plain("25,4 mm"), is_plain("3 m^-2"), is_plain("2*arm"), is_plain("arm"), is_plain("1 mm + 2 mm")
     (True, True, False, False, False)
@@ -253,12 +253,12 @@ class _Parser:
         name = _NAME.match(rest)
         after = f'after "{before}"' if before else "at its beginning"
         if name and before:
-            advice = f"A named number is multiplied with *: {before[-20:]}*{name[0]}"
-            return ExpressionError(f'"{name[0]}" {after} is an unknown unit, without an operator', advice)
+            advice = f"Multiply by a named number with *: {before[-20:]}*{name[0]}"
+            return ExpressionError(f'"{name[0]}" {after} is not a unit, and an operator is missing', advice)
         if rest[0] == "^":
             return ExpressionError(f'found "^" {after}', "Powers are written as products, arm*arm, and roots as sqrt(arm)")
         if rest[0] == ",":
-            return ExpressionError(f'found "," {after}', "The decimal sign is a point")
+            return ExpressionError(f'found "," {after}', "Use a decimal point")
         return ExpressionError(f'found "{rest[0]}" {after}', "Use + - * / ( ), sqrt, sin, cos, tan, numbers with units, and names")
 
 
@@ -310,7 +310,7 @@ def is_unit(name: str) -> bool:
 def _amount(number: str, unit: str) -> Amount:
     value, dimension = number_with_unit(number, unit)
     if not np.isfinite(value) or (value == 0.0 and Fraction(number) != _ZERO):
-        raise ExpressionError(f'no double-precision number holds "{number} {unit}"', "Check the exponent and the unit")
+        raise ExpressionError(f'outside the range of double precision (got "{number} {unit}")', "Check the exponent and the unit")
     return Amount(value, dimension)
 
 
@@ -319,4 +319,4 @@ def _name_advice(name: str, scope: Scope) -> str:
         return f"{name} is a unit: write 1 {name}"
     if name in FUNCTIONS:
         return f"{name} is a function: {name}(...)"
-    return suggest_nearest(name, scope) if scope else f'State it: [numbers] {name} = "26 mm"'
+    return suggest_nearest(name, scope) if scope else f'Define it: [numbers] {name} = "26 mm"'

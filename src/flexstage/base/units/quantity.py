@@ -14,7 +14,7 @@ from dataclasses import dataclass
 class Quantity:
     """Physical quantity: name, coherent SI unit and display unit.
 
-    `example` is an example text for a design file. `also` are equivalent units of another form (m/(N m) for rad/N).
+    `example` is an example for a design file. `also` lists equivalent units of another form (m/(N m) for rad/N).
     """
 
     name: str

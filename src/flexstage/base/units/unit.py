@@ -1,7 +1,7 @@
-"""Conversion of text with units to SI numbers and back. Inside the package every number is SI.
+"""Conversion of strings with units to SI numbers and back. Inside the package every number is SI.
 
 The angle is a separate dimension: degrees are distinct from ratios, and rad/s from Hz. All arithmetic is exact (fractions). The value of a
-text is rounded only once, to the nearest float: "1.54 mm" is the float 0.00154.
+string is rounded only once, to the nearest float: "1.54 mm" is the float 0.00154.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _LONGEST = 60
 
 
 def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
-    """Parse a text with a unit and return its SI value.
+    """Parse a string with a unit and return its SI value.
 
     A ratio is a bare number or has "%". Zero needs no unit. Raises `DesignError` at `where` for a missing or unknown unit, a wrong
     dimension, a temperature scale with an offset, or a number that is not finite.
@@ -44,9 +44,9 @@ def parse(text: str, quantity: Quantity, *, where: str = "value") -> float:
 
 
 def show(value: Number, quantity: Quantity, unit: str | None = None, *, digits: int | None = None) -> str:
-    """Return an SI value as text in `unit` (default: the quantity's display unit).
+    """Return an SI value as a string in `unit` (default: the quantity's display unit).
 
-    Without `digits`, it is the shortest text that `parse` converts back to the same bits. For an array, the text contains its range and
+    Without `digits`, it is the shortest string that `parse` converts back to the same bits. For an array, the string contains the range and
     size.
 
     >>> from flexstage.base.units.quantity import LENGTH, STIFFNESS
@@ -90,7 +90,7 @@ def missing_unit(found: Any, quantity: Quantity, *, where: str) -> DesignError:
 
 
 def number_with_unit(number: str, unit: str) -> tuple[float, Dimension]:
-    """Convert the texts of a number and its unit to a value in coherent SI units and a dimension. Without a unit: a ratio.
+    """Convert the strings of a number and its unit to a value in coherent SI units and a dimension. Without a unit: a ratio.
 
     >>> number_with_unit("26", "mm")[0], number_with_unit("5", "%")[0], number_with_unit("3", "kN")[0]
     (0.026, 0.05, 3000.0)
@@ -100,7 +100,7 @@ def number_with_unit(number: str, unit: str) -> tuple[float, Dimension]:
 
 
 def split_unit(text: str) -> tuple[str, str]:
-    """Split a text into its leading number (empty if there is none) and its unit (`1` if there is none).
+    """Split a string into its leading number (empty if there is none) and its unit (`1` if there is none).
 
     >>> split_unit("26 mm"), split_unit("0.3"), split_unit("arm / 2")
     (('26', 'mm'), ('0.3', '1'), ('', 'arm / 2'))
@@ -180,7 +180,7 @@ def _no_number(text: str, quantity: Quantity, where: str) -> DesignError:
 
 
 def example(quantity: Quantity) -> str:
-    """Return an example text of a quantity for input. The example of a ratio has no quotes.
+    """Return an example of a quantity for input. The example of a ratio has no quotes.
 
     >>> example(RATIO)
     '0.3'

@@ -1,13 +1,11 @@
-"""Addresses of values: one scheme for files, `--set`, findings, studies and sensitivities.
+"""Addresses of values: one scheme for files, `--set`, messages, studies and sensitivities.
 
-    parts.neck.thickness               a shared part
-    bodies.platform.mass               a value in the tree of the description, name by name
+    parts.neck.thickness               a shared part bodies.platform.mass               a value in the tree of the description, name by name
     units.horizontal.links.front.at.x  a link's placement in all instances of its unit; short: `horizontal/front.at.x`
-    horizontal/front.thickness         the part of one link of a unit, in all instances: an override, in `overrides`
-    B2/front.thickness                 the same in one instance: an override that precedes the override of all instances
-    links.strut.thickness              the part of a link of the stage: also an override
-    numbers.arm                        a named number: results of formulas change with it
-    B2.shift.x, S1.rotation.z          misalignment of a unit instance or a gauge relative to its pattern: an override, default zero
+    horizontal/front.thickness         the part of one link of a unit, in all instances: an override, in `overrides` B2/front.thickness
+    the same in one instance: takes precedence over the override of all instances links.strut.thickness              the part of a link of
+    the stage: also an override numbers.arm                        a named number: results of formulas change with it B2.shift.x,
+    S1.rotation.z          misalignment of a unit instance or a gauge relative to its pattern: an override, default zero
 
 Levels may be omitted if the result is unique: `horizontal/front.radius` for `horizontal/front.profile.radius`, `neck.thickness` for
 `parts.neck.thickness`. An ambiguous or misspelt address is an error that lists the candidates.
@@ -102,7 +100,7 @@ def set_values(mechanism: Mechanism, values: Iterable[tuple[str, Any]]) -> Mecha
 
 
 def set_text(mechanism: Mechanism, address: str, text: str) -> Mechanism:
-    """Return the mechanism with the value at an address set by a text: a value, a relative change (`+10%`), or a formula.
+    """Return the mechanism with the value at an address set from a string: a value, a relative change (`+10%`), or a formula.
 
     A percentage with a sign is a relative change of any number. A percentage without a sign is the value of a ratio.
 
@@ -144,8 +142,8 @@ def _set_formula(mechanism: Mechanism, place: Place, where: str, text: str) -> M
         number for number in parse_expression(text).names if f"{NUMBERS}.{number}" in (place.address, *dependents(mechanism, place.number))
     }
     if place.number and circle:
-        what = f'circular formula: "{text}" depends on {", ".join(sorted(circle))}, and so on {place.number}'
-        raise refuse(where, what, "Use a number, or a formula without it")
+        what = f'circular formula: "{text}" depends on {", ".join(sorted(circle))}, and therefore on {place.number}'
+        raise refuse(where, what, "Use a number, or a formula that does not depend on it")
     changed = set_value(mechanism, where, value)
     if place.number:
         own_unit = NamedNumber(value, shown_unit(amount_of(mechanism.numbers[place.number])))
@@ -233,7 +231,7 @@ def quantity_at(place: Place, address: str) -> Quantity:
 
 
 def tag_of(mechanism: Mechanism, address: str) -> str:
-    """Return the tag (`stated paper 2.2`) of the value at an address, of its vector, or of its shared part.
+    """Return the tag (`stated paper 2.2`) of the value at an address; a value inherits the tag of its vector or shared part.
 
     Untagged values are `assumed`.
 

@@ -25,9 +25,9 @@ _TOPOLOGY = ("joins", "part")
 class Place:
     """Resolved address of a value.
 
-    `path` is the full path from the description, with empty `owners`. For an override, `owners` are the units and instances with overrides,
-    by rising precedence (`horizontal/front`, `B2/front`). The `path` then begins at the link (`in_link`, e.g. `at.x`) or at its part. For a
-    misalignment (`shift.x`), `owners` is an instance or a gauge.
+    Without `owners`, `path` is the full path from the root of the description. For an override, `owners` are the units and instances with
+    overrides, in order of increasing precedence (`horizontal/front`, `B2/front`). The `path` then begins at the link (`in_link`, e.g.
+    `at.x`) or at its part. For a misalignment (`shift.x`), `owners` contains the instance or gauge.
     """
 
     owners: tuple[str, ...]
@@ -65,7 +65,7 @@ def locate(mechanism: Mechanism, address: str) -> Place:
     if slash and not _is_whole(mechanism, steps[0]):
         return _in_unit(mechanism, address, owner.strip(), (link.strip(), *steps[1:]))
     if (first := new_name(steps[0], _DOCUMENT) or steps[0]) in _DOCUMENT:
-        raise refuse(address, f'"{first}" has no values of the stage', "Use the address of the value")
+        raise refuse(address, f'"{first}" contains no values of the stage', "Use the address of a value")
     if _stands(mechanism, address, steps):
         return _descend(Misalignment(), address, Place(steps[:1], (), RecordNode(Misalignment)), steps[1:])
     return _descend(mechanism, address, Place((), (), RecordNode(Mechanism)), steps)
@@ -178,7 +178,7 @@ def _component(value: Any, address: str, node: Node, step: str) -> str:
     if isinstance(node, NumbersNode):
         if step.isdecimal() and has_member(value, step):
             return step
-        raise refuse(address, f'unknown number "{step}"', f"Use 0 to {len(value) - 1}")
+        raise refuse(address, f'unknown index "{step}"', f"Use 0 to {len(value) - 1}")
     if not node.components or not has_member(value, step):
         raise refuse(address, f'unknown component "{step}"', suggest_nearest(step, COMPONENTS[: len(value)]))
     return COMPONENTS[int(step)] if step in "012345" else step

@@ -54,7 +54,7 @@ from flexstage.spatial.frame import Frame, axes, identity, reflection, turn_z
 
 _Copy: TypeAlias = tuple[str, str, Frame]
 _EXAMPLES = {"at": '["1.54 mm", "1.54 mm", "1.54 mm"]', "along": '"x"'}
-NO_IMAGE = ("the mirror image of its part is unknown", "Draw the other side in a separate unit, or mirror a unit without it")
+NO_IMAGE = ("the mirror image of its part is unknown", "Draw the other side in a separate unit, or mirror a unit without this part")
 """Error and hint for a mirrored link whose part has no known mirror image."""
 
 
@@ -62,7 +62,7 @@ NO_IMAGE = ("the mirror image of its part is unknown", "Draw the other side in a
 class PlacedBody:
     """Body of the expanded stage with its frame, reference point (..., 3) and mass properties, in the stage's frame.
 
-    `drawn` is the body together with bodies that name it in `of`. The mass is their total mass, with `materials`.
+    `drawn` contains the body and all bodies that name it in `of`. The mass is their total mass, computed with `materials`.
     """
 
     name: str
@@ -112,11 +112,11 @@ class PlacedLink:
 
     @property
     def described(self) -> PlacedLink:
-        """Name of the described link: the link itself, or for a member, the link of its compound."""
+        """Link of the description: the link itself, or for a member, the link of its compound."""
         return self.of or self
 
     def joints(self, body: str) -> tuple[Array, ...]:
-        """Return the joints with a body, (..., 3) each: the link's centre."""
+        """Return the positions (..., 3) of the joints with a body: the link's centre."""
         return (self.frame.position,) if body in self.joins else ()
 
 
@@ -145,7 +145,7 @@ class PlacedSuperelement:
         return tuple(port.body for port in self.ports.values())
 
     def joints(self, body: str) -> tuple[Array, ...]:
-        """Return the joints with a body, (..., 3) each: the ports at this body."""
+        """Return the positions (..., 3) of the joints with a body: the ports at this body."""
         return tuple(port.frame.position for port in self.ports.values() if port.body == body)
 
     def welds(self) -> Iterator[PlacedLink]:
@@ -168,10 +168,10 @@ class PlacedSuperelement:
 class Assembly:
     """Expanded stage: all moving bodies, links and gauges by name. `actuators` maps input names to link names.
 
-    For a circuit of force actuators, `actuators` has the first link of the input. `circuits` maps each of its links to the input and the
-    sign. `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in `superelements` instead of
-    `links`, because they join any number of bodies. Bodies that belong to another body (`of`) are not listed: their solids are part of the
-    owner, or of `ground`, the outlines of the ground.
+    For a circuit of several force actuators, `actuators` contains the circuit's first link. `circuits` maps every actuator's link to its
+    input and sign. `strokes` are the stroke actuators, `thrusts` the force actuators. Links of parts with ports are in `superelements`
+    instead of `links`, because they join any number of bodies. Bodies that belong to another body (`of`) are not listed: their solids
+    belong to the owner. Solids of the ground are in `ground`.
     """
 
     bodies: Mapping[str, PlacedBody]
@@ -208,7 +208,7 @@ class Assembly:
 
     @cached_property
     def pushes(self) -> Mapping[str, tuple[str, Array]]:
-        """Input name and wrench per unit of input (..., 6) of every force actuator, by link; in circuits with the sign of the polarity."""
+        """Input name and wrench per unit of input (..., 6) of every force actuator, by link, with the sign of the polarity in a circuit."""
         known = {link: each for link, each in self.circuits.items() if each[0] in self.thrusts}
         return {link: (name, sign * actuator_of(self.links[link].part).wrench) for link, (name, sign) in known.items()}
 
@@ -267,7 +267,7 @@ def _polar_frame(pattern: Polar, angle: Number) -> Frame:
 def expand(mechanism: Mechanism) -> Assembly:
     """Expand a description into bodies and links: units placed by pattern, overrides applied, frames in the stage's frame.
 
-    The description must have passed its checks. If the platform has no reference point, its twist is at its centre of mass.
+    The description must have passed its checks. The twist of a platform without a reference point is at its centre of mass.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(expand(double_triangle()).links)
@@ -353,7 +353,7 @@ def place_findings(mechanism: Mechanism) -> Iterator[Finding]:
         ends, place = {"from": link.start, "to": link.end}, {"at": link.at, "along": link.along}
         stated = [name for name, value in {**place, **ends}.items() if value is not None]
         if {"from", "to"} & set(stated) and {"at", "along"} & set(stated):
-            yield Finding(where, f"both {' and '.join(stated)} specified", "Specify its ends, from and to, or its position, at and along")
+            yield Finding(where, f"both {' and '.join(stated)} specified", "Specify either the ends (from, to) or the position (at, along)")
             continue
         wanted = place if link.start is None and link.end is None else ends
         for name in [name for name, value in wanted.items() if value is None]:
@@ -404,7 +404,7 @@ def _port_findings(where: str, link: Link, parts: Mapping[str, Part]) -> Iterato
         yield Finding(f"{where}.part", what, "Use the part directly")
     if ports and link.free and len(ports) > 2:
         what = f'free requires two ports (part "{link.part}" has {len(ports)})'
-        yield Finding(f"{where}.free", what, "Remove it: the part is rigid in the ideal model")
+        yield Finding(f"{where}.free", what, "Remove free: the part is rigid in the ideal model")
 
 
 def _unknown_bodies(
@@ -428,7 +428,7 @@ def copies(mechanism: Mechanism) -> Iterator[tuple[str, str, Frame]]:
 
 
 def unit_of_copy(mechanism: Mechanism) -> dict[str, str]:
-    """Return the unit's name by instance name.
+    """Return the name of the unit for every instance name.
 
     >>> unit_of_copy(Mechanism(""))
     {}
@@ -449,7 +449,7 @@ def placed_bodies(mechanism: Mechanism) -> dict[str, Body]:
 
 
 def joined(link: Link, bodies: Mapping[str, Body], copy: str = "", own: Iterable[str] = ()) -> tuple[str, ...]:
-    """Return the moving bodies at a link's ends or ports; a body with `of` is replaced by its owner.
+    """Return the bodies at a link's ends or ports; a body with `of` is replaced by its owner.
 
     `copy` is the instance of the link's unit, `own` are the names of the unit's bodies.
 
@@ -547,17 +547,17 @@ def compound_findings(mechanism: Mechanism) -> Iterator[Finding]:
     >>> list(compound_findings(Mechanism("")))
     []
     """
-    advice = "Specify it for the members: draw them as separate links"
+    advice = "Draw the members as separate links, and specify free for these"
     compounds = {name for name, part in mechanism.parts.items() if isinstance(inner(part), Compound)}
     for name in sorted(compounds):
         if isinstance(mechanism.parts[name], Restricted):
-            yield Finding(f"parts.{name}", "a compound part cannot be restricted", "Draw its members as separate links, and restrict those")
+            yield Finding(f"parts.{name}", "a compound part cannot be restricted", "Draw its members as separate links, and restrict these")
     for where, link in every_link(mechanism):
         if link.free is not None and link.part in compounds:
-            yield Finding(f"{where}.free", f"part {link.part} is a compound; its members have degrees of freedom", advice)
+            yield Finding(f"{where}.free", f"part {link.part} is a compound: only its members have degrees of freedom", advice)
         if (link.start is not None or link.end is not None) and link.part in compounds:
-            place = "Specify its origin, at, and its direction, along"
-            yield Finding(f"{where}.from", f"part {link.part} is a compound; its members have ends", place)
+            place = "Specify the origin (at) and the direction (along)"
+            yield Finding(f"{where}.from", f"part {link.part} is a compound: only its members have two ends", place)
 
 
 def _compositions(links: Iterable[PlacedLink | PlacedSuperelement]) -> dict[int, Composition]:

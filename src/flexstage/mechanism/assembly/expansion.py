@@ -50,9 +50,9 @@ class Expansion:
 def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
     """Compute all expansion coefficients; `ground` names the ground's material (default: `ground_of`; `none`: no expansion).
 
-    A body has the material of its heaviest solid; without solids, the common material of its links. Compliance matrices expand as the drawn
-    parts that they replace. Other matrices and ideal joints have no length and no expansion. Raises `DesignError` with all materials and
-    stacks without a coefficient, and all bodies of unknown material.
+    A body has the material of its heaviest solid; without solids, the common material of its links. Compliance matrices expand like the
+    drawn parts that they replace. Other matrices and ideal joints have no length and no expansion. Raises `DesignError` with all materials
+    and stacks without a coefficient, and all bodies of unknown material.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = expansion(double_triangle(), ground="steel")
@@ -76,7 +76,7 @@ def expansion(mechanism: Mechanism, ground: str | None = None) -> Expansion:
 def _unknown_growth(assembly: Assembly) -> Iterator[Finding]:
     for name in assembly.superelements:
         what = "thermal expansion of the superelement unknown"
-        yield Finding(name, what, "Compute it in the program that computed its matrices")
+        yield Finding(name, what, "Compute it in the finite-element program that exported the matrices")
 
 
 def _stated_expansion(mechanism: Mechanism, material: str) -> Number:
@@ -85,14 +85,14 @@ def _stated_expansion(mechanism: Mechanism, material: str) -> Number:
 
 
 def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
-    """Return the ground's material: as requested by `asked` (`none`: no expansion), as in the description, or of the parts on the ground.
+    """Return the ground's material: as requested by `asked` (`none`: no expansion), as in the description, or as in parts on the ground.
 
-    The parts on the ground are its outlines or, without outlines, its links; they must have one material. Raises `DesignError` for
+    The parts on the ground are its outlines or, without outlines, its links; they must all have the same material. Raises `DesignError` for
     several materials or none: drift is then undefined.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> ground_of(double_triangle())
-    Ground(material='steel', source='all links on it are of it')
+    Ground(material='steel', source='material of all links on it')
     """
     given = asked if asked is not None else mechanism.ground
     if asked is not None and asked not in (NOT_GROWING, *mechanism.materials):
@@ -103,12 +103,12 @@ def ground_of(mechanism: Mechanism, asked: str | None = None) -> Ground:
     solids = _distinct(mechanism, (placed.solid.material for placed in assembly.ground.values()))
     links = _link_materials(mechanism, assembly, GROUND)
     if len(solids) == 1:
-        return Ground(solids[0], "all its outlines are of it")
+        return Ground(solids[0], "material of all its outlines")
     if not solids and len(links) == 1:
-        return Ground(links[0], "all links on it are of it")
+        return Ground(links[0], "material of all links on it")
     result = f"its outlines are of {', '.join(solids)}" if solids else f"the links on it are of {', '.join(links) or 'no material'}"
     example = (*solids, *links, *mechanism.materials, "steel")[0]
-    advice = f'Specify it in the design: ground = "{example}", or "{NOT_GROWING}" without expansion'
+    advice = f'Specify the material in the design: ground = "{example}"; "{NOT_GROWING}" means no expansion'
     raise refuse("ground", f"thermal expansion unknown: {result}", advice)
 
 

@@ -18,15 +18,15 @@ from flexstage.mechanism.mechanism import GROUND, PLATFORM
 from flexstage.spatial.frame import COMPONENTS, Frame, transport, twist_transform
 
 LARGE = 60
-"""Number of bodies from which a single design uses sparse matrices."""
+"""Smallest number of bodies for which a single design uses sparse matrices."""
 
 
 @dataclass(frozen=True, eq=False)
 class Layout:
     """Layout of the coordinate vector: six coordinates per body, the platform first; then the internal coordinates of links.
 
-    `inner` is the number of internal coordinates by link: amplitudes of its fixed-interface modes, which are zero in a rigid motion. In a
-    `sparse` layout, matrices over the coordinates are `flexstage.base.sparse.Sparse`.
+    `inner` is the number of internal coordinates of each link: amplitudes of its fixed-interface modes, which are zero in a rigid motion.
+    In a `sparse` layout, matrices over the coordinates are `flexstage.base.sparse.Sparse`.
     """
 
     bodies: tuple[str, ...]
@@ -106,7 +106,8 @@ def is_single(assembly: Assembly) -> bool:
 def require_room(assembly: Assembly, matrices: float) -> None:
     """Raise `DesignError` for a stage whose dense matrices exceed the available memory.
 
-    `matrices` is the number of dense matrices: coordinates x rows of bodies or links, 8 bytes per entry.
+    `matrices` is the number of dense matrices. Each has 6 columns per body and 6 rows per body or link (the larger number), 8 bytes per
+    entry.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -117,7 +118,7 @@ def require_room(assembly: Assembly, matrices: float) -> None:
 
     def fits(there: float) -> str:
         most = int(np.sqrt(there / needed) * bodies)
-        return f"About {most:,} bodies with as many links each fit; join bodies without relative motion, or analyse parts of the stage"
+        return f"About {most:,} bodies fit, with as many links per body; join bodies without relative motion, or analyse parts of the stage"
 
     require_memory("stage", f"matrices of {bodies:,} bodies and {links:,} links", needed, fits)
 

@@ -58,7 +58,7 @@ def likeness_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Return errors for units with circular inheritance.
 
     >>> print(*likeness_findings(Mechanism("", units={"inner": Unit({}, {}, like="inner")})))
-    units.inner.like: circular reference. Remove one like.
+    units.inner.like: circular reference. Remove like from one unit.
     """
     for name, unit in mechanism.units.items():
         if unit.like is None:
@@ -66,4 +66,4 @@ def likeness_findings(mechanism: Mechanism) -> Iterator[Finding]:
         line = ancestry(mechanism, name)
         if mechanism.units[line[-1]].like == name:
             what = "circular reference" if len(line) == 1 else f"circular reference: {', '.join(line)}"
-            yield Finding(f"units.{name}.like", what, "Remove one like")
+            yield Finding(f"units.{name}.like", what, "Remove like from one unit")

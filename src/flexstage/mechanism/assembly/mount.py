@@ -55,8 +55,8 @@ def mount(
 
     Bodies, links, units, instances, parts, gauges and loads of the carried stage get the names `name/...`, with unchanged numbers. Its
     overrides, tags and temperatures are kept; if `on` is the ground, also the ground's material. Its gravity, damping, requirements,
-    envelope, formulas and other properties of a whole stage are dropped. `platform`: the carried stage's platform is the platform of both
-    (default: if the stage has no body `platform`).
+    envelope, formulas and other properties of a whole stage are dropped. If `platform`, the carried stage's platform becomes the platform
+    of both (default: true if the stage has no body `platform`).
 
     Raises `DesignError` for name clashes, an unknown body, a mirrored pose, or different expansion or temperature of a common ground.
 
@@ -100,16 +100,16 @@ def _mount_findings(stage: Mechanism, name: str, carried: Mechanism, on: str, po
     placed = (*stage.placements, *stage.gauges, *stage.stops)
     taken = {*stage.bodies, *stage.units, *stage.links, *(copy for key in placed for copy in copy_names(key))}
     if name in taken:
-        yield Finding(where, "the name is in use", "Use another name for the mounted stage: it is the prefix of its names")
+        yield Finding(where, "the name is in use", "Use another name for the mounted stage: it becomes the prefix of all its names")
     if pose.mirror is not None:
-        yield Finding(f"{where}.pose.mirror", "a whole stage cannot be mirrored", "Mirror its units, in its own file")
+        yield Finding(f"{where}.pose.mirror", "a whole stage cannot be mirrored", "Mirror the units in the file of the mounted stage")
     known = {GROUND, *placed_bodies(stage)}
     if on not in known:
         yield Finding(f"{where}.on", f'unknown body "{on}"', suggest_nearest(on, known))
     if _is_on_ground(stage, on):
         yield from _ground_findings(stage, name, carried)
     if on in {body for unit in drawn_units(carried).values() for body in unit.bodies}:
-        yield Finding(f"{where}.on", f'a unit of the mounted stage has a body "{on}"', "Rename one of them")
+        yield Finding(f"{where}.on", f'a unit of the mounted stage also has a body "{on}"', "Rename one of them")
 
 
 def _is_on_ground(stage: Mechanism, on: str) -> bool:
@@ -133,11 +133,11 @@ def _ground_findings(stage: Mechanism, name: str, carried: Mechanism) -> Iterato
     mine, other = stage.ground, _ground(name, carried)
     if mine and other and not _agree(stage.materials.get(mine, mine), carried.materials.get(carried.ground or "", other)):
         what = f'different ground materials (got "{other}" in the mounted stage, "{mine}" in this one)'
-        yield Finding(f"stages.{name}", what, f'Specify it in this design: ground = "{mine}", or "{NOT_GROWING}" without expansion')
+        yield Finding(f"stages.{name}", what, f'Specify the material in this design: ground = "{mine}"; "{NOT_GROWING}" means no expansion')
     warm, warmer = (_temperatures(each).get(GROUND) for each in (stage, carried))
     if warm is not None and warmer is not None and not np.array_equal(warm, warmer):
         what = f"different ground temperatures (got {warmer:g} K in the mounted stage, {warm:g} K in this one)"
-        yield Finding(f"stages.{name}", what, f'Specify it in this design: temperatures.ground = "{warm:g} K"')
+        yield Finding(f"stages.{name}", what, f'Specify the temperature in this design: temperatures.ground = "{warm:g} K"')
 
 
 def _agree(one: Material | str, other: Material | str) -> bool:
@@ -266,9 +266,9 @@ def _provenance(stage: Mechanism, rename: _Names, carried: Mechanism) -> tuple[T
 
 
 def mount_all(stage: Mechanism, carried: Mapping[str, tuple[Mount, Mechanism]]) -> Mechanism:
-    """Return the stage with all stages in `carried` mounted, each after the stage that it is mounted on.
+    """Return the stage with all stages in `carried` mounted, each after the stage that carries it.
 
-    The ground specified in the stage applies to all. If the stage has no body `platform`, the topmost stage provides it. Raises
+    Ground properties specified in the stage apply to all. If the stage has no body `platform`, the topmost stage provides it. Raises
     `DesignError` for several topmost stages.
 
     >>> mount_all(Mechanism("bare"), {}).name

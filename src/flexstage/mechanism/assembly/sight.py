@@ -21,7 +21,7 @@ from flexstage.spatial.frame import Frame
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """One term of a gauge's reading: `weight` times a `component` of the relative twist of `body` against `base`.
+    """One term of a gauge's reading: `weight` times a `component` of the twist of `body` relative to `base`.
 
     It is the component of the twist of `body` at `frame`, minus the component of the twist of `base` at `foot`, each in the axes of its
     frame. The two frames differ only for gauges on links.
@@ -37,7 +37,7 @@ class Sight:
 
 @dataclass(frozen=True, eq=False)
 class PlacedGauge:
-    """Gauge of the expanded stage: its reading is the sum of its `sights`. For a sum of gauges, `members` are their weights by name."""
+    """Gauge of the expanded stage: its reading is the sum of its `sights`. For a sum of gauges, `members` are the weights by name."""
 
     name: str
     gauge: Instrument
@@ -65,7 +65,7 @@ class PlacedStop:
 
 
 def place_stop(stop: Stop, frame: Frame) -> PlacedStop:
-    """Return a stop at a frame. It limits the motion of its body against its base along x, which is measured as by a gap gauge."""
+    """Return a stop at a frame. The stop limits the motion of its body relative to its base along x, measured as by a gap gauge."""
     seen = Sight(stop.body, stop.base, frame, frame, Freedom.X.index, 1.0)
     return PlacedStop(seen, np.asarray(-np.inf if stop.gap_negative is None else -stop.gap_negative), np.asarray(stop.gap))
 
@@ -77,7 +77,7 @@ def sight(probe: Probe, gauge: Instrument, frame: Frame) -> Sight:
 
 
 def sight_of_link(first: str, second: str, frame: Frame, part: Part, gauge: Instrument) -> Sight:
-    """Return the relative motion that a gauge on a link measures: second body against first, each at its end of the link."""
+    """Return the relative motion that a gauge on a link measures: second body relative to first, each at its end of the link."""
     half = 0.5 * np.asarray(span(part))[..., None] * frame.rotation[..., :, 0]
     return Sight(
         second,
@@ -90,7 +90,7 @@ def sight_of_link(first: str, second: str, frame: Frame, part: Part, gauge: Inst
 
 
 def link_names(text: str) -> tuple[str, ...]:
-    """Return the links named by the `link` text of a gauge.
+    """Return the links named by the key `link` of a gauge.
 
     >>> link_names("B1-B3/pzt"), link_names("strut")
     (('B1/pzt', 'B2/pzt', 'B3/pzt'), ('strut',))
@@ -139,8 +139,8 @@ def _place_findings(where: str, key: str, place: Probe | LinkProbe, gauge: Instr
     elif gauge.gap and place.positive is None:
         yield Finding(where, "positive missing", 'Use e.g. positive = "opens"')
     elif not gauge.gap and place.positive is not None:
-        what = f"{place.gauge} has no gap that {place.positive.value}; it reads along or about its x axis"
-        yield Finding(f"{where}.positive", what, "Remove it; reverse the x axis for the other sign")
+        what = f"{place.gauge} measures no gap that {place.positive.value}, but motion along or about its x axis"
+        yield Finding(f"{where}.positive", what, "Remove it; for the other sign, reverse the x axis")
 
 
 def _link_findings(where: str, key: str, place: LinkProbe, links: Collection[str]) -> Iterator[Finding]:
@@ -159,7 +159,7 @@ def _count(names: tuple[str, ...], noun: str) -> str:
 
 def _sum_findings(where: str, key: str, place: GaugeSum, gauges: Mapping[str, GaugePlace]) -> Iterator[Finding]:
     if len(copy_names(key)) > 1:
-        yield Finding(where, f"a sum is a single gauge (got several in {key})", "Use one table per sum")
+        yield Finding(where, f"a sum defines a single gauge (got several in {key})", "Use one table per sum")
     if not place.sum:
         yield Finding(f"{where}.sum", "members missing", "Use e.g. sum = { S1 = 0.5, S2 = -0.5 }")
     known = [name for other in gauges for name in copy_names(other) if other != key]

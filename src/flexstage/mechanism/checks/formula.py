@@ -48,9 +48,9 @@ def formula_findings(mechanism: Mechanism) -> Iterator[Finding]:
             continue
         number = mechanism.numbers.get(address.removeprefix(PREFIX)) if address.startswith(PREFIX) else None
         if number is not None and number.unit != (unit := shown_unit(amount_of(number))):
-            yield Finding(address, f"wrong unit (got {number.unit}, expected {unit} by its formula)", f"Use {unit}")
+            yield Finding(address, f"wrong unit (got {number.unit}, expected {unit} from its formula)", f"Use {unit}")
         if result is None or not np.allclose(result, target, rtol=_ALIKE, atol=0.0):
-            what = f'wrong value (got {_si(result)}, expected {_si(target)} in SI by its formula "{mechanism.formulas[address]}")'
+            what = f'wrong value (got {_si(result)}, expected {_si(target)} in SI from its formula "{mechanism.formulas[address]}")'
             yield Finding(address, what, "Use the value of the formula, or remove the formula")
 
 

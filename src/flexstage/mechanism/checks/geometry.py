@@ -43,7 +43,7 @@ def geometry_findings(mechanism: Mechanism, *, overrides: bool = True) -> Iterat
     >>> from flexstage.parts.leaf import Leaf
     >>> leaf = Leaf("steel", length=0.03, thickness=0.012, width=0.01)
     >>> print(*geometry_findings(Mechanism("", parts={"blade": leaf})))
-    parts.blade.thickness: must be below the width, 10 mm (got 12 mm). Exchange them, or turn the link's bends.
+    parts.blade.thickness: must be below the width, 10 mm (got 12 mm). Exchange both values, or rotate the link's bends.
     """
     for name, material in mechanism.materials.items():
         yield from (replace(fault, where=f"materials.{name}.{fault.where}") for fault in material.faults)
@@ -76,7 +76,7 @@ def _lengths(mechanism: Mechanism) -> Iterator[Finding]:
         if np.any(off):
             at, values = first_failing(off, apart, np.asarray(own.span))
             result, length = (show(value, LENGTH, digits=6) for value in values)
-            what = f"wrong distance of from and to (got {result}, expected the length of part {link.part}, {length})"
+            what = f"wrong distance between from and to (got {result}, expected the length of part {link.part}, {length})"
             yield Finding(f"{where}{at}", what, "Move an end, or change the part's length")
 
 
@@ -114,7 +114,7 @@ def _part(where: str, part: Part) -> Iterator[Finding]:
     if isinstance(part, Restricted):
         yield from _part(f"{where}.part", part.part)
         for freedom in set(part.elastic) & set(part.free):
-            yield Finding(where, f"degree of freedom {freedom.value} both elastic and free", "Use it once")
+            yield Finding(where, f"degree of freedom {freedom.value} both elastic and free", "List it once")
         return
     yield from _orders(where, part.orders if isinstance(part, Elastic) else ())
     if isinstance(part, Elastic):
@@ -140,13 +140,13 @@ def _orders(where: str, orders: Iterable[Order]) -> Iterator[Finding]:
 def _body(where: str, body: Body) -> Iterator[Finding]:
     stated = [name for name in ("mass", "centre", "inertia") if getattr(body, name) is not None]
     if stated and body.solids:
-        yield Finding(where, f"both solids and {', '.join(stated)} specified", "Remove one of them: either determines the mass")
+        yield Finding(where, f"both solids and {', '.join(stated)} specified", "Remove one of both")
     elif stated and body.mass is None:
         yield Finding(where, f"{', '.join(stated)} without a mass", "Specify the mass too")
     if body.inertia is not None:
         yield from _inertia(f"{where}.inertia", body.inertia)
     if body.point and (body.mass is None or body.inertia is not None):
-        yield Finding(f"{where}.point", "a point requires a specified mass without inertia", "Remove point, or the inertia")
+        yield Finding(f"{where}.point", "a point requires a specified mass without inertia", "Specify only a mass, or remove point")
     for name, solid in body.solids.items():
         yield from _solid(f"{where}.solids.{name}", solid)
 
@@ -184,7 +184,7 @@ def _polygon(where: str, solid: Extrusion) -> Iterator[Finding]:
     for here, there in itertools.combinations(range(len(corners)), 2):
         apart = there - here not in (1, len(corners) - 1)
         if np.all(corners[here] == corners[there]) or (apart and _cross((corners[here], after[here]), (corners[there], after[there]))):
-            what = f"its sides from corner {here + 1} and from corner {there + 1} intersect"
+            what = f"the sides that begin at corners {here + 1} and {there + 1} intersect"
             yield Finding(where, what, "List the corners in order round the polygon, each once")
             return
     if abs(winding(corners)) <= _SLACK * float(np.max(np.abs(corners))) ** 2:

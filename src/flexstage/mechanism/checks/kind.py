@@ -14,7 +14,7 @@ from flexstage.mechanism.mechanism import Mechanism
 
 
 def kind_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors for values of unregistered classes, which files cannot hold.
+    """Return errors for values of unregistered classes, which files cannot contain.
 
     >>> from flexstage.parts.rod import Rod
     >>> class Wire(Rod): ...
@@ -34,7 +34,7 @@ def _unlisted(node: Node, value: Any, where: str) -> Iterator[Finding]:
 
 
 def package_findings(packages: Iterable[str]) -> Iterator[Finding]:
-    """Return errors for required packages that are missing or of another version.
+    """Return errors for required packages that are missing or have a wrong version.
 
     >>> print(*package_findings(["numpy >= 1", "tapered-leaf >= 1"]))
     packages: "tapered-leaf >= 1" is not installed. Install it in the environment of flexstage: pip install "tapered-leaf >= 1".

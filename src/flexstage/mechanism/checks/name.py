@@ -110,9 +110,9 @@ def _owners(mechanism: Mechanism) -> Iterator[Finding]:
         yield from _check_known(f"{where}.of", "body of the stage", body.of, {GROUND, *stage})
         owner = stage.get(body.of)
         if where == f"bodies.{PLATFORM}":
-            yield Finding(f"{where}.of", "the platform cannot be of another body", 'Set of = "platform" for the other body')
+            yield Finding(f"{where}.of", "the platform cannot belong to another body", 'Set of = "platform" for the other body')
         elif owner is not None and owner.of is not None:
-            what = f'"{body.of}" is itself of "{owner.of}"'
+            what = f'"{body.of}" belongs to another body, "{owner.of}"'
             yield Finding(f"{where}.of", what, f'Use of = "{owner.of}"' if owner is not body else "Use another body, or remove it")
 
 
@@ -124,7 +124,7 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
     for unit, drawn in mechanism.units.items():
         for name in drawn.bodies:
             if name == GROUND or (name in mechanism.bodies and "/" not in unit):
-                yield Finding(f"units.{unit}.bodies.{name}", f'the stage has a body "{name}" too', "Rename the unit's body")
+                yield Finding(f"units.{unit}.bodies.{name}", f'the stage also has a body "{name}"', "Rename the unit's body")
 
 
 def _check_known(where: str, kind: str, name: str | None, names: Iterable[str]) -> Iterator[Finding]:
@@ -187,11 +187,11 @@ def _circuits(mechanism: Mechanism) -> Iterator[Finding]:
         if not name or part is None:
             continue
         if not re.fullmatch(r"\w[\w-]*", name):
-            yield Finding(f"{where}.circuit", f'"{link.circuit}" is no legal name', 'Use e.g. "pair" or "-pair"')
+            yield Finding(f"{where}.circuit", f'invalid name "{link.circuit}"', 'Use e.g. "pair" or "-pair"')
         if not isinstance(inner(part), ThrustActuator):
-            yield Finding(f"{where}.circuit", f'its part "{link.part}" exerts no force', "Leave it out, or use a voice coil")
+            yield Finding(f"{where}.circuit", f'its part "{link.part}" exerts no force', "Remove circuit, or use a force actuator")
         elif parts.setdefault(name, link.part) != link.part:
-            what = f'its part is "{link.part}", that of another link of this circuit "{parts[name]}"'
+            what = f'different parts in one circuit (got "{link.part}", and "{parts[name]}" in another link)'
             yield Finding(f"{where}.circuit", what, "Use one part for all links of a circuit")
 
 

@@ -1,4 +1,4 @@
-"""Checks of overrides and tags: valid addresses and texts."""
+"""Checks of overrides and tags: valid addresses and values."""
 
 from __future__ import annotations
 

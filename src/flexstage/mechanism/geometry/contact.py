@@ -1,6 +1,6 @@
-"""Contact checks: links touch their bodies, outlines of a body are connected, others have clearance, gauges face their targets.
+"""Contact checks: links touch their bodies, outlines of one body are connected, other outlines have clearance, gauges face their targets.
 
-Based on the outlines of the description, without CAD, for the first design of a batch. Round faces are approximated within `SAGITTA`.
+The checks use the outlines of the description, without CAD, for the first design of a batch. Round faces are approximated within `SAGITTA`.
 """
 
 from __future__ import annotations
@@ -115,10 +115,10 @@ class _Thing:
 
 @SESSION.keep(4)
 def contact_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Return contradictions of the outlines of a stage.
+    """Return errors of the outlines of a stage.
 
-    Link ends off the faces of their bodies, disconnected bodies, overlaps, gauges off their targets; none without outlines. Imported shapes
-    are named, but not checked.
+    Errors are link ends that miss the faces of their bodies, disconnected bodies, overlaps, and gauges that miss their targets. A stage
+    without outlines has none. Imported shapes are listed as unchecked.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> contact_findings(parallelogram())
@@ -147,7 +147,7 @@ class Gap:
 
 
 def gaps(mechanism: Mechanism, within: float, moved: Mapping[str, Array] = MappingProxyType({})) -> tuple[Gap, ...]:
-    """Return overlaps, and gaps of at most `within` [m], between unconnected outlines; on the first design of a batch.
+    """Return overlaps, and gaps of at most `within` [m], between unconnected outlines, for the first design of a batch.
 
     A pair consists of different bodies, of two links, or of a link and a body that it does not join. Round faces are approximated within
     `SAGITTA`. Imported shapes are omitted.
@@ -165,7 +165,7 @@ def gaps(mechanism: Mechanism, within: float, moved: Mapping[str, Array] = Mappi
 
 
 def least_gap(mechanism: Mechanism, moved: Mapping[str, Array] = MappingProxyType({})) -> Gap | None:
-    """Return the smallest gap between unconnected outlines, as `gaps`; `None` without any pair within a metre.
+    """Return the smallest gap between unconnected outlines (see `gaps`); `None` if no pair is within a metre.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> least_gap(parallelogram()).distance > 1e-4
@@ -243,7 +243,7 @@ def _unseen(things: Iterable[_Thing]) -> Iterator[Finding]:
     names = [thing.name for thing in things if isinstance(thing.form, Imported)]
     if names:
         what = "contact and clearance of imported shapes not checked"
-        yield Finding(", ".join(names), what, "Run `flexstage cad`")
+        yield Finding(", ".join(names), what, "Run `flexstage cad` to check them")
 
 
 def _alike(findings: Sequence[Finding], assembly: Assembly) -> Iterator[Finding]:
@@ -257,7 +257,7 @@ def _alike(findings: Sequence[Finding], assembly: Assembly) -> Iterator[Finding]
         groups.setdefault(key, []).append(finding)
     for first, *others in groups.values():
         names = dict.fromkeys(_other_name(first, other) for other in others)
-        alike = f" (alike: {', '.join(names)})" if others else ""
+        alike = f" (same for {', '.join(names)})" if others else ""
         yield Finding(first.where, f"{first.what}{alike}", first.advice)
 
 
@@ -524,7 +524,7 @@ def _close(first: Sequence[Convex], second: Sequence[Convex]) -> Iterator[tuple[
 def _advice(first: _Thing, second: _Thing) -> str:
     if not first.is_link and not second.is_link and GROUND in {*first.bodies, *second.bodies}:
         return "Trim one of the two outlines"
-    return "Trim or move one of the two outlines without moving an axis"
+    return "Trim or move one of the two outlines without moving the axis of a link"
 
 
 # Gauges
@@ -565,7 +565,7 @@ def _miss(frame: Frame, things: Sequence[_Thing], reach: float) -> float:
 
 
 def _off_target(name: str, body: str, beside: float, miss: float) -> Finding:
-    passes = f"its axis misses it by {_text(miss)}" if miss > TOUCHING else "on its axis"
+    passes = f"and its axis misses the outline by {_text(miss)}" if miss > TOUCHING else "along its axis"
     what = f"its measuring point is {_text(beside)} away from the outline of {body}, {passes}"
     return Finding(name, what, f"Move the gauge, add its target to the solids of {body}, or change its body")
 

@@ -19,9 +19,9 @@ from flexstage.spatial.frame import Frame
 class Outline:
     """Outline: a box of `size` (..., 3) [m] along the axes of `frame`, or a cylinder along x (`is_cylinder`) in this box.
 
-    `name` is the address (`platform.plate`, `B1/front`). `hole` (..., 2) are the sides of a rectangular hole through a box along z. `bore`
-    is the diameter of a hole through a cylinder along x. `corners` (..., n, 3) are the corners of an outline that does not fill its box.
-    `is_ball`: the outline is a ball.
+    `name` is the address (`platform.plate`, `B1/front`). `hole` (..., 2) gives the sides of a rectangular hole through a box along z.
+    `bore` is the diameter of a hole through a cylinder along x. `corners` (..., n, 3) are the corners of an outline that does not fill its
+    box. `is_ball`: the outline is a ball.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Outline:
         return np.broadcast_shapes(self.frame.position.shape[:-1], self.frame.rotation.shape[:-2], self.size.shape[:-1], corners)
 
     def reach(self, direction: Array) -> Array:
-        """Support function h(n) = max over the outline of n . r (...) [m], for a unit direction (..., 3) of the stage; holes do not count.
+        """Support function h(n) = max over the outline of n . r (...) [m], for a unit direction (..., 3) of the stage, without holes.
 
         >>> box = Outline("box", Frame(np.eye(3), np.zeros(3)), np.array([2.0, 4.0, 6.0]))
         >>> float(box.reach(np.array([0.0, 1.0, 0.0])))
@@ -60,7 +60,7 @@ class Outline:
 
 
 def outlines(assembly: Assembly) -> tuple[Outline, ...]:
-    """Return outlines of all solids (also of the ground), and of all parts that have dimensions.
+    """Return outlines of all solids (including the ground's), and of all parts that have dimensions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

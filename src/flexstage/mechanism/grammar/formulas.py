@@ -1,7 +1,7 @@
 """Formulas of a description, stored with the computed values.
 
-A formula has the address of its number (`parts.leaf.length`, `numbers.half`). Values always equal their formulas. If a named number
-changes, all dependent values are recomputed (`address.set_value`). If a computed value is set, its formula is removed.
+Each formula is stored under the address of its number (`parts.leaf.length`, `numbers.half`). Values always equal their formulas. If a named
+number changes, all dependent values are recomputed (`address.set_value`). If a computed value is set, its formula is removed.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def formula_value(text: str, quantity: Quantity, scope: Scope, where: str) -> Nu
 
 
 def is_formula(text: str, scope: Scope) -> bool:
-    """Return whether a text is a formula, not a plain number with a valid unit or another text.
+    """Return whether a string is a formula, not a plain number with a valid unit or another string.
 
     >>> is_formula("2 * 3 mm", {}), is_formula("3 furlong", {}), is_formula("steel", {}), is_formula("arm +", {})
     (True, False, False, True)
@@ -179,7 +179,7 @@ def shown_unit(amount: Amount) -> str:
     """
     unit = quantity_of_dimension(amount.dimension).shown
     if not is_unit(unit) and unit != "1":
-        raise ExpressionError(f"the unit {unit} is not supported", "Use the root in the formula that requires it")
+        raise ExpressionError(f"the unit {unit} is not supported", "Use the root directly in the formula that requires it")
     return unit
 
 
@@ -243,7 +243,7 @@ def cycles(expressions: Mapping[str, Expression]) -> Iterator[tuple[str, ...]]:
 def cycle_findings(expressions: Mapping[str, Expression]) -> Iterator[Finding]:
     """Return errors for circular dependencies."""
     for circle in cycles(expressions):
-        yield Finding(PREFIX + circle[0], f"circular formulas: {' -> '.join(circle)}", "Use a number for one of them")
+        yield Finding(PREFIX + circle[0], f"circular formulas: {' -> '.join(circle)}", "Replace one of these formulas by a number")
 
 
 def spelling_findings(name: str) -> Iterator[Finding]:
@@ -253,7 +253,7 @@ def spelling_findings(name: str) -> Iterator[Finding]:
     numbers.sin: sin is reserved in formulas. Rename the number, e.g. sin_1.
     """
     if not _NAME.fullmatch(name):
-        yield Finding(PREFIX + name[:60], "the name of a number begins with a letter and has letters, digits and _", "Rename it")
+        yield Finding(PREFIX + name[:60], "invalid name (expected a letter, then letters, digits and _)", "Rename the number")
     elif name in FUNCTIONS or name.lower() in _NOT_FINITE:
         yield Finding(PREFIX + name, f"{name} is reserved in formulas", f"Rename the number, e.g. {name}_1")
 
@@ -262,13 +262,13 @@ def unused_findings(mechanism: Mechanism) -> Iterator[Finding]:
     """Return errors for named numbers that are not used in any formula or requirement.
 
     >>> print(*unused_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "mm")})))
-    numbers.arm: no formula uses it. Use it in a formula, or remove it.
+    numbers.arm: no formula or requirement uses it. Use it in a formula, or remove it.
     """
     used = {name for text in mechanism.formulas.values() for name in parse_expression(text).names}
     used |= {key.removeprefix(PREFIX) for key in mechanism.requirements}
     for name in mechanism.numbers:
         if name not in used:
-            yield Finding(PREFIX + name, "no formula uses it", "Use it in a formula, or remove it")
+            yield Finding(PREFIX + name, "no formula or requirement uses it", "Use it in a formula, or remove it")
 
 
 def _references(known: Mapping[str, frozenset[str]]) -> dict[str, frozenset[str]]:

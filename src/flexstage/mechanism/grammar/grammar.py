@@ -95,23 +95,23 @@ TOLD_BY = "TOLD_BY"
 _ALWAYS = ("gravity",)
 _TAGS_SCHEMA: dict[str, Any] = {
     "type": "object",
-    "description": "Provenance by field: stated, derived or assumed, then a source and a place in it.",
+    "description": "Provenance of each field: stated, derived or assumed, then a source and the place in the source.",
     "additionalProperties": {"type": "string", "pattern": r"^(stated|derived|assumed)( |$)", "examples": ["stated paper 2.2"]},
 }
 _KIND = "kind"
-_ELSEWHERE = "Install the package of the kind, if another package provides it"
+_ELSEWHERE = "If another package provides this kind, install the package"
 
 
 @dataclass(frozen=True)
 class ListNode(RowNode):
-    """List of texts, choices, numbers or tables, with a fixed `length` (None: any)."""
+    """List of strings, choices, numbers or tables, with a fixed `length` (None: any)."""
 
     item: Node
     length: int | None
 
     @property
     def example(self) -> str:
-        """Example text of a file."""
+        """Example as written in a file."""
         return f"[{', '.join([self.item.example] * (self.length or 1))}]"
 
     @property
@@ -120,7 +120,7 @@ class ListNode(RowNode):
         return self.length
 
     def parts(self, row: Any) -> Iterator[tuple[str, Node, Any]]:
-        """Yield the items; a table has the address of its number, counted from 1, another item the address of the list."""
+        """Yield the items; the address of a table is its number, counted from 1; other items have the address of the list."""
         numbered = isinstance(self.item, RecordNode | UnionNode)
         return ((str(number) if numbered else "", self.item, part) for number, part in enumerate(row, start=1))
 
@@ -189,7 +189,7 @@ class TableNode(Node):
 
 @dataclass(frozen=True)
 class OpenNode(Node):
-    """Table of unread values by name, whose names determine their kinds later. `said` is their description in a schema."""
+    """Table whose values are read later, because their names determine their kinds. `said` is the description in a schema."""
 
     said: str
 
@@ -228,7 +228,7 @@ class JoinsNode(Node):
         return self._node(value).child(value, name)
 
 
-OVERRIDES = OpenNode("Overrides by address: unit/link.field of all instances, instance/link.field of one.")
+OVERRIDES = OpenNode("Overrides by address: unit/link.field for all instances, instance/link.field for one.")
 
 
 @dataclass(frozen=True)
@@ -309,7 +309,7 @@ class RecordNode(Node):
         demand: dict[str, Any] = {"required": required}
         if section is not None:
             names = {"anyOf": [{"enum": list(section.entries)}, {"type": "string"}]}
-            properties |= {LIKE: names | {"description": "catalogue entry with default values"}}
+            properties |= {LIKE: names | {"description": "catalogue entry that provides default values"}}
             demand = {"anyOf": [{"required": required}, {"required": [LIKE]}]}
         demand |= {"oneOf": wrapped} if wrapped else {}
         shape = {"type": "object", "description": meaning(self.record), "properties": properties | _tags_of(definitions)}
@@ -337,7 +337,7 @@ class RecordNode(Node):
 
 @dataclass(frozen=True)
 class UnionNode(Node):
-    """Object of one of several classes: the value of the key `told_by` identifies the class, or if None, a key in the table."""
+    """Object of one of several classes, identified by the value of the key `told_by`, or by the keys of the table if `told_by` is None."""
 
     told_by: str | None
     options: tuple[tuple[str, RecordNode], ...]
@@ -359,7 +359,7 @@ class UnionNode(Node):
 
     @property
     def example(self) -> str:
-        """Example text of a file."""
+        """Example as written in a file."""
         return f'{{ {self.told_by} = "{self.options[0][0]}", ... }}' if self.told_by else self.shown
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
@@ -478,7 +478,7 @@ def _strip_tags(raw: dict[str, Any], where: str, reader: Reader) -> dict[str, An
     wrong = [key for key, tag in tags.items() if not isinstance(tag, str)] if isinstance(tags, dict) else [""]
     if wrong:
         own = join(join(where, TAGS), wrong[0]) if wrong[0] else join(where, TAGS)
-        reader.refuse(own, "a tag is a text", 'Write tags = { thickness = "stated paper 2.2" }, and quote a key with dots')
+        reader.refuse(own, "a tag must be a string", 'Use e.g. tags = { thickness = "stated paper 2.2" }; quote keys that contain dots')
     else:
         reader.tags.update({join(where, key): tag for key, tag in tags.items()})
     return {key: value for key, value in raw.items() if key != TAGS}

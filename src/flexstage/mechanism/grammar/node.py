@@ -1,7 +1,7 @@
-"""Grammar nodes of single values: number, vector, direction, matrix, text, choice.
+"""Grammar nodes of single values: number, vector, direction, matrix, string, choice.
 
-Each node class has the operations `read` and `write` for files, `schema`, `check` for the kind of a value, and `members`. The operation
-`parse` reads the text of an assignment.
+Each node class has the operations `read` and `write` for files, `schema` for editors, and `members` and `numbers` for addresses and checks.
+The operation `parse` reads the string of an assignment.
 """
 
 from __future__ import annotations
@@ -59,11 +59,11 @@ class EnoughError(Exception):
 
 @dataclass
 class Reader:
-    """State of reading a file: collects errors, tags by address, and sources of catalogue entries.
+    """State while a file is read: errors, tags by address, and sources of catalogue entries.
 
     `tagged`: tables may have tags; otherwise `tags` is an ordinary name. `numbers` are the named numbers for formulas (None: no formulas
-    allowed). `formulas` are the formulas read, by address. `bounds` are errors of numbers outside their bounds, which are reported when the
-    description is checked.
+    allowed). `formulas` contains the formulas that were read, by address. `bounds` are errors of numbers outside their bounds, which are
+    reported when the description is checked.
     """
 
     tagged: bool = True
@@ -105,7 +105,7 @@ class Reader:
 
 @dataclass
 class Writer:
-    """State of writing a file: collects errors. Values that have a formula, by address, are written as formulas."""
+    """State while a file is written: errors, and formulas by address. A value with a formula is written as the formula."""
 
     findings: list[Finding] = field(default_factory=list)
     formulas: Mapping[str, str] = field(default_factory=dict)
@@ -125,7 +125,7 @@ class Writer:
 
 @dataclass
 class Definitions:
-    """Schemas of classes by name, for schema references, and the catalogue for `like`."""
+    """Schemas of classes by name, for schema references. `tagged`: tables may have tags. `formulas`: numbers may be formulas."""
 
     tagged: bool = True
     formulas: bool = False
@@ -136,14 +136,14 @@ class Node:
     """Kind of a value, with default operations for files, addresses and checks."""
 
     single: ClassVar[bool] = False
-    """Whether a single text can specify the value, as in an assignment."""
+    """Whether a single string can specify the value, as in an assignment."""
     components: ClassVar[bool] = False
     """Whether the members have the names x, y, z, rx, ry, rz."""
     shown: ClassVar[str] = "{ ... }"
 
     @property
     def example(self) -> str:
-        """Example text for a file."""
+        """Example as written in a file."""
         return self.shown
 
     @property
@@ -180,7 +180,7 @@ class Node:
         return key
 
     def parse(self, text: str, where: str) -> Any:
-        """Return the value of an assignment's text (`1.4 mm`, `x`, `steel`); raises `DesignError` at `where`."""
+        """Return the value of an assignment's string (`1.4 mm`, `x`, `steel`); raises `DesignError` at `where`."""
         if not self.single:
             raise refuse(where, "it has several values", "Set one of them, e.g. its x")
         reader = Reader()
@@ -211,7 +211,7 @@ class NumberNode(Node):
 
     @property
     def example(self) -> str:
-        """Example text of a file."""
+        """Example as written in a file."""
         return self.quantity.example if self.quantity is RATIO else f'"{self.quantity.example}"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
@@ -243,7 +243,7 @@ class NumberNode(Node):
         return _float(raw, where)
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Return the formula, or the shortest text that is read back to the same bits; for a ratio, a number."""
+        """Return the formula, or the shortest string that is read back to the same bits; for a ratio, a number."""
         require_single(value, where)
         if where in writer.formulas:
             return writer.formulas[where]
@@ -325,11 +325,11 @@ class NamedNode(Node):
         return reader.numbers.values.get(where.partition(".")[2], BAD) if reader.numbers is not None else BAD
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
-        """Return the formula, or the shortest text in the number's unit that is read back to the same bits."""
+        """Return the formula, or the shortest string in the number's unit that is read back to the same bits."""
         return self.child(value, "value").write(value.value, where, writer)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """Return the schema of a number, a text with a unit, or a formula."""
+        """Return the schema of a number, a string with a unit, or a formula."""
         texts = [{"type": "string", "pattern": pattern} for pattern in (_WITH_UNIT, _FORMULA)]
         said = 'named number for formulas: "26 mm", a ratio, or a formula of other named numbers, "arm / 2"'
         return {"anyOf": [{"type": "number"}, *texts], "description": said}
@@ -384,11 +384,11 @@ class VectorNode(RowNode):
 
     @property
     def example(self) -> str:
-        """Example text of a file."""
+        """Example as written in a file."""
         return f"[{', '.join(item.example for item in self.items)}]"
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """Return the schema of a JSON array of texts."""
+        """Return the schema of a JSON array of strings."""
         return row_schema([item.schema(definitions) for item in self.items])
 
     @property
@@ -414,7 +414,7 @@ class DirectionNode(VectorNode):
 
     @property
     def example(self) -> str:
-        """Example text for a file: a direction by name."""
+        """Example as written in a file: a direction by name."""
         return '"x"'
 
     @property
@@ -467,12 +467,12 @@ class MatrixNode(VectorNode):
 
     @property
     def example(self) -> str:
-        """Example text of a file."""
+        """Example as written in a file."""
         return f"[{self.items[0].example}, ...]"
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
         """Return the schema of six rows."""
-        said = f"6x6 {self.name} about the centre, rows x, y, z, rx, ry, rz; zero without unit"
+        said = f"6x6 {self.name} about the centre, rows x, y, z, rx, ry, rz; zeros have no unit"
         return super().schema(definitions) | {"description": said}
 
     def members(self, value: Any) -> Iterator[tuple[str, Node, Any]]:
@@ -531,17 +531,17 @@ class FlagNode(Node):
 
 @dataclass(frozen=True)
 class TextNode(Node):
-    """Text: a name or a remark."""
+    """String: a name or a remark."""
 
     single: ClassVar[bool] = True
     shown: ClassVar[str] = '"a name"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Return the text."""
-        return raw if isinstance(raw, str) else reader.refuse(where, f"must be a text (got {kind(raw)})", "Put it in quotes")
+        """Return the string."""
+        return raw if isinstance(raw, str) else reader.refuse(where, f"must be a string (got {kind(raw)})", "Put it in quotes")
 
     def write(self, value: Any, where: str, writer: Writer) -> str:
-        """Return the text."""
+        """Return the string."""
         return whole_text(value, where)
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
@@ -565,7 +565,7 @@ class ChoiceNode(Node):
 
     @property
     def example(self) -> str:
-        """Example text of a file."""
+        """Example as written in a file."""
         return f'"{next(iter(self.words))}"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
@@ -589,32 +589,32 @@ class ChoiceNode(Node):
 
 @dataclass(frozen=True)
 class AmountNode(Node):
-    """Text with a number and its unit, or a percentage; another field of the file determines the quantity."""
+    """String with a number and its unit, or a percentage; another field of the file determines the quantity."""
 
     shown: ClassVar[str] = '"1.4 mm"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Return the text or the number unchanged."""
+        """Return the string or the number unchanged."""
         if isinstance(raw, str) or is_bare(raw):
             return raw
         return reader.refuse(where, f"must be a number with its unit (got {kind(raw)})", f"Use e.g. {self.shown}")
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
-        """Return the schema of a text with a unit, or a number."""
-        return {"anyOf": [{"type": "number"}, {"type": "string", "pattern": _WITH_UNIT}], "description": "with its unit, or in percent"}
+        """Return the schema of a string with a unit, or a number."""
+        return {"anyOf": [{"type": "number"}, {"type": "string", "pattern": _WITH_UNIT}], "description": "with a unit, or in percent"}
 
 
 @dataclass(frozen=True)
 class TextsNode(Node):
-    """One text, or a list of texts."""
+    """One string, or a list of strings."""
 
     shown: ClassVar[str] = '["a name", "another"]'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Return a tuple of the texts."""
+        """Return a tuple of the strings."""
         texts = [raw] if isinstance(raw, str) else raw
         if not isinstance(texts, list) or not texts:
-            return reader.refuse(where, f"must be one or several texts (got {kind(raw)})", "Put it in quotes, several in brackets")
+            return reader.refuse(where, f"must be one or several strings (got {kind(raw)})", "Put each in quotes, several in brackets")
         return every([reader.read(TextNode(), text, where) for text in texts])
 
     def schema(self, definitions: Definitions) -> dict[str, Any]:
@@ -648,7 +648,7 @@ def kind(raw: Any) -> str:
 
 
 def short(raw: Any) -> str:
-    """Return the text of a file's value, truncated if it is long."""
+    """Return a file's value as a string, truncated if it is long."""
     text = str(raw)
     return text if len(text) <= 40 else f"{text[:40]}..."
 
@@ -678,11 +678,11 @@ def meaning(record: type) -> str:
 
 
 def whole_text(value: str, where: str) -> str:
-    """Return the text unchanged; raises `DesignError` at `where` if a file cannot contain it."""
+    """Return the string unchanged; raises `DesignError` at `where` if a file cannot contain it."""
     try:
         value.encode()
     except UnicodeEncodeError:
-        raise refuse(where, "the text has half a character (a lone surrogate)", "Rewrite it") from None
+        raise refuse(where, "the string contains an incomplete character (a lone surrogate)", "Rewrite it") from None
     return value
 
 

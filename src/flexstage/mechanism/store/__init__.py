@@ -41,7 +41,7 @@ __all__ = [
 def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
     """Read a design file and return the description.
 
-    Raises `DesignError` with all errors of the file; with `checked`, also with those of the description (see `checks.check`). Relative
+    Raises `DesignError` with all errors of the file; with `checked`, also with errors of the description (see `checks.check`). Relative
     paths of imported solids and of parts' files are relative to the file's folder. The description has absolute paths.
 
     >>> import tempfile
@@ -56,7 +56,7 @@ def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
 def loads(text: str, *, where: str = "text", checked: bool = True, folder: Path | None = None) -> Mechanism:
     """Read the text of a design file and return the description.
 
-    `where` is its name in errors. Relative paths are relative to `folder`. `checked` is as for `load`.
+    `where` is the name of the text in error messages. Relative paths are relative to `folder`. `checked` is as for `load`.
 
     >>> loads("format = 'flexstage 1'; name = 'empty'".replace("; ", chr(10)), checked=False).name
     'empty'
@@ -86,8 +86,8 @@ def dump(mechanism: Mechanism, path: str | os.PathLike[str], comments: Mapping[s
 def dumps(mechanism: Mechanism, comments: Mapping[str, str] | None = None) -> str:
     """Return the text of a description's design file.
 
-    Numbers are the shortest texts in the display units that are read back to the same bits. `comments`, by address (`parts.neck`, "" for
-    the whole file), are written above tables and values. Raises `DesignError` for batches and complex numbers.
+    Numbers are written as the shortest strings in display units that are read back to the same bits. `comments`, by address (`parts.neck`,
+    "" for the whole file), are written above tables and values. Raises `DesignError` for batches and complex numbers.
 
     >>> print(dumps(Mechanism("empty"), {"": "Nothing yet."}), end="")
     # Nothing yet.

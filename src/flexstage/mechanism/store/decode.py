@@ -131,7 +131,7 @@ class _Files:
         path, here = (Path(self.where).parent / item.file).resolve(), Path(self.where).resolve()
         address = f"{STAGES}.{name}.file"
         if path in (here, *self.above):
-            what = "the stage is its own file" if path == here else f"circular reference of this file and {item.file}"
+            what = "the stage would contain itself" if path == here else f"circular reference of this file and {item.file}"
             reader.refuse(address, what, "Use the file of another stage")
             return None
         try:
@@ -202,7 +202,7 @@ def dotted(where: str, table: dict[str, Any]) -> dict[str, Any]:
     """
     entries = list(_entries(table))
     keys = [key for key, _ in entries]
-    require(Finding(f"{where}.{key}", "it is given twice", "Keep one") for key in dict.fromkeys(keys) if keys.count(key) > 1)
+    require(Finding(f"{where}.{key}", "specified twice", "Keep one") for key in dict.fromkeys(keys) if keys.count(key) > 1)
     return dict(entries)
 
 
@@ -219,7 +219,7 @@ def catalogue_of(name: Any, where: str) -> Catalogue:
     if name is None:
         return shipped_catalogue()
     if not isinstance(name, str):
-        raise refuse(CATALOGUE, f"must be a file (got {kind(name)})", 'Use catalogue = "lab.toml"')
+        raise refuse(CATALOGUE, f"must be a file name (got {kind(name)})", 'Use catalogue = "lab.toml"')
     tree = parse_toml(read_text(Path(where).parent / name), name)
     known = {section.name: dict for section in SECTIONS} | {"sources": str}
     for key, value in tree.items():

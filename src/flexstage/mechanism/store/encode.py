@@ -1,4 +1,4 @@
-"""Encoding of a description as the tree of a design file: tables, lists, texts and numbers, in the order of the fields."""
+"""Encoding of a description as the tree of a design file: tables, lists, strings and numbers, in the order of the fields."""
 
 from __future__ import annotations
 

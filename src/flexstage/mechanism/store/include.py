@@ -24,7 +24,7 @@ _LIST = 'Use a list of files: include = ["stock.toml"]'
 class Included:
     """Tree of a design that contains the entries of included files.
 
-    `origin` is the file of each included entry (`parts.neck`), and the text of the file.
+    `origin` gives the file of each included entry (`parts.neck`) and the text of this file.
     """
 
     tree: dict[str, Any]
@@ -83,7 +83,7 @@ def _entries(name: str, where: str, above: tuple[Path, ...]) -> tuple[_Entries, 
     """Entries of an included file by address, with their file and text, and the errors of the file."""
     here, path = Path(where).resolve(), (Path(where).parent / name).resolve()
     if path in (here, *above):
-        what = f"{name} is this file" if path == here else f"circular reference of this file and {name}"
+        what = f"{name} would include itself" if path == here else f"circular reference of this file and {name}"
         return {}, [Finding(INCLUDE, what, "Remove one include")]
     try:
         text = read_text(path)
@@ -105,8 +105,8 @@ def _entries(name: str, where: str, above: tuple[Path, ...]) -> tuple[_Entries, 
 def _strange(raw: dict[str, Any]) -> Iterator[Finding]:
     """Errors of an included file: wrong or missing format, unsupported sections."""
     if raw.get("format") != FORMAT:
-        result = f"found {kind(raw['format'])}" if "format" in raw else "the file does not say its format"
-        yield Finding("format", result, f'The first line of an included file is format = "{FORMAT}"')
+        result = f"found {kind(raw['format'])}" if "format" in raw else "format missing"
+        yield Finding("format", result, f'Begin an included file with format = "{FORMAT}"')
         return
     for key, value in raw.items():
         if key not in (*SECTIONS, *_BESIDE):

@@ -27,7 +27,7 @@ else:
 
 
 def patch(text: str, values: Mapping[str, Any], *, where: str = "text") -> str:
-    """Return a design file's text with other values at some addresses: texts with units, or SI numbers.
+    """Return a design file's text with new values by address: strings with units, or SI numbers.
 
     Comments are preserved. Tags of the old values are removed, because they do not apply to the new values.
 
@@ -68,7 +68,7 @@ def _write(text: str, portions: list[list[_Step]], target: Mechanism, where: str
     for steps in portions:
         text = _patch_steps(text, steps)
     if read_design(text, where) != target:
-        raise refuse(where, "its table layout does not allow changes of single values", "Rewrite it with dump")
+        raise refuse(where, "its table layout does not allow changes of single values", "Rewrite the file with dump")
     return text
 
 
@@ -79,7 +79,7 @@ def _patch_steps(text: str, steps: list[_Step]) -> str:
             _untag(document, mechanism, changed)
             _set(document, mechanism, changed, address)
         except tomlkit.exceptions.TOMLKitError as error:
-            raise refuse(address, f"the file cannot be changed there: {error}", "Rewrite it with dump") from None
+            raise refuse(address, f"the file cannot be changed there: {error}", "Rewrite the file with dump") from None
     return tomlkit.dumps(document)
 
 

@@ -16,15 +16,15 @@ from flexstage.mechanism.store.include import INCLUDE
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON Schema of a design file. Each class is a definition; quantities are texts with a unit as in the example.
+    """Return the JSON Schema of a design file. Each class is a definition; quantities are strings with a unit as in the example.
 
     >>> schema()["properties"]["max_mode_frequency"]["examples"]
     ['4 kHz']
     """
     result = schema_of(Mechanism, FORMAT, "flexstage design", formulas=True, tables={STAGES: Mount})
-    said = "Included files with numbers, materials, parts, sensors, units and sources, relative to this file."
+    said = "Files to include, with numbers, materials, parts, sensors, units and sources; paths are relative to this file."
     result["properties"] |= {INCLUDE: {"type": "array", "items": {"type": "string"}, "description": said}}
-    result["properties"] |= {CATALOGUE: {"type": "string", "description": "A file of further materials, actuators and sensors for `like`."}}
+    result["properties"] |= {CATALOGUE: {"type": "string", "description": "File with more materials, actuators and sensors for `like`."}}
     return result
 
 

@@ -26,7 +26,7 @@ KEPT = "-drawn"
 
 @dataclass(frozen=True, eq=False)
 class ReplacementPart:
-    """Compliance matrix that replaces the drawn part named in its `replaces`, at the `links` (addresses in the description)."""
+    """Compliance matrix `given` that replaces a drawn part (named in `given.replaces`) in the `links` (addresses in the description)."""
 
     given: ComplianceMatrix
     links: tuple[str, ...]
@@ -66,10 +66,10 @@ def write_stand_ins(text: str, parts: Mapping[str, ReplacementPart], tag: str, *
             _stand_in(document, name, part, tag)
         after = tomlkit.dumps(document)
     except (tomlkit.exceptions.TOMLKitError, KeyError) as error:
-        raise refuse(where, f"the file cannot be changed: {error}", "Rewrite it with dump") from None
+        raise refuse(where, f"the file cannot be changed: {error}", "Rewrite the file with dump") from None
     result = require_valid(read_design(after, where))
     if any(result.parts.get(name) != part.given for name, part in parts.items()):
-        raise refuse(where, "its table layout does not allow an exchange of parts", "Rewrite it with dump")
+        raise refuse(where, "its table layout does not allow an exchange of parts", "Rewrite the file with dump")
     return after
 
 
@@ -77,7 +77,7 @@ def _clashes(mechanism: Mechanism, parts: Mapping[str, ReplacementPart]) -> list
     drawn = {part.drawn_name for part in parts.values()}
     taken = {name + KEPT: name for name in drawn} | {name: part.drawn_name for name, part in parts.items() if name != part.drawn_name}
     results = [
-        Finding(f"parts.{name}", "the part name is in use", f"Rename it: the calibrated {old} requires the name")
+        Finding(f"parts.{name}", "the part name is in use", f"Rename the part: the calibrated {old} requires this name")
         for name, old in taken.items()
         if name in mechanism.parts
     ]

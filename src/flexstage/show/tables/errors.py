@@ -36,8 +36,8 @@ def drift_table(drift: Drift) -> Table:
 def ground_text(ground: Ground) -> str:
     """State the material of the ground, and its source.
 
-    >>> ground_text(Ground("steel", "as specified")), ground_text(Ground("steel", "all links that stand on it are of it"))
-    ('Ground made of steel', 'Ground taken as steel: all links that stand on it are of it')
+    >>> ground_text(Ground("steel", "as specified")), ground_text(Ground("steel", "material of all links on it"))
+    ('Ground made of steel', 'Ground taken as steel: material of all links on it')
     """
     if ground.material is None:
         return "Ground without expansion"
