@@ -1,4 +1,4 @@
-"""Frequency bands: of the pole search, and of the joint fits of modes."""
+"""Frequency bands of the pole search and of the joint fits of modes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Extent:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Band of one pole search, `low` to `high` in Hz; only poles from `first` to `last` are kept."""
+    """Band of one pole search, `low` to `high` in Hz; only poles from `first` to `last` in Hz are kept."""
 
     low: float
     high: float
@@ -34,7 +34,7 @@ class Sweep:
 
 
 def sweeps(low: float, high: float) -> list[Sweep]:
-    """Divide `low` to `high` in Hz into bands, each up to three times its lower end, with small overlaps.
+    """Divide `low` to `high` in Hz into slightly overlapping bands; each reaches up to three times its lower end.
 
     >>> [(round(band.low), round(band.first), round(band.last), round(band.high)) for band in sweeps(10.0, 200.0)]
     [(10, 10, 27, 31), (24, 27, 74, 84), (65, 74, 200, 200)]

@@ -51,8 +51,8 @@ def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
 def sub_bands(band: Band, pole: complex) -> Array:
     """Divide the cells into groups (c,) by distance from a pole, for `jackknife`.
 
-    One group is within a half-width of the pole. On each side, every further octave of distance is a group. The residual of a wrong model
-    varies over a half-width near the resonance, and over the distance from the resonance further away.
+    One group is within a half-width of the pole. On each side, every further octave of distance is a group. Near the resonance, the
+    residual of a wrong model varies within a half-width; further away, it varies over its distance from the resonance.
 
     >>> from flexstage.experiment.example import POLE, one_mode_band
     >>> sub_bands(one_mode_band()[0], POLE).tolist()

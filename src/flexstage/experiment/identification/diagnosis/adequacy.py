@@ -58,7 +58,7 @@ def few_lines(known: Evidence, band: tuple[float, float], count: int) -> list[Fi
 
 
 def coarse_lines(known: Evidence, poles: Array) -> str | None:
-    """Warn of a line spacing beyond the width of the narrowest mode, at `poles` in Hz.
+    """Warn if the line spacing exceeds the width of the narrowest mode; `poles` in Hz.
 
     Candidates are poles of responses at frequency lines: a mode closer than one line spacing to another mode may be missed. If the line
     spacing equals the half-power bandwidth B = 2 zeta f, a record of n averages lasts about n / B.
@@ -84,7 +84,7 @@ def coarse_lines(known: Evidence, poles: Array) -> str | None:
 
 
 def unsearched_band(known: Evidence, reach: Reach) -> str | None:
-    """Warn of an unsearched part of the requested band.
+    """Warn if part of the requested band is not searched.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record

@@ -22,7 +22,7 @@ _HALVINGS = 40
 class Drive:
     """Excitation of the modes (k,) of a band by the recorded inputs.
 
-    `chance` (k,) is the probability of the observed correlation without excitation by the inputs. `elsewhere` (k,) is the share of the
+    `chance` (k,) is the probability of the observed correlation without excitation by the inputs. `elsewhere` (k,) is the fraction of the
     motion in the half-power band that the inputs do not explain.
     """
 
