@@ -14,7 +14,7 @@ from flexstage.base.number import Array
 _ALIKE, _UNLIKE = 0.9, 0.6
 """Smallest correlation of a channel with the model after a correction, and largest correlation before."""
 _LEFT = 0.25
-"""Residual difference of shapes below which a correction must improve it tenfold."""
+"""Largest difference of shapes after a correction of small effect, relative to the difference before."""
 _SCALED, _ALL_SCALED = 1.5, 3.0
 """Minimum scale of one channel relative to others, and of all relative to the model, whose masses are less certain."""
 _LEAST = 0.02

@@ -123,7 +123,7 @@ class RepeatedModes:
     TABLE: ClassVar[Layout] = Layout(
         "Repeated modes",
         "numbers seen angle",
-        notes=("Repeated modes define only a subspace. The largest angle is that between the subspaces of theory and experiment.",),
+        notes=("Repeated modes define only a subspace. The largest angle is between the subspaces of theory and experiment.",),
     )
 
     numbers: Annotated[tuple[int, ...], Heading("modes")]

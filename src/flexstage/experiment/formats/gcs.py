@@ -81,7 +81,7 @@ def _separator(path: Path, said: Mapping[str, str]) -> str | None:
     if text.isdecimal() and int(text) in _SEPARATORS:
         return _SEPARATORS[int(text)]
     known = ", ".join(map(str, _SEPARATORS))
-    raise refuse(f"{path}: SEPARATOR", f'unknown separator code (got "{text}", expected one of {known})', "Save with blanks (32)")
+    raise refuse(f"{path}: SEPARATOR", f'unknown separator code (got "{text}", expected one of {known})', "Save it with blanks (32)")
 
 
 def _column_findings(path: Path, said: Mapping[str, str], width: int) -> Iterator[Finding]:

@@ -48,9 +48,9 @@ def sweeps(low: float, high: float) -> list[Sweep]:
 def extents(poles: Array, low: float, high: float, *, resolution: Array | float = 0.0, together: float = TOGETHER) -> list[Extent]:
     """Divide poles (k,) in Hz, ascending, into bands for joint fits.
 
-    Two successive poles share a band if they are closer than `together` times the sum of their half-widths. A half-width is -Re(pole), at
-    least the lines' `resolution` in Hz. A band extends 24 half-widths beyond its outer poles, within `low` and `high`. It ends before the
-    next group, at a limit that divides the gap in proportion to the half-widths.
+    Two successive poles share a band if they are closer than `together` times the sum of their half-widths. A half-width is -Re(pole), or
+    the lines' `resolution` in Hz if this is larger. A band extends 24 half-widths beyond its outer poles, within `low` and `high`. It ends
+    before the next group, at a limit that divides the gap in proportion to the half-widths.
 
     >>> found = extents(np.array([-1 + 100j, -1 + 101j, -1 + 200j]), 1.0, 300.0)
     >>> [(round(band.low), round(band.high), band.members) for band in found]

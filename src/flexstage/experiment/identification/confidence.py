@@ -17,7 +17,7 @@ _LINES = 3
 _NEAR, _NEAREST, _BY_CHANCE = (1.5, 4.0), 2.0, 1e-3
 """Neighbourhood of a mode: half-widths, minimum lines per parameter, and probability of a false alarm."""
 SAME = 0.1
-"""Relative power difference below which inputs equal transients."""
+"""Relative power difference below which inputs count as equal to transients."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +44,9 @@ def misfits(band: Band, modal: Modal) -> Array:
     """Compute the residual of the fit near each mode (k,) relative to the band's noise; 1 if not significant.
 
     With noise only, the residual has the same level everywhere, apart from the degrees of freedom that the mode uses. Outputs with coherent
-    noise count once. A residual with a probability below 1/1000 is significant: the mode is then not linear, viscously damped or isolated.
-    Neighbourhoods of 1.5 and of 4 half-widths are tested. The residual of a mode that varies or has unrecorded excitation is largest in the
-    first.
+    noise count once. A residual with a probability below 1/1000 is significant: the mode is then nonlinear, not viscously damped, or not
+    isolated. Neighbourhoods of 1.5 and of 4 half-widths are tested. The residual of a mode that varies or has unrecorded excitation is
+    largest in the first.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit, noise

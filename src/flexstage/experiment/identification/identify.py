@@ -58,7 +58,7 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     are spectra of the records, one for each, which are then not computed again. Tones absent from the inputs are removed from the outputs.
 
     Candidates are the stable poles of pLSCF on H1. Each group of close candidates is then fitted by maximum likelihood to the transform of
-    the whole record, with its transient, without window and leakage. Inputs are assumed exact, and the noise density of outputs to vary
+    the whole record, with its transient, without window and leakage. Inputs are assumed to be exact. The noise density of outputs must vary
     slowly with frequency. Intervals are also valid for noise correlated between outputs (Pintelon & Schoukens 2012, ch. 9 and 10).
 
     If the residual near a mode exceeds noise (probability 1/1000), its intervals are inflated in proportion to the residual, or to the

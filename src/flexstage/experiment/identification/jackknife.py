@@ -14,7 +14,7 @@ _OCTAVES = 6
 
 
 def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
-    """Compute deviations (k,) of poles in Hz, of real and of imaginary part, by omitting one group of cells at a time.
+    """Compute deviations (k,) in Hz of the real and the imaginary part of poles, by omitting one group of cells at a time.
 
     `groups` (c,) are the group numbers of the cells, from 0 to G - 1. The variance is sigma^2 = (G - 1)/G sum |d_g|^2 / 2. The change d_g
     of the pole without group g is a Newton step, -(I - I_g)^-1 s_g. I_g and s_g are the contributions of the group to information and

@@ -210,8 +210,8 @@ class Responses(InNotebook, CheckedFields):
     """Frequency responses of an analyser: H_ij = output i over input j, for e^{+j omega t}.
 
     `frequencies` (f,) in Hz, ascending; `values` (f, outputs, inputs), complex, in output unit over input unit. `coherence` has the same
-    shape, if stored; `window` and `averages` are set if the file specifies them. Raises `DesignError` for duplicate names on one side and
-    for shapes that do not match.
+    shape, if stored; `window` and `averages` are set if the file specifies them. Raises `DesignError` for duplicate names of outputs or of
+    inputs and for shapes that do not match.
 
     >>> one = Responses(np.array([1.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.array([[[2j]]]))
     >>> one.at("S1", "u1").tolist(), one.units

@@ -67,7 +67,7 @@ def response_data_section(seen: Identification) -> Section | None:
     if not found.inputs:
         picture = to_svg(density_figure(found), "measured-densities", "Amplitude density of outputs over frequency, and the modes found")
         return section("Densities", [Picture(picture, "Amplitude densities of the outputs. Dotted: modes found.")])
-    drawn = to_svg(response_matrix_figure(found), "measured-responses", "Responses of outputs to inputs, with the fit over the data")
+    drawn = to_svg(response_matrix_figure(found), "measured-responses", "Responses of outputs to inputs: data and fit")
     caption = "Responses: magnitude, and phase below it. Grey: data (H1); blue: fit. Columns are inputs, rows are outputs."
     cut = max(len(found.outputs), len(found.inputs)) > LARGEST
     caption += f" At most {LARGEST} of {len(found.outputs)} outputs and {len(found.inputs)} inputs are shown." if cut else ""
@@ -94,7 +94,9 @@ def coherence_section(seen: Identification) -> Section | None:
     if known is not None:
         window = known.segments.window.value.capitalize()
         cut = f" Segments of {number(known.segments.seconds, 4)} s, {window} window, {known.averages} averages."
-    caption = "Multiple coherence: fraction of an output's power that all inputs explain together. Ordinary: that one input explains." + cut
+    caption = (
+        "Multiple coherence: fraction of an output's power that all inputs explain. Ordinary coherence: fraction that one explains." + cut
+    )
     return section("Coherence", [Picture(drawn, caption)])
 
 

@@ -33,7 +33,7 @@ def h1(spectra: Spectra) -> Responses:
 
 @check_arguments
 def h2(spectra: Spectra) -> Responses:
-    """Estimate H2 = G_yy G_xy^-1, for noise at the inputs; a least-squares inverse for more outputs than inputs.
+    """Estimate H2 = G_yy G_xy^-1, for noise at the inputs; with more outputs than inputs, the inverse is a least-squares inverse.
 
     H2 has more variance than H1, and noise at the outputs causes an upward bias. Raises `DesignError` for fewer outputs than inputs.
 

@@ -25,9 +25,9 @@ _NEAR = 1e-3
 class Problem(Generic[_State]):
     """Least-squares problem, defined by three functions.
 
-    `state` computes the model's state at parameters (P,), starting from the previous state. `residuals` (n,) of a state are data minus
-    model over the data's standard deviations. `slopes` (n, P) of a state are the model's derivatives by the parameters, over the same
-    deviations. The prior covariance of the parameters is the identity.
+    `state` computes the model's state at parameters (P,), starting from the previous state. `residuals` (n,) of a state are (data -
+    model)/deviation, with the standard deviations of the data. `slopes` (n, P) are the model's derivatives by the parameters, divided by
+    the same deviations. The prior covariance of the parameters is the identity.
     """
 
     state: Callable[[Array, _State], _State]

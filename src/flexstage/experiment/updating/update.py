@@ -419,7 +419,7 @@ def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
             yield f"{name} changed by {abs(moved):.2g} prior deviations of {100.0 * prior:.2g} %: another parameter may be wrong."
     for group in compared.repeated:
         if 0 < group.seen < len(group.numbers):
-            yield f"of the repeated modes {' and '.join(map(str, group.numbers))}, only {group.seen} measured: their mean represents all."
+            yield f"the test shows {group.seen} of the repeated modes {' and '.join(map(str, group.numbers))}; their mean represents all."
 
 
 def _too_few_data(experiment: Identified, rows: tuple[ModeRow, ...], freed: Free, gains: Gains | None) -> list[Finding]:

@@ -18,8 +18,8 @@ _HELD = 2**24
 class Simulated:
     """Simulated samples (n, inputs + outputs) in the record's units, computed in independent blocks that can be read in any order.
 
-    `input_scale` (m,) and `output_scale` convert SI units to the record's units. Short records are cached as a whole, long records only by
-    their last block.
+    `input_scale` (m,) and `output_scale` convert SI units to the record's units. Short records are cached completely; of long records, only
+    the last block is cached.
     """
 
     plan: Plan

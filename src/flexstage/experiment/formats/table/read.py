@@ -108,7 +108,7 @@ def _unknown_names(path: Path, layout: Layout, arrays: Arrays) -> Iterator[Findi
             yield Finding(
                 f"{path}: {meaning}={name}",
                 "in a table, only time and frequencies can be assigned",
-                "Select columns as channels (channels)",
+                "Select other columns as channels (channels)",
             )
         elif not any(matches(each, [name]) for each in layout.names):
             yield Finding(f"{path}: {meaning}={name}", "unknown column", suggest_nearest(name, layout.names))

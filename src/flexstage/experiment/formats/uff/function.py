@@ -83,7 +83,7 @@ class Function:
 
     @property
     def is_response(self) -> bool:
-        """Whether the function is a frequency response: a response or transmissibility by type, or of type 0, complex, over frequency."""
+        """Whether the function is a frequency response: type 4, type 5 (transmissibility), or type 0 if complex and over frequency."""
         return self.kind in (RESPONSE, TRANSMISSIBILITY) or (self.kind == 0 and self.is_complex and self.abscissa.kind == _FREQUENCY_AXIS)
 
     @property

@@ -69,11 +69,11 @@ def common_delay(found: Identified) -> Delay | None:
 
 
 def late_channels(found: Identified) -> Iterator[str]:
-    """Find single channels with another delay than the other inputs or outputs, and yield a warning for each.
+    """Find single channels whose delay differs from the other inputs or outputs, and yield a warning for each.
 
     The delay of each channel is estimated from its residues in three modes or more. A channel is reported if its delay differs from the
     median by more than 6 standard deviations and by more than a tenth of the highest mode's period. Most channels must agree with the
-    median. Half turns in all modes are a wrong sign of the channel, not a delay.
+    median. A phase shift of half a turn in all modes is a wrong sign of the channel, not a delay.
     """
     if len(_groups(found)) < _ENOUGH:
         return

@@ -73,7 +73,7 @@ class Peak:
         """Reason why the peak is not accepted as a mode, with advice.
 
         >>> Peak(120.0, PeakCause.NARROW, 1e-6, None, 0.3125, ("y",)).reason
-        'one line, 0.3125 Hz from the next: a narrower resonance or a tone (2 x 60 Hz: the mains?). Measure with finer lines.'
+        'a single line (spacing 0.3125 Hz): a narrower resonance or a tone (2 x 60 Hz: the mains?). Measure with finer lines.'
         """
         if self.doubt is PeakCause.TONE:
             return f"a tone absent from the inputs{_mains(self)}, or an oscillation without decay in the record. It is removed."
@@ -85,7 +85,7 @@ class Peak:
             return "its damping is too uncertain: noise or a neighbouring mode could cause it. Record longer."
         if self.doubt is PeakCause.WEAK:
             return "noise could cause such a peak. Record longer, or increase the drive."
-        lines = f"one line, {self.resolution:.4g} Hz from the next"
+        lines = f"a single line (spacing {self.resolution:.4g} Hz)"
         return f"{lines}: a narrower resonance or a tone{_mains(self)}. Measure with finer lines."
 
 

@@ -61,9 +61,10 @@ class Band:
 def band_covariances(record: Record, low: float, high: float) -> tuple[list[Band], Responses]:
     """Compute output covariances of all bands from `low` to `high` in Hz by block, and the outputs' amplitude density in unit/Hz^0.5.
 
-    Each block is transformed. The inverse transform of products of lines within a band, tapered at the ends, is the band's covariance
-    R(l) = E[y(n + l) y(n)^H]. This is equivalent to mixing and decimation. R is divided by 1 - l/N, the share of the block's N samples
-    available at lag l. Outputs are divided by their root mean squares. The floor's density must be smooth only within each band.
+    Each block is transformed. The inverse transform of products of lines within a band, tapered at the ends, is the band's covariance R(l)
+    = E[y(n + l) y(n)^H]. This is equivalent to mixing and decimation. R is divided by 1 - l/N, the fraction of the block's N samples
+    available at lag l. Outputs are divided by their root mean squares. The density of the floor motion must be smooth within each band
+    only.
     """
     chosen = record.select([channel.name for channel in record.outputs])
     size = record.length // BLOCKS

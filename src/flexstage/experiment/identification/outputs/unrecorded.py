@@ -31,9 +31,9 @@ _UNSCALED = (
 def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     """Identify the modes of a stage under floor excitation from outputs only: `shaken_modes`, band by band, with 95 % intervals.
 
-    The density of the exciting forces must be smooth within each band (frequency ratio 1.4). Repeated modes require as many independent
-    force directions. A mode is reported if its half-power width differs from zero by 6.1 standard deviations, which noise reaches once in
-    1e9. Steady tones are removed first. A resonance narrower than the line spacing of a block cannot be distinguished from a tone.
+    The density of the exciting forces must be smooth within each band (frequency ratio 1.4). Repeated modes require excitation in as many
+    independent directions. A mode is reported if its half-power width differs from zero by 6.1 standard deviations, which noise reaches
+    once in 1e9. Steady tones are removed first. A resonance narrower than the line spacing of a block cannot be distinguished from a tone.
     Participations are unknown: the result has no inputs. Raises `DesignError` for several records, and for a record that is too short.
     """
     require(_floor_findings(records))
