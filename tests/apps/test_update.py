@@ -66,7 +66,10 @@ def test_tables_say_what_the_test_tells(recorded: Command) -> None:
         (("--parameters", "steel.yield_stress", "-o", "u.toml"), "it has no effect on the compared frequencies"),
         (("--parameters", "neck.thickness", "--prior", "200 %", "-o", "u.toml"), "--prior: no relative standard deviation (got 200 %"),
         (("--parameters", "neck.thickness", "--model-error", "0.1", "--model-error", "two", "-o", "u.toml"), "--model-error"),
-        (("--parameters", "neck.thickness, neck.width, steel.density, steel.young, pole_neck.thickness", "-o", "u.toml"), "5 free parameters"),
+        (
+            ("--parameters", "neck.thickness, neck.width, steel.density, steel.young, pole_neck.thickness", "-o", "u.toml"),
+            "5 free parameters",
+        ),
     ],
 )
 def test_bad_input_ends_with_code_2_and_writes_nothing(recorded: Command, tmp_path: Path, arguments: tuple[str, ...], said: str) -> None:

@@ -176,7 +176,9 @@ def test_too_few_gauges_are_told(record: Record) -> None:
 
 def test_names_that_are_none_of_the_stage(record: Record) -> None:
     renamed = replace(record, channels=tuple(Channel(f"probe {each.name}", each.unit, each.role) for each in record.channels))
-    with pytest.raises(DesignError, match=r"probe S1: unknown output; record and stage have no output in common\. Use S1, S2, S3, S4, S5 or S6"):
+    with pytest.raises(
+        DesignError, match=r"probe S1: unknown output; record and stage have no output in common\. Use S1, S2, S3, S4, S5 or S6"
+    ):
         compare(STAGE, identified(renamed))
 
 

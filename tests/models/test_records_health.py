@@ -284,7 +284,9 @@ def test_a_drive_that_rests_is_no_hammer() -> None:
 def test_a_frequency_that_stands_twice_is_told_by_its_lines() -> None:
     frequencies = np.array([1.0, 2.0, 2.0, 3.0])
     twice = Responses(frequencies, CHANNELS[3:4], CHANNELS[:1], np.ones((4, 1, 1), complex))
-    assert [fault.finding.what for fault in responses_findings(twice)] == ["its frequencies do not increase: 2 Hz occurs twice, as values 2 and 3"]
+    assert [fault.finding.what for fault in responses_findings(twice)] == [
+        "its frequencies do not increase: 2 Hz occurs twice, as values 2 and 3"
+    ]
 
 
 def test_statistics_do_not_depend_on_blocks() -> None:
