@@ -71,7 +71,7 @@ def test_identify_without_a_stage_at_a_stated_resolution(recorded: Command, tmp_
     assert "platform" not in document
     assert len(document["modes"]) == 6
     assert document["spectra"]["resolution_hz"] == 2.0
-    for text in ("What was measured", "20 s at 1024 Hz", "Modes found", "95 % interval", "Shapes of the modes"):
+    for text in ("Recorded data", "20 s at 1024 Hz", "Modes found", "95 % interval", "Shapes of the modes"):
         assert text in ended.out
 
 
@@ -188,7 +188,7 @@ FAULTS: dict[str, tuple[Callable[[Record], Record], str, str]] = {
     "gap": (changed("S2", with_gap), "S2: 100 of 8192 samples are not numbers", "gaps"),
     "dead": (changed("S2", lambda values: 0.0 * values), "S2: it is zero throughout", "dead"),
     "clipped": (changed("S2", lambda values: np.clip(values, -0.5 * np.std(values), 0.5 * np.std(values))), "S2: it is clipped", "clipped"),
-    "unit": (without_unit, "S3: no unit is stated", "units"),
+    "unit": (without_unit, "S3: no unit is specified", "units"),
     "dependent": (copied_input, "is explained by the other inputs", "dependent"),
     "name": (renamed, "S9: unknown output", "names"),
 }
@@ -237,10 +237,10 @@ def test_all_files_are_looked_at(flexstage: Command, tmp_path: Path, record: Rec
     [
         (("nowhere.uff",), "file not found"),
         (("stage.toml",), "stage.toml"),
-        (("record.uff", "--accept-fault", "everything"), '"everything" is none of truncated, gaps'),
-        (("record.uff", "--kind", "film"), '"film" is none of record, responses'),
+        (("record.uff", "--accept-fault", "everything"), "--accept-fault everything: unknown word. Use truncated, gaps"),
+        (("record.uff", "--kind", "film"), "--kind film: unknown word. Use record or responses"),
         (("record.uff", "--kind", "responses"), "record.uff"),
-        (("record.uff", "--units", "um"), "names no channel and unit"),
+        (("record.uff", "--units", "um"), "channel or unit missing"),
         (("record.uff", "--rate", "fast"), "--rate"),
         (("record.uff", "--rate", "0 Hz"), "--rate"),
         (("record.uff", "--band", "200 Hz", "100 Hz"), "is no band"),

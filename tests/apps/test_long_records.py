@@ -83,7 +83,7 @@ def test_ten_minutes_of_twelve_channels_at_20_khz_take_less_than_a_gigabyte(tmp_
     peak = re.search(r"peak (\d+) kB", told)
     assert peak is not None
     assert int(peak[1]) < 1_000_000
-    for step in ("looking at the record", "spectra", "finding modes", "left"):
+    for step in ("checking the record", "spectra", "finding modes", "left"):
         assert step in told
 
 

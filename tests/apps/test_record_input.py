@@ -55,7 +55,7 @@ def refused(ended: Ended, said: str) -> None:
         ("missing.uff", None, "missing.uff: file not found"),
         ("folder", None, "folder: it is a folder"),
         ("empty.h5", b"", "empty.h5: it is empty"),
-        ("junk.uff", np.random.default_rng(0).bytes(20_000), "junk.uff: it is neither text nor a known form of record"),
+        ("junk.uff", np.random.default_rng(0).bytes(20_000), "junk.uff: it is neither text nor in a supported format"),
         ("junk.h5", b"\x89HDF\r\n\x1a\n" + np.random.default_rng(0).bytes(20_000), "junk.h5: it cannot be read as HDF5"),
         (
             "junk.mat",
@@ -102,13 +102,13 @@ def test_outputs_that_cannot_be_written_are_refused(
     ("arguments", "said"),
     [
         (("identify", "record.uff", "./record.uff"), "it is given 2 times"),
-        (("identify", "record.uff", "--array", "sample=u"), "--array sample=u: this says of no array what it is: samples, time, rate"),
+        (("identify", "record.uff", "--array", "sample=u"), "--array sample=u: unknown meaning or no array (known: samples, time, rate"),
         (("identify", "record.uff", "--array", "samples=u"), "samples=u: universal files have no named arrays"),
         (("identify", "record.uff", "--band", "100 Hz", "100.2 Hz"), "too few lines from 100 to 100.2 Hz"),
         (("identify", "record.uff", "--band", "100 Hz", "106 Hz"), "too few lines from 100 to 106 Hz"),
         (("identify", "record.uff", "--band", "0 Hz", "0.1 Hz"), "the data reach from"),
         ((*UPDATE, "record.uff", "--gain-error", "200 %"), "--gain-error"),
-        (("rig", "stage.toml", "--seconds", "2", "-o", "new.uff", "--resolution", "1 m"), "stay within half a step of 1e+06 um"),
+        (("rig", "stage.toml", "--seconds", "2", "-o", "new.uff", "--resolution", "1 m"), "are below half a step of 1e+06 um"),
     ],
 )
 def test_questions_without_an_answer_are_refused(recorded: Command, tmp_path: Path, arguments: tuple[str, ...], said: str) -> None:

@@ -66,7 +66,7 @@ def test_every_option_is_heard(flexstage: Command, tmp_path: Path) -> None:
         input_quantity=InputQuantity.VOLTAGE,
     )
     np.testing.assert_array_equal(record(tmp_path / "record.h5").values, fs.experiment.rig(stage, fs.mapped(stage), setup).values)
-    assert "slowest amplifier or gauge 122.4 Hz" in " ".join(ended.out.split())
+    assert "lowest bandwidth of amplifiers and gauges 122.4 Hz" in " ".join(ended.out.split())
 
 
 def test_the_table_gives_the_rms_to_expect(flexstage: Command, tmp_path: Path) -> None:

@@ -49,7 +49,7 @@ def test_update_writes_a_new_file_and_a_document(recorded: Command, tmp_path: Pa
 def test_tables_say_what_the_test_tells(recorded: Command) -> None:
     ended = recorded("update", "stage.toml", "--record", "record.uff", *FREE, "-o", "updated.toml")
     assert ended.code == 0, ended.err
-    for title in ("Numbers after the test", "Theory and test", "Correlations after the test", "Identifiable combinations"):
+    for title in ("Parameters after the test", "Theory and test", "Correlations after the test", "Identifiable combinations"):
         assert title in ended.out
     assert "identified" in ended.out
     assert recorded("check", "updated.toml").code == 0
@@ -63,10 +63,13 @@ def test_tables_say_what_the_test_tells(recorded: Command) -> None:
         (("--parameters", "neck.thicknes", "-o", "u.toml"), "Use thickness"),
         (("--parameters", "front.thickness", "-o", "u.toml"), "Write horizontal/front.thickness or vertical/front.thickness"),
         (("--parameters", "platform.mass", "-o", "u.toml"), "the body's mass follows from its solids"),
-        (("--parameters", "steel.yield_stress", "-o", "u.toml"), "it has no effect on the frequencies compared"),
+        (("--parameters", "steel.yield_stress", "-o", "u.toml"), "it has no effect on the compared frequencies"),
         (("--parameters", "neck.thickness", "--prior", "200 %", "-o", "u.toml"), "--prior: no relative standard deviation (got 200 %"),
         (("--parameters", "neck.thickness", "--model-error", "0.1", "--model-error", "two", "-o", "u.toml"), "--model-error"),
-        (("--parameters", "neck.thickness, neck.width, steel.density, steel.young, pole_neck.thickness", "-o", "u.toml"), "5 free numbers"),
+        (
+            ("--parameters", "neck.thickness, neck.width, steel.density, steel.young, pole_neck.thickness", "-o", "u.toml"),
+            "5 free parameters",
+        ),
     ],
 )
 def test_bad_input_ends_with_code_2_and_writes_nothing(recorded: Command, tmp_path: Path, arguments: tuple[str, ...], said: str) -> None:

@@ -175,7 +175,7 @@ def test_a_long_record_is_read_in_pieces():
 
 
 def test_a_record_too_short_is_refused_with_both_numbers():
-    with pytest.raises(DesignError, match=r"the record lasts 40 s and a segment 60 s"):
+    with pytest.raises(DesignError, match=r"the record is shorter than a segment \(40 s and 60 s\)"):
         spectra(made(1)[0], Segments(60.0))
 
 

@@ -134,7 +134,7 @@ def test_a_gauge_the_wrong_way_round_shows(record: Record) -> None:
     values[:, record.names.index("S4")] *= -1.0
     again = compare(STAGE, identified(replace(record, samples=InMemory(values))))
     assert min(row.assurance or 0.0 for row in again.modes) < 0.9
-    assert any("assurance" in text or "not found" in text for text in again.data_warnings)
+    assert any("MAC" in text or "not found" in text for text in again.data_warnings)
 
 
 def test_fea_stands_beside_them(experiment: Identified, compared: Compared) -> None:
@@ -176,7 +176,9 @@ def test_too_few_gauges_are_told(record: Record) -> None:
 
 def test_names_that_are_none_of_the_stage(record: Record) -> None:
     renamed = replace(record, channels=tuple(Channel(f"probe {each.name}", each.unit, each.role) for each in record.channels))
-    with pytest.raises(DesignError, match=r"probe S1: unknown output; no output of the record is known\. Use S1, S2, S3, S4, S5 or S6"):
+    with pytest.raises(
+        DesignError, match=r"probe S1: unknown output; record and stage have no output in common\. Use S1, S2, S3, S4, S5 or S6"
+    ):
         compare(STAGE, identified(renamed))
 
 
@@ -282,17 +284,17 @@ MISNAMED = {
     "S4 and S1 look exchanged": replace(SOUND, outputs=renamed(SOUND.outputs, S1="S4", S4="S1")),
     "B3 looks inverted": replace(SOUND, participation=times(SOUND.participation.T, 2, -1.0).T),
     "S4 looks inverted": replace(SOUND, shapes=times(SOUND.shapes, 3, -1.0)),
-    "B3 looks scaled: its part in the modes is 2 times": replace(SOUND, participation=times(SOUND.participation.T, 2, 2.0).T),
+    "B3 looks scaled: its modal gains are 2 times": replace(SOUND, participation=times(SOUND.participation.T, 2, 2.0).T),
     "S4 (0.1": replace(SOUND, shapes=times(SOUND.shapes, 3, 0.1)),
-    "looks scaled against the others": replace(SOUND, shapes=times(SOUND.shapes, 0, 1e3)),
-    "look scaled against the others": replace(SOUND, shapes=times(times(times(SOUND.shapes, 3, 1e3), 4, 1e3), 5, 1e3)),
+    "looks scaled relative to the other": replace(SOUND, shapes=times(SOUND.shapes, 0, 1e3)),
+    "look scaled relative to the other": replace(SOUND, shapes=times(times(times(SOUND.shapes, 3, 1e3), 4, 1e3), 5, 1e3)),
     "S1 and S2 look inverted": replace(SOUND, shapes=times(times(SOUND.shapes, 0, -1.0), 1, -1.0)),
     "S1 looks inverted": replace(SOUND, shapes=times(SOUND.shapes, 0, -1.0), participation=times(SOUND.participation.T, 0, -1.0).T),
-    "B6 looks scaled: its part in the modes is 0.001 times": replace(
+    "B6 looks scaled: its modal gains are 0.001 times": replace(
         SOUND, participation=np.concatenate([SOUND.participation[:, :3], 1e-3 * SOUND.participation[:, 3:]], axis=1)
     ),
-    "all gains are 1e+03 times theory's": replace(SOUND, shapes=1e3 * SOUND.shapes),
-    "all gains are 0.001 times theory's": replace(SOUND, participation=1e-3 * SOUND.participation),
+    "all modal gains are 1e+03 times as large": replace(SOUND, shapes=1e3 * SOUND.shapes),
+    "all modal gains are 0.001 times as large": replace(SOUND, participation=1e-3 * SOUND.participation),
 }
 
 
@@ -313,7 +315,7 @@ def test_outputs_and_inputs_are_named_together_each_as_if_the_others_were_right(
     [doubt] = compare(STAGE, two).misnamed
     what, right = doubt.split(": ")
     assert sorted(what.split(" and ")) == ["S1 look exchanged", "S4", "S5 looks inverted"]
-    assert right.startswith("put right, measured shapes are like theory to 1.00")
+    assert right.startswith("after both corrections, the similarity of measured shapes and theory is 1.00")
 
 
 def test_outputs_that_shapes_cannot_doubt_are_named_by_their_part_in_the_modes() -> None:

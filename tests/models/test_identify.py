@@ -218,7 +218,7 @@ def test_trials_fail_when_modes_are_wrong():
 def test_a_motion_taken_as_input_is_told(unit: str, told: bool) -> None:
     plain = one_mode_record()
     driven = replace(plain, channels=tuple(replace(each, unit=unit) if each.role is Role.INPUT else each for each in plain.channels))
-    assert any("taken as input, and a motion: u" in warning for warning in identify(driven).data_warnings) is told
+    assert any("inputs that are motions: u" in warning for warning in identify(driven).data_warnings) is told
 
 
 # --- what is left near a mode ---

@@ -55,7 +55,7 @@ def test_modes_at_uneven_lines_are_those_of_the_truth(lines: str, seconds: float
     assert np.sqrt(np.mean(scores(found) ** 2)) < 2.0  # 6 numbers: chi-square passes that once in 1500
     assert found.delay == pytest.approx(seconds, abs=3e-6)
     assert abs(found.delay - seconds) <= 4.0 * found.delay_deviation
-    told = re.findall(r"come (\S+) ms late \(95 %: \+-(\S+) ms\)", " ".join(identified_table(found).notes))
+    told = re.findall(r"are (\S+) ms late \(95 % interval: \+-(\S+) ms\)", " ".join(identified_table(found).notes))
     expected = [(1e3 * found.delay, 1.96e3 * found.delay_deviation)] if seconds else []
     assert [tuple(map(float, each)) for each in told] == [pytest.approx(each, rel=0.05) for each in expected]
 

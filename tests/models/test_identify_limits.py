@@ -177,7 +177,7 @@ def test_what_noise_hides_is_told_in_numbers() -> None:
     alone = changed(
         values, lambda each: each.__setitem__((slice(None), slice(6, 12)), np.random.default_rng(3).standard_normal((len(each), 6)))
     )
-    assert "narrower than the 1.2 Hz between frequency lines" in identify(alone).data_warnings[0]
+    assert "narrower than the line spacing of 1.2 Hz" in identify(alone).data_warnings[0]
     assert "although inputs explain" not in identify(alone).data_warnings[0]
     assert "no mode can be identified, although inputs explain 39.5%" in identify(record(truth(), 0, seconds=1.0)).data_warnings[0]
 

@@ -99,7 +99,7 @@ def test_two_free_decays_tell_both_modes_of_a_pair_and_one_says_that_there_may_b
     assert both.frequencies.round(0).tolist() == [118.0, 118.0, 231.0]
     assert np.max(np.abs(errors(both, PAIR))) < 4.5
     np.testing.assert_allclose(both.frequencies, PAIR.frequencies, rtol=1e-4)
-    assert any("outputs are largest: 0.1" in each for each in both.data_warnings)
+    assert any("outputs are largest: at 0.1" in each for each in both.data_warnings)
     one = identification((free(truth((118.0, 166.0, 231.0), outputs=3, inputs=3), 0),), DECAY).found
     assert one.frequencies.round(0).tolist() == [118.0, 166.0, 231.0]
     assert any("only decay 1 was driven" in each for each in one.data_warnings)
@@ -110,7 +110,7 @@ def test_what_moved_the_stage_is_never_guessed() -> None:
     with pytest.raises(DesignError, match="or specify the excitation"):
         usable_measurement([made])
     driven = Record((Channel("u", "um", Role.INPUT), *made.channels[1:]), made.rate, made.samples)
-    with pytest.raises(DesignError, match="u: taken for inputs, where none is said to have been recorded"):
+    with pytest.raises(DesignError, match="inputs in a record of unrecorded excitation: u"):
         usable_measurement([driven], requirements=RecordRequirements(unrecorded=True))
     with pytest.raises(DesignError, match=r"wrong number of records \(got 2, expected 1\)"):
         identification((made, made), FLOOR)
@@ -122,7 +122,7 @@ def test_short_records_are_searched_where_their_lines_suffice() -> None:
     made = floor_record(PAIR, 20.0, 1)
     low, _ = identification((made,), Search(excitation=Excitation.FLOOR)).found.band
     assert 120.0 < low < 240.0  # 56 lines of 2 Hz in 0.72 of it, to the next of bands of 1.4
-    with pytest.raises(DesignError, match="between 118 and 119 Hz hold too few lines in a fortieth of 20 s"):
+    with pytest.raises(DesignError, match="between 118 and 119 Hz have too few lines in a block, a fortieth of 20 s"):
         identification((made,), Search(band=(118.0, 119.0), excitation=Excitation.FLOOR))
 
 

@@ -90,15 +90,15 @@ def delayed(values: np.ndarray) -> None:
 PLANTED = {
     zero: (FaultTolerance.DEAD, "S2", "it is zero throughout"),
     constant: (FaultTolerance.DEAD, "S2", "it is constant at 2.5 um"),
-    pulled: (FaultTolerance.DEAD, "S2", "it is frozen from 2.92969 s to 4 s, 2192 of 8192 samples"),
-    faint: (FaultTolerance.DEAD, "S2", "its rms is 1.51e-06 um (others of its kind: 1.51 um)"),
+    pulled: (FaultTolerance.DEAD, "S2", "it is frozen from 2.92969 s to 4 s: 2192 of 8192 samples are equal"),
+    faint: (FaultTolerance.DEAD, "S2", "its rms is 1.51e-06 um (median of similar channels: 1.51 um)"),
     nothing_but_nan: (FaultTolerance.DEAD, "S2", "8092 of 8192 samples are not numbers, the first at 0.0488281 s"),
     clipped: (FaultTolerance.CLIPPED, "S2", "it is clipped: "),
-    clipped_below: (FaultTolerance.CLIPPED, "S2", "least value, -4 um"),
+    clipped_below: (FaultTolerance.CLIPPED, "S2", "lowest value, -4 um"),
     coarse: (FaultTolerance.CLIPPED, "S2", "levels between"),
     broken: (FaultTolerance.GAPS, "S2", "2 of 8192 samples are not numbers, the first at 1 s"),
-    dependent: (FaultTolerance.DEPENDENT, "u3", "100 % of it is explained by the other inputs, u1, u2"),
-    delayed: (FaultTolerance.DEPENDENT, "u3", "of it is explained by the other inputs, u1, u2"),
+    dependent: (FaultTolerance.DEPENDENT, "u3", "100 % of its power is explained by the other inputs, u1, u2"),
+    delayed: (FaultTolerance.DEPENDENT, "u3", "of its power is explained by the other inputs, u1, u2"),
 }
 
 
@@ -179,7 +179,7 @@ def test_a_dead_channel_that_is_left_out_takes_its_gaps_along() -> None:
 def test_units_that_are_missing_or_unknown() -> None:
     channels = (*CHANNELS[:4], Channel("S2", "", Role.OUTPUT), Channel("S3", "furlong", Role.OUTPUT))
     findings = examine(record(sound(), channels)).findings
-    assert [finding.what for finding in findings] == ["no unit is stated", '"furlong" is not a known unit']
+    assert [finding.what for finding in findings] == ["no unit is specified", '"furlong" is not a known unit']
     assert usable_record(record(sound(), channels), frozenset({FaultTolerance.UNITS})).names == CHANNELS_NAMES
 
 
@@ -189,7 +189,7 @@ def test_what_is_wrong_with_all_channels_is_told_once() -> None:
         sound_records([bare])
     (finding,) = refused.value.findings
     assert finding.where.endswith(", ".join(CHANNELS_NAMES))
-    assert finding.what == "no unit is stated"
+    assert finding.what == "no unit is specified"
 
 
 CHANNELS_NAMES = tuple(channel.name for channel in CHANNELS)
@@ -201,7 +201,7 @@ def test_names_and_units_are_held_against_the_stage() -> None:
     faults = examine(whole, STAGE).faults
     assert [(fault.kind, fault.finding.what) for fault in faults] == [
         (FaultTolerance.NAMES, "unknown output"),
-        (FaultTolerance.UNITS, "its unit is V, that of the stage's output m"),
+        (FaultTolerance.UNITS, "wrong unit (got V, expected m as for the stage's output)"),
     ]
     assert usable_record(whole, frozenset({FaultTolerance.NAMES, FaultTolerance.UNITS}), STAGE).names == ("u1", "u2", "u3", "S1", "S3")
 
@@ -226,7 +226,7 @@ def test_too_short_and_too_slow() -> None:
     whole = record(sound())
     assert examine(whole, RecordRequirements(resolution=2.0, averages=8, highest=1023.0)).findings == ()
     short, slow = (fault for fault in examine(whole, RecordRequirements(resolution=1.9, averages=8, highest=1024.0)).faults)
-    assert "4 s give 7.6 averages at a resolution of 1.9 Hz, 8 are required" in short.finding.what
+    assert "too few averages at a resolution of 1.9 Hz (got 7.6 in 4 s, expected 8)" in short.finding.what
     assert "sampled at 2048 Hz, less than twice the highest mode at 1024 Hz" in slow.finding.what
     assert "2621 Hz or more" in slow.finding.advice
 
@@ -284,7 +284,9 @@ def test_a_drive_that_rests_is_no_hammer() -> None:
 def test_a_frequency_that_stands_twice_is_told_by_its_lines() -> None:
     frequencies = np.array([1.0, 2.0, 2.0, 3.0])
     twice = Responses(frequencies, CHANNELS[3:4], CHANNELS[:1], np.ones((4, 1, 1), complex))
-    assert [fault.finding.what for fault in responses_findings(twice)] == ["its frequencies do not rise: 2 Hz occurs twice, lines 2 and 3"]
+    assert [fault.finding.what for fault in responses_findings(twice)] == [
+        "its frequencies do not increase: 2 Hz occurs twice, as values 2 and 3"
+    ]
 
 
 def test_statistics_do_not_depend_on_blocks() -> None:

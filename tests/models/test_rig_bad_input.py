@@ -29,7 +29,7 @@ def told(setup: RigSetup, stage: fs.Mechanism = STAGE) -> str:
     [
         (replace(SOUND, seconds=0.0), ("seconds", "0 s")),
         (replace(SOUND, seconds=-1.0), ("seconds", "-1 s")),
-        (replace(SOUND, seconds=1e-3), ("seconds", "0.001 s at 2048 Hz are 2 samples")),
+        (replace(SOUND, seconds=1e-3), ("seconds", "got 2: 0.001 s at 2048 Hz")),
         (replace(SOUND, seconds=1e15), ("seconds", "samples")),
         (replace(SOUND, rate=0.0), ("rate", "0 Hz")),
         (replace(SOUND, rate=-5.0), ("rate", "-5 Hz")),
@@ -39,13 +39,13 @@ def told(setup: RigSetup, stage: fs.Mechanism = STAGE) -> str:
         (replace(SOUND, drive=NoiseDrive(stroke=0.0)), ("drive.stroke", "0 um")),
         (replace(SOUND, drive=NoiseDrive(stroke=1e-6, voltage=1.0)), ("drive", "stroke and as a voltage")),
         (replace(SOUND, drive=NoiseDrive(actuators=("b1",))), ("actuator b1", "B1")),
-        (replace(SOUND, drive=NoiseDrive(actuators=())), ("actuators", "none is to be driven", "B6")),
+        (replace(SOUND, drive=NoiseDrive(actuators=())), ("actuators", "no actuator is selected", "B6")),
         (replace(SOUND, drive=NoiseDrive(actuators=("B1", "B1"))), ("actuator B1", "2 times")),
         (replace(SOUND, drive=NoiseDrive(band=(100.0, 50.0))), ("band", "100 Hz to 50 Hz")),
         (replace(SOUND, amplifier=Amplifier(bandwidth=0.0)), ("amplifier.bandwidth", "0 Hz")),
         (replace(SOUND, amplifier=Amplifier(bandwidth=10.0, resistance=10.0)), ("amplifier", "both")),
-        (replace(SOUND, amplifier=Amplifier(current=1e-3)), ("B4", "A rms pass the amplifier's 0.001 A")),
-        (replace(SOUND, filter=AntiAlias(order=-1)), ("filter", "order is -1")),
+        (replace(SOUND, amplifier=Amplifier(current=1e-3)), ("B4", "A rms exceed the amplifier's limit of 0.001 A")),
+        (replace(SOUND, filter=AntiAlias(order=-1)), ("filter", "wrong order (got -1)")),
         (replace(SOUND, filter=AntiAlias(corner=0.0)), ("filter.corner", "0 Hz")),
         (replace(SOUND, sensing=Sensing(density=-1e-9)), ("sensing.density", "-1 nm/Hz^0.5")),
         (replace(SOUND, sensing=Sensing(density=1e-5)), ("S1", "half its range of 500 um")),
@@ -69,8 +69,8 @@ def test_a_stage_without_gauges_records_nothing() -> None:
 def test_a_stage_without_damping_is_refused() -> None:
     stage = replace(STAGE, damping=None)
     assert "the design specifies no damping" in told(SOUND, stage)
-    assert "would ring for ever" in told(SOUND, replace(STAGE, damping=ModalDamping(0.0)))
-    assert "can be held" in told(SOUND, replace(STAGE, damping=ModalDamping(1e-8)))
+    assert "would never decay" in told(SOUND, replace(STAGE, damping=ModalDamping(0.0)))
+    assert "vibrations decay too slowly" in told(SOUND, replace(STAGE, damping=ModalDamping(1e-8)))
 
 
 def test_stacks_without_voltage_or_capacitance_are_named() -> None:
@@ -79,7 +79,7 @@ def test_stacks_without_voltage_or_capacitance_are_named() -> None:
         for name, part in STAGE.parts.items()
     }
     stage = replace(STAGE, parts=parts)
-    assert "B1: its stack states no range of voltage" in told(replace(SOUND, input_quantity=InputQuantity.VOLTAGE), stage)
-    assert "B6: its stack states no capacitance" in told(replace(SOUND, amplifier=Amplifier(resistance=10.0)), stage)
+    assert "B1: its stack has no voltage range" in told(replace(SOUND, input_quantity=InputQuantity.VOLTAGE), stage)
+    assert "B6: its stack has no capacitance" in told(replace(SOUND, amplifier=Amplifier(resistance=10.0)), stage)
     assert np.isnan(volts_per_metre(next(part for part in parts.values() if isinstance(part, fs.Piezo))))
     assert plan_test(stage, mapped(stage), SOUND).length == 20_480

@@ -80,14 +80,14 @@ def test_a_loop_closes_on_the_record_of_a_coil() -> None:
 def test_what_no_coil_has_is_refused_by_name() -> None:
     assert "motor: its input is a current or force, not a stroke" in refusal(replace(SETUP, drive=replace(BAND, stroke=1e-6)))
     assert "not a voltage" in refusal(replace(SETUP, input_quantity=InputQuantity.VOLTAGE))
-    assert "output resistance needs a stack" in refusal(replace(SETUP, amplifier=Amplifier(resistance=10.0)))
-    assert "pass the current of -4 A to 4 A" in refusal(replace(SETUP, drive=replace(BAND, current=1.0)))
-    assert "pass the sustained 1.414 A" in refusal(replace(SETUP, drive=replace(BAND, current=2.0)))
+    assert "output resistance requires the capacitance of a stack" in refusal(replace(SETUP, amplifier=Amplifier(resistance=10.0)))
+    assert "exceed the current of -4 A to 4 A" in refusal(replace(SETUP, drive=replace(BAND, current=1.0)))
+    assert "exceed the sustained limit of 1.414 A" in refusal(replace(SETUP, drive=replace(BAND, current=2.0)))
     coil = STAGE.parts["coil"]
     assert isinstance(coil, fs.VoiceCoil)
     coil = replace(coil, peak_current=None, continuous_current=None, temperature_rise=None)
     bare = replace(STAGE, parts={**STAGE.parts, "coil": coil})
-    assert "states no limit" in refusal(SETUP, bare)
+    assert "its sustained limit, which defines the default drive, is unknown" in refusal(SETUP, bare)
     assert rig(bare, MODEL, replace(SETUP, drive=replace(BAND, current=0.01))).length == 25_600
 
 

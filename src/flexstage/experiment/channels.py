@@ -1,4 +1,4 @@
-"""Detection of exchanged, inverted or scaled channels of a test, from the effect of a correction on the modes."""
+"""Detection of exchanged, inverted or scaled channels of a test, by corrections that make modes and model agree better."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ import scipy
 from flexstage.base.number import Array
 
 _ALIKE, _UNLIKE = 0.9, 0.6
-"""Required correlation of a channel with the model after a correction, and its maximum before."""
+"""Smallest correlation of a channel with the model after a correction, and largest correlation before."""
 _LEFT = 0.25
-"""Residual difference of shapes below which a correction must improve it tenfold."""
+"""Largest difference of shapes after a correction of small effect, relative to the difference before."""
 _SCALED, _ALL_SCALED = 1.5, 3.0
 """Minimum scale of one channel relative to others, and of all relative to the model, whose masses are less certain."""
 _LEAST = 0.02
-_BOTH_INVERTED = "look inverted against the others", "with their signs changed"
+_BOTH_INVERTED = "look inverted relative to the other outputs", "with their signs changed"
 _ROUNDS = 5
 _FEWEST = 3
 _MOST_OUTPUTS, _MOST_TOGETHER = 24, 8
@@ -26,15 +26,15 @@ _COMPLETE = 0.95
 """Required similarity of shapes after two corrections together, if one is insufficient."""
 
 Score = Callable[[Array], float]
-"""Similarity of model and measured shapes (p, k), 0 to 1."""
+"""Function that returns the similarity of measured shapes (p, k) to those of the model, 0 to 1."""
 
 
 @dataclass(frozen=True, eq=False)
 class Residues:
-    """Modal gains (groups of modes, outputs, inputs) of the model, `theory`, and of the test, `measured`, in equal units.
+    """Modal gains (groups of modes, outputs, inputs) of the model, `theory`, and of the test, `measured`, in the same units.
 
-    `inputs_known` (m,) marks inputs with convertible units. `direct` (m,) marks inputs in the actuator's own quantity or a force. A voltage
-    is not direct: the gain of the amplifier after it may be unknown.
+    `inputs_known` (m,) marks inputs whose units can be converted. `direct` (m,) marks inputs recorded as the actuator's own quantity or as
+    a force. A voltage is not direct: the gain of the amplifier that follows may be unknown.
     """
 
     outputs: tuple[str, ...]
@@ -47,7 +47,7 @@ class Residues:
 
 @dataclass(frozen=True, eq=False)
 class SuspectedFault:
-    """Suspected fault of outputs, with its correction: output i becomes `factors[i]` times the channel number `order[i]`."""
+    """Suspected fault of outputs, with its correction: `factors[i]` times the channel number `order[i]` replaces output i."""
 
     what: str
     how: str
@@ -56,28 +56,28 @@ class SuspectedFault:
     text: str = ""
 
     def put_right(self, values: Array) -> Array:
-        """Return the values (p, ...) of the outputs after correction."""
+        """Return the corrected values (p, ...) of the outputs."""
         return self.factors[:, None] * values[self.order]
 
     def then(self, other: SuspectedFault) -> SuspectedFault:
-        """Return one correction: this one, followed by `other`."""
+        """Combine two corrections: first this one, then `other`."""
         return SuspectedFault(
-            f"{self.what} and {other.what}", "put right", self.order[other.order], other.factors * self.factors[other.order]
+            f"{self.what} and {other.what}", "after both corrections", self.order[other.order], other.factors * self.factors[other.order]
         )
 
 
 def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Callable[[], Array] | None = None) -> SuspectedFault | None:
-    """Find the correction of `outputs` that makes the measured `shapes` (p, k) similar to the model's, or `None`.
+    """Find the correction of `outputs` that makes the measured `shapes` (p, k) similar to those of the model; `None` without one.
 
-    A correction exchanges two outputs, inverts one or two, or divides all by `scales` (p,). If one correction is insufficient, pairs of
-    corrections are tried, which must give an almost complete match. Of several equally good corrections the first is returned. If
-    equally good pairs differ in their effect, no pair is used. `scales` is called only if an improvement is possible.
+    A correction exchanges two outputs, inverts one or two, or divides all by the values (p,) of `scales()`. If one correction is not
+    sufficient, pairs are tried; the shapes must then match almost completely. The first of several equally good corrections is returned. If
+    equally good pairs have different effects, no pair is used. `scales` is called only if an improvement is possible.
 
     >>> theory = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
     >>> theory = theory / np.linalg.norm(theory, axis=0)
     >>> alike = lambda shapes: float(np.mean(np.sum(theory * shapes, axis=0) ** 2))
     >>> shape_doubt(("S1", "S2", "S3"), theory * [[1.0], [1.0], [-1.0]], alike).text
-    'S3 looks inverted: with its sign changed, measured shapes are like theory to 1.00, as they are to 0.70'
+    'S3 looks inverted: with its sign changed, the similarity of measured shapes and theory is 1.00 (0.70 as recorded)'
     """
     count = len(outputs)
     if count < _FEWEST or count > _MOST_OUTPUTS or not shapes.shape[1]:
@@ -95,7 +95,7 @@ def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: C
     gained, left = best - before, 1.0 - best
     if chosen is None or best < _ALIKE or (gained < 1.0 - _ALIKE and left > _LEFT * (1.0 - before)) or gained < _LEAST:
         return None
-    text = f"{chosen.what}: {chosen.how}, measured shapes are like theory to {best:.2f}, as they are to {before:.2f}"
+    text = f"{chosen.what}: {chosen.how}, the similarity of measured shapes and theory is {best:.2f} ({before:.2f} as recorded)"
     return replace(chosen, text=text)
 
 
@@ -134,18 +134,18 @@ def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[Suspec
     for first, second in pairs:
         order = as_is.copy()
         order[[first, second]] = second, first
-        yield SuspectedFault(f"{outputs[first]} and {outputs[second]} look exchanged", "the other way round", order, one)
+        yield SuspectedFault(f"{outputs[first]} and {outputs[second]} look exchanged", "after exchanging them", order, one)
     wrong = [] if scales is None else [index for index, scale in enumerate(scales) if not 1.0 / _SCALED < scale < _SCALED]
     if wrong and scales is not None:
         listed = ", ".join(f"{outputs[index]} ({scales[index]:.3g} times)" for index in wrong)
         look = "looks" if len(wrong) == 1 else "look"
-        yield SuspectedFault(f"{listed} {look} scaled against the others", "divided by that", as_is, 1.0 / scales)
+        yield SuspectedFault(f"{listed} {look} scaled relative to the other outputs", "after rescaling", as_is, 1.0 / scales)
 
 
 def output_scales(theory: Array, measured: Array) -> Array:
-    """Estimate the scale (p,) of each output's amplitudes (p, groups) in the test relative to the model.
+    """Estimate the scale (p,) of every output: its `measured` amplitudes (p, groups) relative to those of the model.
 
-    The median scale of all outputs is 1. Each group of modes may have its own scale, which is eliminated.
+    The median of the scales is 1. Each group of modes may have a scale of its own, which is eliminated.
 
     >>> theory = np.array([[1.0, 2.0, 1.0], [3.0, 1.0, 2.0], [1.0, 1.0, 3.0]])
     >>> output_scales(theory, theory * [[1.0], [1.0], [1000.0]] / [1.0, 2.0, 7.0]).round(3).tolist()
@@ -161,14 +161,14 @@ def output_scales(theory: Array, measured: Array) -> Array:
 
 
 def gain_doubts(residues: Residues) -> tuple[str, ...]:
-    """Find inputs or outputs that appear exchanged, inverted or scaled, from their gains in the modes.
+    """Find inputs or outputs that appear exchanged, inverted or scaled, from their modal gains.
 
-    If exchanged outputs explain the gains better than exchanged inputs, the outputs are reported. The inputs are then evaluated again
-    with corrected outputs.
+    If exchanged outputs explain the gains better than exchanged inputs, the outputs are reported. The inputs are then tested again with
+    corrected outputs.
 
     >>> theory = np.array([[[1.0, 0.2], [0.1, 1.0]], [[0.3, -1.0], [1.0, 0.5]]])
     >>> gain_doubts(Residues(("S1", "S2"), ("B1", "B2"), theory, theory[:, :, ::-1], *np.ones((2, 2), dtype=bool)))
-    ('B1 and B2 look exchanged: the other way round, their parts in the modes are like theory to 1.00, as they are to 0.23',)
+    ('B1 and B2 look exchanged: after exchanging them, the correlation of their modal gains with theory is 1.00 (0.23 as recorded)',)
     """
     if not residues.inputs:
         return ()
@@ -213,27 +213,27 @@ def _explained(likeness: Array) -> float:
 
 
 def _exchange_doubts(names: tuple[str, ...], likeness: Array, among: Array) -> Iterator[str]:
-    """Channels whose part in the modes matches another's, or is inverted; except those with equal parts in the model."""
+    """Channels whose modal gains match those of another channel, or are inverted; except those with equal gains in the model."""
     order, _ = _assigned(likeness)
     own = np.diag(likeness)
     moved = [index for index in range(len(names)) if order[index] != index and own[index] < _UNLIKE]
     sure = [index for index in moved if abs(likeness[index, order[index]]) > _ALIKE and abs(among[index, order[index]]) < _ALIKE]
     if sure and len(sure) == len(moved):
         listed, best = " and ".join(names[index] for index in sure), min(abs(likeness[index, order[index]]) for index in sure)
-        right = "the other way round" if len(sure) == 2 else ", ".join(f"{names[order[index]]} for {names[index]}" for index in sure)
+        right = "after exchanging them" if len(sure) == 2 else ", ".join(f"{names[order[index]]} as {names[index]}" for index in sure)
         yield (
-            f"{listed} look exchanged: {right}, their parts in the modes are like theory to {best:.2f}, "
-            f"as they are to {float(np.mean(own[sure])):.2f}"
+            f"{listed} look exchanged: {right}, the correlation of their modal gains with theory is {best:.2f} "
+            f"({float(np.mean(own[sure])):.2f} as recorded)"
         )
     inverted = [index for index in range(len(names)) if likeness[index, order[index]] < -_ALIKE]
     if inverted:
         listed = ", ".join(names[order[index]] for index in inverted)
         look = "looks" if len(inverted) == 1 else "look"
-        yield f"{listed} {look} inverted: with the sign changed, the part in the modes is like theory's"
+        yield f"{listed} {look} inverted: with the sign changed, the modal gains agree with theory"
 
 
 def _ratios(theory: Array, measured: Array, known: Array) -> tuple[Array, Array]:
-    """Measured part in the modes of each channel relative to the model, and its significance; both (m,)."""
+    """Measured modal gains of each channel relative to the model, and whether they are significant; both (m,)."""
     sizes = np.linalg.norm(theory, axis=0)
     sure = known & (sizes > 1e-3 * np.max(sizes)) & (np.diag(_correlations(theory, measured)) > _ALIKE)
     return np.linalg.norm(measured, axis=0) / np.maximum(sizes, 1e-300), sure
@@ -242,17 +242,17 @@ def _ratios(theory: Array, measured: Array, known: Array) -> tuple[Array, Array]
 def _common_scale_doubts(ratio: Array, sure: Array) -> Iterator[str]:
     """Common scale of all gains, relative to the model's masses."""
     if np.any(sure) and not 1.0 / _ALL_SCALED < (usual := _nearest_median(ratio[sure])) < _ALL_SCALED:
-        yield f"all gains are {usual:.3g} times theory's: the unit or the scale of all inputs or of all outputs looks wrong"
+        yield f"all modal gains are {usual:.3g} times as large as in theory: the unit or scale of all inputs or of all outputs looks wrong"
 
 
 def _scale_doubts(names: tuple[str, ...], ratio: Array, sure: Array) -> Iterator[str]:
-    """Channels with a part in the modes that differs in scale from the others."""
+    """Channels whose modal gains differ in scale from those of the others."""
     if np.sum(sure) < _FEWEST:
         return
     beside = ratio / _nearest_median(ratio[sure])
     for index in np.flatnonzero(sure):
         if not 1.0 / _SCALED < beside[index] < _SCALED:
-            yield f"{names[index]} looks scaled: its part in the modes is {beside[index]:.3g} times what that of the others leads to"
+            yield f"{names[index]} looks scaled: its modal gains are {beside[index]:.3g} times as large as the other channels suggest"
 
 
 def _nearest_median(ratios: Array) -> float:
@@ -262,6 +262,6 @@ def _nearest_median(ratios: Array) -> float:
 
 
 def normalise(residues: Residues) -> Residues:
-    """Divide the gains of model and test, group by group, by the norm of the model's gains, for equal weight of every mode."""
+    """Divide the gains of model and test in each group by the norm of the model's gains, so that all modes have equal weight."""
     size = np.maximum(np.linalg.norm(residues.theory, axis=(1, 2)), 1e-300)[:, None, None]
     return replace(residues, theory=residues.theory / size, measured=residues.measured / size)

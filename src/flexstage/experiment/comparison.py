@@ -1,4 +1,4 @@
-"""Comparison of model, finite elements and test (the paper's Fig. 12), with modes paired by shape at the sensors."""
+"""Comparison of model, finite elements and test (the paper's Fig. 12), with modes paired by their shapes at the sensors."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _TURNED = np.deg2rad(20.0)
 class Measured:
     """Identified mode in a comparison: its index (from 0), frequency [Hz] and damping ratio with their 95 % intervals.
 
-    `widening` is the interval inflation factor relative to noise.
+    `widening` is the width of the intervals divided by their width due to noise alone.
     """
 
     index: Annotated[int, INNER]
@@ -67,11 +67,11 @@ class Measured:
 
 @dataclass(frozen=True)
 class ComparedMode:
-    """Platform mode by model, finite elements and test, frequencies in Hz.
+    """Platform mode in model, finite elements and test, with frequencies in Hz.
 
-    `number` counts the platform's modes from 1. `assurance` is the modal assurance of model and test at the sensors. For repeated modes it
-    is the share of the measured shape within the model's subspace. `fea_assurance` compares model and finite elements by all common
-    motions. If it is below 0.8, `fea` is absent.
+    `number` counts the platform's modes from 1. `assurance` is the modal assurance criterion (MAC) of model and test at the sensors. For
+    repeated modes it is the fraction of the measured shape within the model's subspace. `fea_assurance` is the MAC of model and finite
+    elements for all motions that both have. If it is below 0.8, `fea` is absent.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -79,8 +79,8 @@ class ComparedMode:
         "number name theory fea fea_error experiment.frequency experiment.frequency_interval experiment.widening difference fea_difference "
         "uncertainty assurance fea_assurance experiment.damping",
         notes=(
-            "Differences: relative to the test, which includes damping; theory and FEA are undamped. +-: half of the 95 % interval.",
-            "MAC: modal assurance of theory and experiment at the sensors; of repeated modes, within their subspace.",
+            "Differences are relative to the measured natural frequency; theory and FEA are undamped. +-: half of the 95 % interval.",
+            "MAC: modal assurance criterion of theory and experiment at the sensors; repeated modes are compared as a subspace.",
             INFLATION,
         ),
     )
@@ -96,17 +96,17 @@ class ComparedMode:
 
     @property
     def difference(self) -> Annotated[float | None, RATIO, _DIFFERENCE]:
-        """Frequency of the model over the test's, minus one."""
+        """Frequency of the model divided by the measured frequency, minus one."""
         return None if self.experiment is None else self.theory / self.experiment.frequency - 1.0
 
     @property
     def fea_difference(self) -> Annotated[float | None, RATIO, replace(_DIFFERENCE, text="FEA difference")]:
-        """Frequency of the finite elements over the test's, minus one."""
+        """Frequency of the finite elements divided by the measured frequency, minus one."""
         return None if self.experiment is None or self.fea is None else self.fea / self.experiment.frequency - 1.0
 
     @property
     def uncertainty(self) -> Annotated[float | None, INNER, RATIO, Heading("+-", digits=2, unit="%")]:
-        """Half of the test's 95 % interval, relative to the measured frequency."""
+        """Half the width of the 95 % interval, relative to the measured frequency."""
         if self.experiment is None:
             return None
         low, high = self.experiment.frequency_interval
@@ -117,13 +117,13 @@ class ComparedMode:
 class RepeatedModes:
     """Repeated modes of the model (numbers from 1), and the largest angle [rad] between model and measured subspaces.
 
-    `angle` is absent if the test shows fewer modes.
+    `angle` is absent if fewer modes were identified.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Repeated modes",
         "numbers seen angle",
-        notes=("Repeated modes define a subspace; those of theory and experiment are compared by the largest angle between them.",),
+        notes=("Repeated modes define only a subspace. The largest angle is between the subspaces of theory and experiment.",),
     )
 
     numbers: Annotated[tuple[int, ...], Heading("modes")]
@@ -133,16 +133,16 @@ class RepeatedModes:
 
 @dataclass(frozen=True)
 class FurtherMode:
-    """Measured mode that is not a platform mode, with its paired local mode of the model [Hz], if any."""
+    """Measured mode that is not a platform mode, with the frequency [Hz] of the local mode of the model that matches it, if any."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Further measured modes",
         "experiment.number experiment.frequency experiment.frequency_interval experiment.widening experiment.damping name theory assurance",
-        notes=("Modes of single units, of the ground or of the support; the sensors alone identify local modes less reliably.",),
+        notes=("Modes of single units, of the ground or of the support. Motions at the sensors alone pair local modes less reliably.",),
     )
 
     experiment: Measured
-    name: Annotated[str | None, Heading("nearest mode of theory")] = None
+    name: Annotated[str | None, Heading("paired mode of theory")] = None
     theory: Annotated[float | None, FREQUENCY] = None
     assurance: Annotated[float | None, _ASSURANCE] = None
 
@@ -151,9 +151,9 @@ class FurtherMode:
 class Compared(InNotebook):
     """Comparison of model, finite elements and test, mode by mode.
 
-    `modes` are the platform's modes. `further` are measured modes not paired with a platform mode. `sensors` are the outputs of the shape
-    comparison. `warnings` list missing information and unreliable pairings. `misnamed` lists channels that appear exchanged, inverted or
-    scaled.
+    `modes` are the platform's modes. `further` are measured modes not paired with a platform mode. `sensors` are the outputs at which
+    shapes are compared. `data_warnings` lists missing information and unreliable pairings. `misnamed` lists channels that appear exchanged,
+    inverted or scaled.
     """
 
     modes: tuple[ComparedMode, ...]
@@ -172,7 +172,7 @@ class Compared(InNotebook):
         """Notes on the analytical model and on the order of the finite elements."""
         if self.fea is None:
             return (f"Theory: {self.model.value} model.",)
-        error = "error estimated from the order below" if self.fea.errors else "error not estimated: no coarser result"
+        error = "error estimated from a lower order" if self.fea.errors else "error not estimated: no coarser result"
         return f"Theory: {self.model.value} model.", f"FEA: elements of order {self.fea.order}, {error}."
 
     @property
@@ -183,13 +183,13 @@ class Compared(InNotebook):
 
 @check_arguments
 def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None = None, *, model: Model = Model.LUMPED) -> Compared:
-    """Compare the platform's modes by model, optional finite elements, and test.
+    """Compare the platform's modes in model, finite elements (optional) and test.
 
-    Shapes are compared at the outputs common to record and stage, by modal assurance (Allemang & Brown 1982), with the real part of
-    measured shapes. The assignment of measured modes to modes of the model maximises the similarity of all pairs together. Modes of the
-    model within 1 % in frequency are one subspace. The frequency distance has a small weight: it decides between shapes that the sensors
-    cannot distinguish. Pairs differ by less than a factor of 1.6 in frequency and have an assurance of at least 0.5. Measured modes may
-    also be paired with local modes of the model. Raises `DesignError` without a common output.
+    Shapes are compared at the outputs common to record and stage, by the modal assurance criterion (MAC, Allemang & Brown 1982), with the
+    real part of measured shapes. Modes of the model within 1 % in frequency form one subspace. Measured modes are assigned to modes of the
+    model so that the total MAC of all pairs is largest. Frequency differences have a small weight, which decides between shapes that the
+    sensors cannot distinguish. Paired frequencies differ by less than a factor of 1.6; the MAC of a pair is at least 0.5. Measured modes
+    may also be paired with local modes of the model. Raises `DesignError` without a common output.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.experiment.example import one_mode_record
@@ -200,7 +200,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     flexstage.base.finding.DesignError: y: unknown output; ...
     """
     linear = read(mechanism, model)
-    require([] if linear is not None else [Finding("model", "rigid bodies have no modes", "Compare with lumped or mapped")])
+    require([] if linear is not None else [Finding("model", "rigid bodies have no modes", "Use the model lumped or mapped")])
     assert linear is not None  # noqa: S101  refused above
     theory = platform_modes(mechanism, linear)
     sensors = shared_sensors(linear, experiment)
@@ -239,12 +239,12 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
 
 
 def shared_sensors(model: LinearModel, experiment: Identified) -> tuple[str, ...]:
-    """Find the outputs common to record and model; raises `DesignError` without any."""
+    """Find the outputs common to record and model; raises `DesignError` if there are none."""
     known = {channel.name for channel in model.outputs}
     found = tuple(channel.name for channel in experiment.outputs if channel.name in known)
     gauges = [channel.name for channel in model.outputs if "." not in channel.name]
     require(
-        Finding(channel.name, "unknown output; no output of the record is known", suggest_nearest(channel.name, gauges))
+        Finding(channel.name, "unknown output; record and stage have no output in common", suggest_nearest(channel.name, gauges))
         for channel in experiment.outputs
         if not found
     )
@@ -439,12 +439,14 @@ def _warnings(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...
     found: list[str] = []
     if len(sensors) < len(rows):
         found.append(
-            f"shapes are compared at {len(sensors)} sensors ({', '.join(sensors)}), fewer than modes: modes may be indistinguishable."
+            f"shapes are compared at {len(sensors)} sensors ({', '.join(sensors)}) for {len(rows)} modes: some modes may look the same."
         )
     doubtful = [row for row in rows if row.assurance is not None and row.assurance < _TRUSTED]
-    found += [f"mode {row.number} ({row.name}): modal assurance {row.assurance:.2f}: unreliable pairing." for row in doubtful]
     found += [
-        f"mode {row.number} ({row.name}): no similar FEA mode: the best assurance is {row.fea_assurance:.2f}, expected {RELIABLE}."
+        f"mode {row.number} ({row.name}): unreliable pairing (got a MAC of {row.assurance:.2f}, expected {_TRUSTED})." for row in doubtful
+    ]
+    found += [
+        f"mode {row.number} ({row.name}): no similar FEA mode (got a MAC of {row.fea_assurance:.2f}, expected {RELIABLE})."
         for row in rows
         if row.fea is None and row.fea_assurance is not None
     ]
@@ -452,12 +454,12 @@ def _warnings(rows: tuple[ComparedMode, ...], repeated: tuple[RepeatedModes, ...
         names = " and ".join(map(str, group.numbers))
         if 0 < group.seen < len(group.numbers):
             found.append(
-                f"modes {names} are repeated; the experiment shows {group.seen} of {len(group.numbers)}: drive other actuators too."
+                f"modes {names} are repeated; the experiment shows only {group.seen} of {len(group.numbers)}. Drive other actuators too."
             )
         if group.angle is not None and group.angle > _TURNED:
             angle = f"{np.rad2deg(group.angle):.0f}"
-            found.append(f"modes {names} are repeated; their measured shapes deviate by up to {angle} degrees from the model subspace.")
+            found.append(f"modes {names} are repeated; their measured shapes deviate by up to {angle} degrees from the subspace of theory.")
     lost = [row for row in rows if row.experiment is None]
     if lost:
-        found.append(f"not found in the experiment: {', '.join(f'{row.number} ({row.name}, {row.theory:.4g} Hz)' for row in lost)}.")
+        found.append(f"modes not found in the experiment: {', '.join(f'{row.number} ({row.name}, {row.theory:.4g} Hz)' for row in lost)}.")
     return found

@@ -1,4 +1,4 @@
-"""Example stage of one mode, for identification."""
+"""Example data for identification: a stage with one mode."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ POLE = 10.0 * (-0.02 + 1j * np.sqrt(1.0 - 0.02**2))
 
 
 def one_mode_record(*, seconds: float = 64.0, noise: float = 0.05) -> Record:
-    """Generate a record of a white noise input and the stage's motion, with the same numbers in every call.
+    """Generate a record of a white-noise input and the stage's motion; every call returns the same samples.
 
     `noise` is the rms of the measurement noise relative to the motion's rms.
 
@@ -32,7 +32,7 @@ def one_mode_record(*, seconds: float = 64.0, noise: float = 0.05) -> Record:
 
 
 def one_mode_band(second: Array | None = None) -> tuple[Band, Modal]:
-    """Return the band around the example's mode, and start values of a fit: a pole near `POLE` and, if specified, at `second` [Hz].
+    """Return the band around the example's mode, and start values of a fit: a pole near `POLE` and, if specified, the poles `second` [Hz].
 
     >>> one_mode_band()[0].cells.width
     2

@@ -34,9 +34,9 @@ _DEFAULT = Search()
 class Identification:
     """Identification of a test: its data, modes and spectra.
 
-    `multiple` (f, p) is the multiple coherence. `second` and `ratio` are H2 and the paper's T_ij = G_ij/G_ii (Eq. 29); they are absent if
-    the spectra do not define them. For an analyser's responses all three are absent. `found.responses` contains H1 and the ordinary
-    coherence.
+    `multiple` (f, p) is the multiple coherence. `second` is H2, absent with fewer outputs than inputs; `ratio` is the paper's T_ij =
+    G_ij/G_ii (Eq. 29). For an analyser's responses, and without recorded inputs, all three are absent. `found.responses` contains H1 and
+    the ordinary coherence.
     """
 
     test: Annotated[Measurement, INNER]
@@ -48,12 +48,12 @@ class Identification:
 
     @property
     def files(self) -> Annotated[tuple[Record | Responses, ...], VIEW]:
-        """Measured data, file by file."""
+        """Measured data of each file."""
         return (self.test,) if isinstance(self.test, Responses) else self.test
 
     @property
     def mean_multiple_coherence(self) -> Annotated[Mapping[str, float] | None, VIEW]:
-        """Share of each output's power explained by all inputs, over the band; null for an analyser's responses."""
+        """Fraction of each output's power that all inputs explain, averaged over the band; null if spectra are absent."""
         if self.spectra is None or self.multiple is None:
             return None
         low, high = self.found.band
@@ -66,9 +66,9 @@ def usable_measurement(
     accept_faults: frozenset[FaultTolerance] = frozenset(),
     requirements: RecordRequirements | None = None,
 ) -> Measurement:
-    """Return the usable measurement of file contents; raises `DesignError` with every fault that is not accepted.
+    """Check the contents of files and return the usable data; raises `DesignError` with every fault that is not accepted.
 
-    Several records must be tests of one stage. Responses of an analyser cannot be combined with other contents.
+    Several records must be tests of one stage. Responses of an analyser cannot be combined with other data.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> [each.duration for each in usable_measurement([one_mode_record()])]
@@ -84,7 +84,7 @@ def usable_measurement(
     kept: list[Record] = []
     for index, record in enumerate(records):
         try:
-            with part(index * _LOOKED / len(records), (index + 1) * _LOOKED / len(records), "looking at the record"):
+            with part(index * _LOOKED / len(records), (index + 1) * _LOOKED / len(records), "checking the record"):
                 kept.append(usable_record(record, accept_faults, wanted))
         except DesignError as error:
             findings += error.findings
@@ -93,7 +93,7 @@ def usable_measurement(
 
 
 def identification(test: Measurement, search: Search = _DEFAULT) -> Identification:
-    """Identify the modes of a test, with spectra and coherences. Raises `DesignError` for the errors of `identify`.
+    """Identify the modes of a test, with spectra and coherences. Raises `DesignError` in the same cases as `identify`.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> seen = identification((one_mode_record(),))
@@ -121,7 +121,7 @@ def identification(test: Measurement, search: Search = _DEFAULT) -> Identificati
 
 def _without_inputs(test: Measurement, search: Search) -> Identified:
     if isinstance(test, Responses):
-        what = f"the test contains responses to inputs, which contradicts the excitation {search.excitation.value}"
+        what = f"the test contains responses to inputs, but the specified excitation is {search.excitation.value}"
         raise refuse(test.where, what, "Omit the excitation, or use records of outputs")
     return identify_floor(test, search) if search.excitation is Excitation.FLOOR else identify_decay(test, search)
 

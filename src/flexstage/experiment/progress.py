@@ -8,7 +8,7 @@ from contextvars import ContextVar
 from typing import TypeAlias
 
 ProgressCallback: TypeAlias = Callable[[str, float], None]
-"""Callback with two arguments: a text for the current step, and the completed share, 0 to 1."""
+"""Callback with two arguments: a description of the current step, and the completed fraction, 0 to 1."""
 
 
 def _ignore(_text: str, _share: float) -> None:
@@ -35,12 +35,12 @@ def followed(told: ProgressCallback) -> Generator[None]:
 
 @contextmanager
 def part(start: float, stop: float, text: str = "") -> Generator[None]:
-    """Assign the range from `start` to `stop` of the total progress, 0 to 1, to the work inside the `with` block; `text` describes it."""
+    """Map the progress of the `with` block to the range from `start` to `stop` of the total, 0 to 1; `text` describes the block."""
     outer = _FOLLOWER.get()
     with followed(lambda own, share: outer(text or own, start + share * (stop - start))):
         yield
 
 
 def report(share: float, text: str = "") -> None:
-    """Report the completed share of the current part, 0 to 1; `text` describes it if the part has no text."""
+    """Report the completed fraction of the current part, 0 to 1; `text` describes the part if it has no description."""
     _FOLLOWER.get()(text, share)

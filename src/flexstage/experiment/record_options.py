@@ -9,7 +9,7 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
-from flexstage.base.finding import DesignError, Finding, refuse, require
+from flexstage.base.finding import DesignError, Finding, list_choices, refuse, require
 from flexstage.base.lazy import LazyModule
 from flexstage.base.units.quantity import FREQUENCY
 from flexstage.base.units.unit import parse
@@ -39,57 +39,63 @@ RECORD = text_option("--record", "RECORD", "Record or frequency responses of a t
 Inputs: TypeAlias = Annotated[
     list[str] | None,
     text_option(
-        "--inputs", "NAMES", 'Input channels, e.g. "u*" or B1,B2. Default: by the role in the file, else by the channel name. Repeatable.'
+        "--inputs",
+        "NAMES",
+        'Input channels, e.g. "u*" or B1,B2. Default: from the roles in the file, otherwise from the channel names. Repeatable.',
     ),
 ]
 Outputs: TypeAlias = Annotated[
     list[str] | None,
     text_option(
-        "--outputs", "NAMES", 'Output channels, e.g. "S?". Default: by the role in the file, else by the channel name. Repeatable.'
+        "--outputs",
+        "NAMES",
+        'Output channels, e.g. "S?". Default: from the roles in the file, otherwise from the channel names. Repeatable.',
     ),
 ]
 Channels: TypeAlias = Annotated[
     list[str] | None, text_option("--channels", "NAMES", 'Channels to use, e.g. "S*". Default: all. Repeatable.')
 ]
 Units: TypeAlias = Annotated[list[str] | None, text_option("--units", "NAMES=UNIT", 'Units of channels, e.g. "S*=um". Repeatable.')]
-Rate: TypeAlias = Annotated[str | None, rate_option("that of the file")]
+Rate: TypeAlias = Annotated[str | None, rate_option("the rate in the file")]
 Arrays: TypeAlias = Annotated[
     list[str] | None,
     text_option(
         "--array",
         "MEANING=NAMES",
-        "Meaning of arrays of the file, e.g. samples=u,y or time=t. "
-        "Also: rate, step, names, units, frequencies, responses, coherence. Repeatable.",
+        "Meaning of arrays in the file, e.g. samples=u,y or time=t. "
+        "Further meanings: rate, step, names, units, frequencies, responses, coherence. Repeatable.",
     ),
 ]
-Kind: TypeAlias = Annotated[str | None, text_option("--kind", "<record|responses>", "Kind of data, if a file holds both.")]
+Kind: TypeAlias = Annotated[str | None, text_option("--kind", "<record|responses>", "Kind of data to read, if a file contains both.")]
 AcceptFault: TypeAlias = Annotated[
     list[str] | None,
     text_option(
         "--accept-fault",
         "FAULT",
-        "Accepted fault: truncated, gaps, dead, clipped, units, dependent, short, slow, names, windowed or incomplete. Repeatable.",
+        "Fault to accept: truncated, gaps, dead, clipped, units, dependent, short, slow, names, windowed or incomplete. Repeatable.",
     ),
 ]
-Band: TypeAlias = Annotated[tuple[str, str] | None, band_option("all that the record can show")]
+Band: TypeAlias = Annotated[tuple[str, str] | None, band_option("the whole range of the record")]
 Moved: TypeAlias = Annotated[
     Excitation | None,
     word_option(
         "--excitation",
         Excitation,
-        "Excitation: recorded inputs, floor, or free decay. Default: recorded.",
+        "Excitation of the stage: recorded inputs, floor motion, or free decay. Default: recorded.",
         show_default=False,
     ),
 ]
 FrequencyResolution: TypeAlias = Annotated[
     str | None,
-    text_option("--frequency-resolution", "FREQUENCY", 'Frequency resolution of the spectra, e.g. "0.5 Hz". Default: by record length.'),
+    text_option(
+        "--frequency-resolution", "FREQUENCY", 'Frequency resolution of the spectra, e.g. "0.5 Hz". Default: from the length of the record.'
+    ),
 ]
 
 
 @dataclass(frozen=True)
 class RecordTexts:
-    """Record options as command-line texts; commands without the option `excitation` leave it empty."""
+    """Record options as command-line strings; commands without the option `excitation` leave it empty."""
 
     inputs: Inputs = None
     outputs: Outputs = None
@@ -123,9 +129,9 @@ class RecordTexts:
         )
 
     def require_unsaid(self) -> None:
-        """Raise `DesignError` for every record option in use, for a command without a record."""
+        """Raise `DesignError` for every record option that is used without a record."""
         said = ("array" if name == "arrays" else name.replace("_", "-") for name, value in vars(self).items() if value)
-        require(Finding(f"--{name}", "needs a record, and there is none", "Add --record RECORD, or omit this option") for name in said)
+        require(Finding(f"--{name}", "only applies with a record", "Add --record RECORD, or omit this option") for name in said)
 
     def search(self) -> Search:
         """Convert to search parameters of the identification."""
@@ -137,7 +143,7 @@ class RecordTexts:
         return Search(band=band, segments=None if lines is None else Segments(1.0 / lines), excitation=moved)
 
     def requirements(self, model: LinearModel | None, highest: float | None = None) -> RecordRequirements:
-        """Convert to record requirements: the model's outputs, a rate for the band or else the `highest` mode [Hz], resolution."""
+        """Convert to record requirements: the model's outputs, resolution, and a rate for the band, else for the `highest` mode [Hz]."""
         top = _hertz("--band", self.band[1]) if self.band is not None else highest
         outputs = None if model is None else tuple((channel.name, channel.unit) for channel in model.outputs)
         unrecorded = self.excitation not in (None, Excitation.RECORDED)
@@ -161,7 +167,7 @@ def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record 
 
 
 def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearModel | None, highest: float | None = None) -> Identification:
-    """Identify the modes of records and print each warning. If known, the stage's model and `highest` mode [Hz] set record requirements."""
+    """Identify the modes of records and print each warning. The stage's model and `highest` mode [Hz], if known, define requirements."""
     reader, search, needs = texts.options(), texts.search(), texts.requirements(model, highest)
     with progress_bar() as shown, followed(shown.share):
         seen = identification(usable_measurement(open_records(paths, reader), reader.accept_faults, needs), search)
@@ -171,10 +177,10 @@ def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearMod
 
 
 def shapes_on(mechanism: Mechanism, seen: Identification) -> StageShapes:
-    """Map measured shapes to motions of the stage; prints the reason if this is impossible."""
+    """Map measured shapes to motions of the stage; if this is impossible, print the reason."""
     found = stage_shapes(ideal(mechanism), seen.found)
     if found.missing:
-        print_note(f"no shapes on the stage: {found.missing}")
+        print_note(f"the shapes cannot be mapped to the stage: {found.missing}")
     return found
 
 
@@ -189,7 +195,7 @@ def _units(texts: Sequence[str] | None, findings: list[Finding]) -> tuple[tuple[
     pairs = [tuple(part.strip() for part in text.rpartition("=")[::2]) for text in texts or ()]
     for text, (name, unit) in zip(texts or (), pairs, strict=True):
         if not name or not unit:
-            findings.append(Finding(f"--units {text}", "this names no channel and unit", 'Use e.g. --units "S*=um"'))
+            findings.append(Finding(f"--units {text}", "channel or unit missing", 'Use e.g. --units "S*=um"'))
     return tuple((name, unit) for texts_of, unit in pairs for name in names([texts_of]))
 
 
@@ -198,7 +204,7 @@ def _arrays(texts: Sequence[str] | None, findings: list[Finding]) -> options.Arr
     for text in texts or ():
         meaning, _, listed = text.partition("=")
         if meaning.strip() not in known or not names([listed]):
-            findings.append(Finding(f"--array {text}", f"this says of no array what it is: {', '.join(known)}", "Use e.g. samples=u,y"))
+            findings.append(Finding(f"--array {text}", f"unknown meaning or no array (known: {', '.join(known)})", "Use e.g. samples=u,y"))
         else:
             stated[meaning.strip()] = stated.get(meaning.strip(), ()) + names([listed])
     return options.Arrays(**stated)
@@ -208,12 +214,12 @@ def _word(option: str, word: str, kind: type[Enum], findings: list[Finding]) -> 
     known = [str(each.value) for each in kind]
     if word in known:
         return word
-    findings.append(Finding(f"{option} {word}", f'"{word}" is none of {", ".join(known)}', "Use one of these words"))
+    findings.append(Finding(f"{option} {word}", "unknown word", f"Use {list_choices(known)}"))
     return None
 
 
 def _hertz(option: str, text: str) -> float:
     value = parse(text, FREQUENCY, where=option)
     if value < 0.0 or (value == 0.0 and option != "--band"):
-        raise refuse(option, f"no frequency (got {text})", 'Use one above zero, e.g. "2 kHz"')
+        raise refuse(option, f"no frequency above zero (got {text})", 'Use e.g. "2 kHz"')
     return value

@@ -26,9 +26,9 @@ _RANK = 1e-6
 class StageShapes:
     """Measured shapes as motions of the stage.
 
-    `motions` are the twists (6, k) [m, rad] of all modes by body. `used` names the outputs used. `explained` (k,) is the share of each
-    measured shape explained by ideal motion. It is 1 if there are no more outputs than degrees of freedom. `missing` is the reason for
-    missing twists.
+    `motions` maps each body to its twists (6, k) [m, rad] in the modes. `used` names the outputs used. `explained` (k,) is the fraction of
+    each measured shape that ideal motion explains. It is 1 if there are no more outputs than degrees of freedom. `missing` is the reason
+    why there are no twists.
     """
 
     motions: Mapping[str, Array]
@@ -47,8 +47,8 @@ def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
     """Fit ideal stage motions to the measured shapes s by least squares: x = V (R V)^+ s.
 
     The columns of V are the ideal motions. A row of R is the row of a gauge in R_s, or a component of a body's twist. Rotations are
-    weighted by the kinematics' characteristic length. For six gauges the result equals R_s^-1 of the paper (Eq. 14). All bodies move by
-    the ideal kinematics, with hinges free about their intended axes.
+    weighted by the kinematics' characteristic length. For six gauges the result equals R_s^-1 s of the paper (Eq. 14). All bodies move with
+    the ideal kinematics: hinges are free about their intended axes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -67,7 +67,7 @@ def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
     seen = weight[:, None] * np.stack(list(rows.values())) * scale
     rank = int(np.linalg.matrix_rank(seen, tol=_RANK * float(np.linalg.norm(seen, 2))))
     if rank < kinematics.mobility:
-        return _missing_shapes(f"{', '.join(rows)} observe only {rank} of the {kinematics.mobility} motions of the platform")
+        return _missing_shapes(f"{', '.join(rows)} measure only {rank} of the {kinematics.mobility} motions of the platform")
     measured = weight[:, None] * si_shapes(found)[chosen]
     motion = np.linalg.lstsq(seen, measured, rcond=None)[0]
     rest = np.sum((measured - seen @ motion) ** 2, axis=0) / np.maximum(np.sum(measured**2, axis=0), 1e-300)
@@ -91,7 +91,7 @@ def si_shapes(found: Identified, names: Sequence[str] | None = None) -> Array:
 
 
 def si_factor(channel: Channel) -> float:
-    """Return a channel's unit in SI units (1e-6 for um); 1 if unknown.
+    """Return the factor from a channel's unit to the SI unit (1e-6 for um); 1 for an unknown unit.
 
     >>> si_factor(Channel("S1", "um")), si_factor(Channel("S1"))
     (1e-06, 1.0)

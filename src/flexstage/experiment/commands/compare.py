@@ -34,9 +34,10 @@ def compare(
 ) -> CommandResult:
     """Compare theory, FEA and experiment.
 
-    Modes are paired by their shapes at the sensors, repeated modes as a subspace. Channels have the names of the stage's gauges.
+    Modes are paired by their shapes at the sensors; repeated modes are paired as a subspace. Outputs must have
+    the names of gauges or motions of the stage.
 
-    FEA is included if it is in the cache, or with --fea.
+    FEA results are included if they are in the cache, or with --fea.
     """
     linear = elastic_model(mechanism, model)
     highest = platform_modes(mechanism, linear).highest

@@ -35,15 +35,15 @@ Records: TypeAlias = Annotated[
 def identify(
     records: Records,
     *,
-    stage: Annotated[Path | None, text_option("--stage", "STAGE.TOML", "Design file of the stage, for mode shapes.")] = None,
+    stage: Annotated[Path | None, text_option("--stage", "STAGE.TOML", "Design file of the stage to which mode shapes are mapped.")] = None,
     texts: RecordTexts,
     excitation: Moved = None,
 ) -> CommandResult:
     """Find the modes in records of a test.
 
-    Prints frequencies, damping and shapes with 95 % intervals. The identification is automatic.
+    Prints frequencies and damping with 95 % intervals, and shapes. The identification is automatic.
 
-    Faulty channels are errors unless --accept-fault allows them.
+    A fault of a channel is an error unless --accept-fault accepts it.
     """
     texts = replace(texts, excitation=excitation)
     mechanism = None if stage is None else open_design(stage)
@@ -55,7 +55,7 @@ def identify(
 
 
 def _with_doubts(mechanism: Mechanism, seen: Identification) -> Identification:
-    """Result with a printed warning for every channel that appears exchanged, inverted or scaled compared with the stage's model."""
+    """Add and print a warning for every channel that appears exchanged, inverted or scaled compared with the stage's model."""
     named = {channel.name for channel in elastic_model(mechanism, Model.LUMPED).outputs}
     if not any(channel.name in named for channel in seen.found.outputs) or not len(seen.found.frequencies):
         return seen

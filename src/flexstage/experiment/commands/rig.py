@@ -45,32 +45,34 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     output: Annotated[Path, output_option("RECORD", "File to write: .uff, .mat, .h5 or .csv.")],
     seconds: Annotated[float, text_option("--seconds", "NUMBER", "Duration in seconds.")],
     seed: Seed = None,
-    rate: Annotated[str | None, rate_option("a power of two, at least ten times the highest platform mode")] = None,
+    rate: Annotated[str | None, rate_option("the lowest power of two that is at least ten times the highest platform mode")] = None,
     drive_rms: Annotated[
         str | None,
-        text_option("--drive-rms", "VALUE", "Rms of the noise drive, e.g. 1um, 5V, 0.1A or 1N. Default: 1 % of each range."),
+        text_option("--drive-rms", "VALUE", "Rms of the noise drive, e.g. 1um, 5V, 0.1A or 1N. Default: 1 % of each actuator's range."),
     ] = None,
     band: Annotated[tuple[str, str] | None, band_option("0 to 0.4 times the rate")] = None,
     actuators: Annotated[list[str] | None, text_option("--actuator", "NAME", "Driven actuator. Default: all. Repeatable.")] = None,
     amplifier: AmplifierValues = None,
-    filter_order: Annotated[int, typer.Option("--filter-order", help="Order of the anti-alias filter (Butterworth); 0: none.")] = 8,
+    filter_order: Annotated[int, typer.Option("--filter-order", help="Order of the anti-alias filter (Butterworth); 0: no filter.")] = 8,
     filter_corner: Annotated[
         str | None, text_option("--filter-corner", "VALUE", "Corner frequency of the anti-alias filter. Default: 0.4 times the rate.")
     ] = None,
     gauge_noise: GaugeNoise = None,
     resolution: GaugeResolution = None,
     drift: Annotated[
-        str, typer.Option("--drift", metavar="VALUE", help="Random walk of each gauge: standard deviation after a minute.")
+        str, typer.Option("--drift", metavar="VALUE", help="Standard deviation of each gauge's random walk after a minute.")
     ] = "0 nm",
     input_signal: Annotated[
         InputSignal,
-        word_option("--input-signal", InputSignal, "Recorded input signal: amplifier output with the gauges' filter, or command."),
+        word_option("--input-signal", InputSignal, "Recorded input signal: filtered output of the amplifier, or its command."),
     ] = InputSignal.MONITOR,
-    delay: Annotated[str, typer.Option("--delay", metavar="VALUE", help="Delay of the recorded gauges, e.g. 1ms.")] = "0 s",
+    delay: Annotated[str, typer.Option("--delay", metavar="VALUE", help="Delay of the recorded gauge readings, e.g. 1ms.")] = "0 s",
     input_quantity: Annotated[
         InputQuantity | None,
         word_option(
-            "--input-quantity", InputQuantity, "Quantity of the recorded inputs. Default: the actuator's own, e.g. stroke or current."
+            "--input-quantity",
+            InputQuantity,
+            "Quantity of the recorded inputs. Default: the input of each actuator, e.g. stroke or current.",
         ),
     ] = None,
     model: ElasticModelName = Model.LUMPED,
@@ -79,10 +81,10 @@ def rig(  # noqa: PLR0913  a test has that many knobs
 ) -> None:
     """Test a stage on a virtual rig; write the record.
 
-    Simulates white noise at the actuators, amplifiers, the stage, gauges with noise, drift and quantisation, the anti-alias filter
+    Simulates actuators driven by noise through amplifiers, the stage, gauges with noise, drift and quantisation, the anti-alias filter
     and sampling.
 
-    The same seed writes the same file.
+    The same seed gives the same file.
     """
     mechanism = with_elastic_bodies(open_design(design, changes, [("--output", output)]), chosen=elastic_bodies)
     values = Values()

@@ -41,23 +41,28 @@ def update(  # noqa: PLR0913 (its options)
         text_option(
             "--prior",
             "[ADDRESS=]SHARE",
-            'Prior relative standard deviation, e.g. "5 %" or "neck.thickness=2 %". Default: 10 %.',
+            'Prior relative standard deviation, of all or one, e.g. "5 %" or "neck.thickness=2 %". Default: 10 %. Repeatable.',
         ),
     ] = None,
     model_error: Annotated[
-        str, typer.Option("--model-error", metavar="SHARE", help="Relative standard deviation of theoretical frequencies.")
+        str, typer.Option("--model-error", metavar="SHARE", help="Relative standard deviation of the theoretical frequencies.")
     ] = "0.1 %",
-    gain: Annotated[bool, typer.Option("--gain", help="Static gains from strokes to gauges.")] = False,
+    gain: Annotated[bool, typer.Option("--gain", help="Static gains from actuators to gauges as further data.")] = False,
     gain_error: Annotated[
-        str, typer.Option("--gain-error", metavar="SHARE", help="Relative standard deviation of gains: theory, gauges and drives.")
+        str,
+        typer.Option(
+            "--gain-error",
+            metavar="SHARE",
+            help="Standard deviation of static gains (theory, gauges and drives), relative to the largest of each actuator.",
+        ),
     ] = "0.1 %",
     texts: RecordTexts,
 ) -> CommandResult:
     """Update parameters of a stage from a test.
 
-    Uses Bayesian least squares. Prints values, standard deviations, correlations and the information of the test.
+    Uses Bayesian least squares. Prints values, standard deviations, correlations and identifiable combinations.
 
-    Writes a new design file with tagged values and all comments.
+    Writes a new design file. It keeps all comments; updated values have a tag.
     """
     known = _known(prior or [], model_error, gain_error, gain=gain)
     text = read_text(design)

@@ -1,8 +1,8 @@
-"""Records and responses from the named arrays of a file: by the names of a documented form, or by a user's assignment.
+"""Records and responses from the named arrays of a file, by documented names or by names that the user assigns.
 
-A record has `samples` (n, channels) and one of `time` (n,) [s], `rate` [Hz] and `step` [s]. Optional are `start` [s], `name`, and the
-lists of texts `names`, `units` and `roles`. Responses have `frequencies` (f,) [Hz] and complex `responses` (f, outputs, inputs). Optional
-are `coherence` of the same shape, `output_names`, `output_units`, `input_names`, `input_units`, `window`, `averages` and `name`.
+A record has `samples` (n, channels) and one of `time` (n,) [s], `rate` [Hz] and `step` [s]. Optional are `start` [s], `name`, and the lists
+of strings `names`, `units` and `roles`. Responses have `frequencies` (f,) [Hz] and complex `responses` (f, outputs, inputs). Optional are
+`coherence` of the same shape, `output_names`, `output_units`, `input_names`, `input_units`, `window`, `averages` and `name`.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ _SAVED = {
     "duration": "time = seconds({0})",
     "Simulink.SimulationData.Dataset": "time = {0}{{1}}.Values.Time; samples = {0}{{1}}.Values.Data",
 }
-_PLAIN = "{0}'s numbers, time [s] and samples (one column a channel)"
+_PLAIN = "{0}'s numbers, time [s] and samples (one column per channel)"
 
 
 Spans: TypeAlias = tuple[tuple[int, int], ...]
-"""Part of an array: start and stop on each axis; empty for the whole array."""
+"""Range of an array: start and stop on each axis; empty for the whole array."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ class Variable:
 
 
 def held_array(name: str, values: Array) -> Variable:
-    """Wrap an array in memory.
+    """Wrap an array in memory as a variable.
 
     >>> held_array("u", np.arange(6.0).reshape(2, 3)).samples(1).read(1, 3).tolist()
     [[1.0, 4.0], [2.0, 5.0]]
@@ -82,7 +82,7 @@ def held_array(name: str, values: Array) -> Variable:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """Contents of a file, named `where` in messages: arrays (`variables`), and texts, lists of texts and numbers by name (`said`).
+    """Contents of a file, named `where` in messages: arrays (`variables`), and strings, lists of strings and numbers by name (`said`).
 
     `objects` maps names to classes of objects that only the program that wrote the file can read.
     """
@@ -98,7 +98,7 @@ class Contents:
         return tuple(dict.fromkeys(fitting))
 
     def vector(self, names: tuple[str, ...]) -> Variable | None:
-        """Return the first real one-dimensional array with one of the names and more than one number; `None` if absent."""
+        """Return the first real one-dimensional array with one of the names and more than one element; `None` if absent."""
         return next(
             (each for each in self.find(names) if not each.is_complex and 1 < max(each.shape, default=0) == np.prod(each.shape)), None
         )
@@ -114,12 +114,12 @@ class Contents:
         return next((value for value in found if isinstance(value, float)), None)
 
     def texts(self, *names: str) -> tuple[str, ...]:
-        """Return the texts of the first of these names that is present; empty if none is."""
+        """Return the list of strings with the first of these names that exists; empty if none exists."""
         found = next((self.said[name] for name in names if name in self.said), ())
         return found if isinstance(found, tuple) else (str(found),)
 
     def text(self, name: str) -> str:
-        """Return the text of this name, a list joined by blanks; empty if absent."""
+        """Return the string of this name, a list joined by blanks; empty if absent."""
         return " ".join(self.texts(name))
 
 
@@ -170,7 +170,7 @@ def complex_of(real: Array, imaginary: Array) -> Array:
 def read_arrays(contents: Contents, options: Options) -> tuple[Record | Responses, ...]:
     """Read the record, the responses, or both from a file's arrays, according to `options.kind`.
 
-    Raises `DesignError` with a list of the arrays if the file has neither record nor responses, and with all faults of unreadable arrays.
+    Raises `DesignError` with a list of the arrays if the file has neither record nor responses, and for unreadable arrays.
 
     >>> both = (held_array("u", np.zeros((1, 8))), held_array("y", np.ones((8, 2))), held_array("fs", np.array(4.0)))
     >>> (found,) = read_arrays(Contents("a.mat", both), Options(arrays=Arrays(samples=("u", "y"), rate=("fs",))))
@@ -212,8 +212,8 @@ def _no_arrays(contents: Contents, kind: Kind | None) -> DesignError:
         return DesignError([_object_finding(contents, name) for name in contents.objects])
     missing = {None: '"samples" or "responses"', Kind.RECORD: '"samples"', Kind.RESPONSES: '"responses"'}[kind]
     advice = (
-        'Assign the arrays (array): of a record "samples=..." with "time=...", "rate=..." or "step=...", or the rate itself (rate); '
-        'of responses "responses=..." with "frequencies=..."'
+        'Assign the arrays (array): for a record "samples=..." with "time=...", "rate=..." or "step=...", or specify the rate (rate); '
+        'for responses "responses=..." with "frequencies=..."'
     )
     return refuse(contents.where, f"it has no array {missing}. {list_arrays(contents)}", advice)
 
@@ -259,7 +259,7 @@ def _clock(contents: Contents, time: Variable | None, options: Options) -> Clock
     step = contents.number(*options.arrays.step)
     stated = options.rate or contents.number(*options.arrays.rate) or (1.0 / step if step else None)
     if time is None and stated is None:
-        advice = 'Assign the time: "time=...", "rate=..." or "step=..." (array), or the rate itself (rate)'
+        advice = 'Assign the time: "time=...", "rate=..." or "step=..." (array), or specify the rate (rate)'
         raise refuse(contents.where, f"no times and no rate. {list_arrays(contents)}", advice)
     if time is None or options.rate:
         return Clock(float(stated or 0.0), 0.0, ((0, 0),))
@@ -298,7 +298,7 @@ def _texts_by_channel(
     own = [_texts(variable.attributes.get(kind, ())) for variable in variables]
     found = contents.texts(*names) or tuple(text for each, width in zip(own, widths, strict=True) for text in (each or ("",) * width))
     if len(found) != sum(widths):
-        what = f"wrong number of {kind} (got {len(found)}: {', '.join(found[:6])}; expected {sum(widths)}, the channels)"
+        what = f"wrong number of {kind} (got {len(found)}: {', '.join(found[:6])}; expected {sum(widths)}, one per channel)"
         raise refuse(contents.where, what, f'Name the correct list (array "{kind}=...")')
     return found
 
@@ -319,7 +319,7 @@ def _responses(contents: Contents, chosen: tuple[Variable, ...], options: Option
     """Responses; each of several arrays contains outputs for the same inputs."""
     lines = contents.vector(options.arrays.frequencies)
     if lines is None:
-        raise refuse(contents.where, f"no frequencies. {list_arrays(contents)}", 'Assign them (array "frequencies=...")')
+        raise refuse(contents.where, f"no frequencies. {list_arrays(contents)}", 'Assign the frequencies (array "frequencies=...")')
     frequencies = lines.whole().ravel().astype(float)
     problem = rising_problem(frequencies)
     if problem is not None:
@@ -363,7 +363,7 @@ def _cube(variable: Variable, size: int) -> Array:
     values = np.moveaxis(variable.whole(), variable.shape.index(size), 0)
     rest = values.shape[1:] if values.ndim <= 3 else tuple(length for length in values.shape[1:] if length > 1)
     if len(rest) > 2:
-        raise refuse(variable.name, f"it has shape {variable.shape}", "Store frequencies, outputs and inputs")
+        raise refuse(variable.name, f"wrong number of axes (got shape {variable.shape})", "Store frequencies, outputs and inputs")
     return values.reshape(size, *rest, *[1] * (2 - len(rest)))
 
 
@@ -391,7 +391,9 @@ def _coherence(contents: Contents, shape: tuple[int, ...], arrays: Arrays) -> Ar
             return whole
     sizes = ", ".join(f"{each.name} {each.shape}" for each in stored)
     raise refuse(
-        contents.where, f"wrong shape of the coherence (got {sizes}, expected {shape} as the responses)", 'Name it (array "coherence=...")'
+        contents.where,
+        f"wrong shape of the coherence (got {sizes}, expected {shape} as for the responses)",
+        'Assign the coherence (array "coherence=...")',
     )
 
 

@@ -31,7 +31,7 @@ def is_gcs(start: bytes, _suffix: str) -> bool:
 
 
 def read_gcs(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    r"""Read the record of a GCS array: columns named by NAME0, NAME1, ..., a line every SAMPLE_TIME seconds.
+    r"""Read the record of a GCS array: NAME0, NAME1, ... name its columns, SAMPLE_TIME [s] is the time between its lines.
 
     The header (`# KEY = value` up to `# END_HEADER`) follows PI's general command set, as read by PI's library (PIPython,
     `getgcsheader`). SEPARATOR is the code of the column separator, DIM the number of columns, NDATA the number of lines. The header has no
@@ -71,7 +71,9 @@ def _whole(path: Path, said: Mapping[str, str], key: str) -> int:
     text = said.get(key, "")
     if text.isdecimal() and 0 < int(text) < 10**9:
         return int(text)
-    raise refuse(f"{path}: {key}", f'its header says "{text}", where a number of 1 or more is expected', "Save the recorder's answer again")
+    raise refuse(
+        f"{path}: {key}", f'wrong value in the header (got "{text}", expected a number of 1 or more)', "Save the recorded data again"
+    )
 
 
 def _separator(path: Path, said: Mapping[str, str]) -> str | None:
@@ -79,13 +81,13 @@ def _separator(path: Path, said: Mapping[str, str]) -> str | None:
     if text.isdecimal() and int(text) in _SEPARATORS:
         return _SEPARATORS[int(text)]
     known = ", ".join(map(str, _SEPARATORS))
-    raise refuse(f"{path}: SEPARATOR", f'its header says "{text}", the code of no sign that is known ({known})', "Save it with blanks (32)")
+    raise refuse(f"{path}: SEPARATOR", f'unknown separator code (got "{text}", expected one of {known})', "Save it with blanks (32)")
 
 
 def _column_findings(path: Path, said: Mapping[str, str], width: int) -> Iterator[Finding]:
     beyond = [key for key in said if re.fullmatch(r"NAME\d+", key) and int(key[4:]) >= width]
     if beyond:
-        yield Finding(str(path), f"its header names {', '.join(beyond)}, its DIM is {width}", "Save the recorder's answer again")
+        yield Finding(str(path), f"its header has {', '.join(beyond)}, but its DIM is {width}", "Save the recorded data again")
 
 
 def _rate(path: Path, said: Mapping[str, str]) -> float:
@@ -96,8 +98,8 @@ def _rate(path: Path, said: Mapping[str, str]) -> float:
         step = 0.0
     if 0.0 < step < float("inf"):
         return 1.0 / step
-    found = f'its header says "{text}"' if text else "its header does not say it"
-    raise refuse(f"{path}: SAMPLE_TIME", f"{found}, where the time between lines is expected", "State the rate (rate)")
+    found = f'got "{text}"' if text else "missing"
+    raise refuse(f"{path}: SAMPLE_TIME", f"no time between lines in the header ({found})", "Specify the rate (rate)")
 
 
 def _role(name: str) -> Role:

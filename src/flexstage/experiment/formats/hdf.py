@@ -1,4 +1,4 @@
-"""HDF5 files: arrays, texts and attributes, read block by block; records and responses written."""
+"""HDF5 files: arrays, strings and attributes are read block by block; records and responses are written."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def is_hdf(start: bytes, _suffix: str) -> bool:
 def read_hdf(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     """Read the contents of an HDF5 file by array name; arrays stay in the file. Columns of tables are separate arrays.
 
-    Lists of names, units and roles are attributes of the array, or separate arrays. Single values are attributes of the file. Raises
+    Lists of names, units and roles are attributes of the array, or separate arrays. Single values may be attributes of the file. Raises
     `DesignError` for an invalid, truncated or damaged file, and for the errors of `read_arrays`.
 
     >>> import h5py, tempfile

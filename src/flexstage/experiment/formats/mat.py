@@ -1,4 +1,4 @@
-"""MAT files: versions 4 and 5 by scipy, version 7.3 block by block; records and responses written in version 5."""
+"""MAT files: versions 4 and 5 are read by scipy, version 7.3 block by block; records and responses are written in version 5."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def is_mat(start: bytes, suffix: str) -> bool:
 
 
 def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    """Read the contents of a MAT file by array name. Members of structures have paths (`test.u`); lists of texts are cells.
+    """Read the contents of a MAT file by array name. Members of structures have paths as names (`test.u`). Lists of strings are cells.
 
     MATLAB objects (`timeseries`, `table`, `idfrd`) cannot be read outside MATLAB: the error lists them, with a hint on export. Arrays of
     version 7.3 stay in the file, others are read at once. Raises `DesignError` for an invalid or truncated file, and for the errors of
@@ -95,7 +95,7 @@ def _letter(code: float) -> str:
 def write_mat(path: str | os.PathLike[str], what: Record | Responses) -> None:
     """Write a MAT file of version 5: a record's `samples` (n, channels), `rate`, `start`, `names`, `units`, `roles`; or responses.
 
-    The file is assembled in memory, with at most two gigabytes. Numbers keep all bits. Raises `DesignError` for a larger record, and if
+    The file is assembled in memory and has at most two gigabytes. Numbers keep all bits. Raises `DesignError` for a larger record, and if
     the file cannot be written.
 
     >>> import scipy.io, tempfile
@@ -107,7 +107,7 @@ def write_mat(path: str | os.PathLike[str], what: Record | Responses) -> None:
     """
     size = 8 * what.length * len(what.channels) if isinstance(what, Record) else 16 * what.values.size
     if size > _LARGEST:
-        too_large = f"the record has {size / 1e9:.3g} GB, MAT files of version 5 hold 2.1 GB"
+        too_large = f"too large for a MAT file of version 5 (got {size / 1e9:.3g} GB, expected at most 2.1 GB)"
         raise refuse(os.fspath(path), too_large, "Write HDF5 (.h5), which MATLAB reads by h5read")
     values = {name: _cells(value) if isinstance(value, tuple) else value for name, value in describe(what).items()}
     values |= {"samples": what.values} if isinstance(what, Record) else response_arrays(what)

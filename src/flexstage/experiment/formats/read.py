@@ -50,12 +50,12 @@ def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | 
     wanted = [each for each in found if options.kind in (None, Kind(each.kind))]
     if not wanted:
         held = " and ".join(each.kind for each in found) or "neither a record nor responses"
-        raise refuse(str(place), f"{held} instead of the requested kind", "Select the other kind (kind)")
+        raise refuse(str(place), f"it contains {held}, not the requested kind", "Select the other kind (kind)")
     if len(wanted) > 1:
         listed = " and ".join(_describe(each) for each in wanted)
-        raise refuse(str(place), f"it holds {listed}", 'Select one (kind): "record" or "responses"')
+        raise refuse(str(place), f"it contains {listed}", 'Select one (kind): "record" or "responses"')
     if isinstance(wanted[0], Record) and not wanted[0].length:
-        raise refuse(str(place), "one of its channels has no samples", "Export the file again, or omit that channel (only)")
+        raise refuse(str(place), "one of its channels has no samples", "Export the file again, or omit that channel (channels)")
     return wanted[0]
 
 
@@ -72,7 +72,7 @@ def _opening(path: Path) -> bytes:
         with path.open("rb") as stream:
             start = stream.read(_START)
     except OSError as error:
-        raise refuse(str(path), f"it cannot be read ({error.strerror})", "Name a file that can be read") from None
+        raise refuse(str(path), f"it cannot be read ({error.strerror})", "Specify a readable file") from None
     if not start.strip():
         raise refuse(str(path), "it is empty", "Export it again")
     return start
@@ -85,7 +85,7 @@ def _format(path: Path, start: bytes) -> Format:
     found = next(claiming, None)
     other = next((name for mark, name in _OTHERS.items() if start.startswith(mark)), None)
     if found is None and other is not None:
-        raise refuse(str(path), f"it is {other}", f"Export one of the forms that are known: {', '.join(known)}")
+        raise refuse(str(path), f"it is {other}", f"Export it in a supported format: {', '.join(known)}")
     return found or CSV
 
 

@@ -1,4 +1,4 @@
-"""Frequency bands: of the pole search, and of the joint fits of modes."""
+"""Frequency bands of the pole search and of the joint fits of modes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Extent:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Band of one pole search, `low` to `high` in Hz; only poles from `first` to `last` are kept."""
+    """Band of one pole search, `low` to `high` in Hz; only poles from `first` to `last` in Hz are kept."""
 
     low: float
     high: float
@@ -34,7 +34,7 @@ class Sweep:
 
 
 def sweeps(low: float, high: float) -> list[Sweep]:
-    """Divide `low` to `high` in Hz into bands, each up to three times its lower end, with small overlaps.
+    """Divide `low` to `high` in Hz into slightly overlapping bands; each reaches up to three times its lower end.
 
     >>> [(round(band.low), round(band.first), round(band.last), round(band.high)) for band in sweeps(10.0, 200.0)]
     [(10, 10, 27, 31), (24, 27, 74, 84), (65, 74, 200, 200)]
@@ -48,9 +48,9 @@ def sweeps(low: float, high: float) -> list[Sweep]:
 def extents(poles: Array, low: float, high: float, *, resolution: Array | float = 0.0, together: float = TOGETHER) -> list[Extent]:
     """Divide poles (k,) in Hz, ascending, into bands for joint fits.
 
-    Two successive poles share a band if they are closer than `together` times the sum of their half-widths. A half-width is -Re(pole), at
-    least the lines' `resolution` in Hz. A band extends 24 half-widths beyond its outer poles, within `low` and `high`. It ends before the
-    next group, at a limit that divides the gap in proportion to the half-widths.
+    Two successive poles share a band if they are closer than `together` times the sum of their half-widths. A half-width is -Re(pole), or
+    the lines' `resolution` in Hz if this is larger. A band extends 24 half-widths beyond its outer poles, within `low` and `high`. It ends
+    before the next group, at a limit that divides the gap in proportion to the half-widths.
 
     >>> found = extents(np.array([-1 + 100j, -1 + 101j, -1 + 200j]), 1.0, 300.0)
     >>> [(round(band.low), round(band.high), band.members) for band in found]

@@ -1,4 +1,4 @@
-"""Stabilisation: recurring poles over increasing order, and automatic candidates for modes."""
+"""Stabilisation: poles that recur as the order increases, and automatic candidates for modes."""
 
 from __future__ import annotations
 
@@ -49,11 +49,11 @@ class _Track:
 
 
 def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Stabilisation, tuple[Candidate, ...]]:
-    """Build the diagram of poles of increasing order, and the candidates: poles in two fifths of the orders or more.
+    """Build the diagram of poles of increasing order, and the candidates: poles found at two fifths of the orders or more.
 
     A track is one pole followed over the orders. A pole continues the nearest track of the orders below, by distance in the complex plane
-    and by participation. Each track takes one pole per order, so that close pairs remain two tracks. Participations of repeated poles are
-    arbitrary in a common plane and differ between orders. Candidates are therefore taken from a common order if possible.
+    and by participation. Each track gets one pole per order, so that close pairs remain two tracks. Participations of repeated poles are
+    arbitrary within a common plane and differ between orders. Candidates are therefore taken from a common order if possible.
 
     >>> one = [Poles(order, np.array([-0.1 + 10j]), np.ones((1, 1))) for order in range(1, 6)]
     >>> diagram, candidates = stabilisation(tuple(one), 0.1)
@@ -81,7 +81,7 @@ def stabilisation(found: tuple[Poles, ...], highest_damping: float) -> tuple[Sta
 
 
 def merge(sweeps: Iterable[tuple[Candidate, ...]]) -> tuple[Candidate, ...]:
-    """Merge candidates of overlapping bands by ascending frequency; of duplicates the one with more orders is kept.
+    """Merge candidates of overlapping bands, sorted by frequency; of duplicates, the one found at more orders is kept.
 
     Candidates of the same band are never duplicates.
 

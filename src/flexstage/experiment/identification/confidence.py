@@ -17,14 +17,14 @@ _LINES = 3
 _NEAR, _NEAREST, _BY_CHANCE = (1.5, 4.0), 2.0, 1e-3
 """Neighbourhood of a mode: half-widths, minimum lines per parameter, and probability of a false alarm."""
 SAME = 0.1
-"""Relative power difference below which inputs equal transients."""
+"""Relative power difference below which inputs count as equal to transients."""
 
 
 @dataclass(frozen=True, eq=False)
 class Deviations:
     """Standard deviations of modes: `frequencies` (k,) in Hz, `damping` (k,) of the damping ratios.
 
-    `shapes` (p, k) are the deviations of the real part and of the imaginary part of shapes with largest component 1.
+    `shapes` (p, k) applies to the real part and to the imaginary part of shapes with largest component 1.
     """
 
     frequencies: Array
@@ -43,9 +43,10 @@ class Deviations:
 def misfits(band: Band, modal: Modal) -> Array:
     """Compute the residual of the fit near each mode (k,) relative to the band's noise; 1 if not significant.
 
-    With noise only, the residual is equal everywhere, except for the degrees of freedom of the mode. Outputs with coherent noise count
-    once. A residual with a probability below 1/1000 is significant: the mode is not linear, viscous or isolated. Two neighbourhoods are
-    tested, 1.5 and 4 half-widths. In the first, a mode that varies or has unrecorded excitation has the largest residual.
+    With noise only, the residual has the same level everywhere, apart from the degrees of freedom that the mode uses. Outputs with coherent
+    noise count once. A residual with a probability below 1/1000 is significant: the mode is then nonlinear, not viscously damped, or not
+    isolated. Neighbourhoods of 1.5 and of 4 half-widths are tested. The residual of a mode that varies or has unrecorded excitation is
+    largest in the first.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit, noise
@@ -92,8 +93,8 @@ def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None)
     `inflation` multiplies the variances. With the gradient's covariance `scatter`, S, the covariance is I^-1 S I^-1, valid also for noise
     correlated between outputs (White 1982).
 
-    Parameters are complex and analytic: the covariance of real and of imaginary parts is half the inverse. The common scale factor of a
-    shape and its participation is arbitrary. It is eliminated by fixing the largest participation.
+    The residual is analytic in its complex parameters, so real and imaginary parts each have half of this covariance. The common scale
+    factor of a shape and its participation is arbitrary. It is eliminated by fixing the largest participation.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit
@@ -118,9 +119,9 @@ def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None)
 def significance(band: Band, found: Fit, limit: float) -> Array:
     """Compute the test statistic (k,) for the presence of each mode: chi-squared with `freedoms` degrees of freedom if the mode is absent.
 
-    It is Wald's statistic 2 phi^H C^-1 phi of the mode's shape phi. If Wald's statistic is below fifty times `limit`, the likelihood ratio
-    replaces it (Wilks 1938): twice the decrease of the log-likelihood when the mode is removed and the others are fitted again. A factor
-    of at most 1 corrects the ratio for noise correlated between outputs (White 1982).
+    It is Wald's statistic 2 phi^H C^-1 phi of the mode's shape phi with covariance C. If Wald's statistic is below fifty times `limit`, the
+    likelihood ratio replaces it (Wilks 1938): twice the decrease of the log-likelihood when the mode is removed and the others are fitted
+    again. A factor of at most 1 corrects the ratio for noise correlated between outputs (White 1982).
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()

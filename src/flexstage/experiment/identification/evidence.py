@@ -189,7 +189,7 @@ def _scale_lines(lines: Lines, input_scale: Array, output_scale: Array) -> Lines
 
 
 def choose_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Segments:
-    """Choose segments of records for spectra: about `wanted` of them, and at least three for each input.
+    """Choose the segments of records for spectra: about `wanted` segments, and at least three for each input.
 
     Long segments resolve sharp resonances; many segments average the noise. A single sweep excites each frequency only once, so averages
     are impossible. Its segment is the whole record, without a window.
@@ -306,9 +306,9 @@ _INFLATION = {Window.BOXCAR: 1.0, Window.HANN: 1.94, Window.HAMMING: 1.74, Windo
 def _response_findings(known: Responses, steps: Array) -> list[Finding]:
     where = known.where
     if len(steps) < 15:
-        return [Finding(where, f"it has {len(steps) + 1} lines", "Use responses at 16 frequencies or more")]
+        return [Finding(where, f"too few frequencies (got {len(steps) + 1})", "Use responses at 16 frequencies or more")]
     if not np.all(np.isfinite(known.values)):
-        return [Finding(where, f"{int(np.sum(~np.isfinite(known.values)))} values are not numbers", "Leave those channels or lines out")]
+        return [Finding(where, f"{int(np.sum(~np.isfinite(known.values)))} values are not numbers", "Omit these channels or frequencies")]
     if (falling := rising_problem(known.frequencies)) is not None:
         return [Finding(where, falling, "Export each frequency once, from the lowest to the highest")]
     return []
@@ -333,7 +333,7 @@ def _roughness(frequencies: Array, values: Array) -> Array:
 
 def _findings(records: tuple[Record, ...]) -> list[Finding]:
     if not records:
-        return [Finding("records", "there is none", "Give a record")]
+        return [Finding("records", "no record", "Specify a record")]
     first = records[0]
     found: list[Finding] = []
     for record in records:
@@ -344,10 +344,10 @@ def _findings(records: tuple[Record, ...]) -> list[Finding]:
             found.append(Finding(where, "no channel is an output", "Specify the output channels"))
         if record.rate != first.rate:
             found.append(
-                Finding(where, f"it is sampled at {record.rate:g} Hz, the first at {first.rate:g} Hz", "Sample all at the same rate")
+                Finding(where, f"it is sampled at {record.rate:g} Hz, the first record at {first.rate:g} Hz", "Sample all at the same rate")
             )
         names, wanted = ({channel.name for channel in each.outputs} for each in (record, first))
         if names != wanted:
-            what = f"its outputs are {', '.join(sorted(names))}, those of the first {', '.join(sorted(wanted))}"
+            what = f"its outputs differ from the first record (got {', '.join(sorted(names))}, expected {', '.join(sorted(wanted))})"
             found.append(Finding(where, what, "Use the same output names in all records"))
     return found

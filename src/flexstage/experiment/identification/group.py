@@ -59,7 +59,7 @@ class BandModes:
     widening: Array
 
     def select(self, chosen: Array) -> BandModes:
-        """Subset of the modes, by index."""
+        """Return a subset of the modes, by index."""
         modal, spread = self.modal, self.deviations
         return BandModes(
             self.group,
@@ -73,7 +73,7 @@ class BandModes:
 
 
 def fit_group(known: Evidence, cells: Cells, candidates: tuple[Candidate, ...], hunt: ModeSearch) -> BandModes | None:
-    """Fit the modes of one group of candidates, remove insignificant ones, and fit again with the residual noise.
+    """Fit the modes of one group of candidates, remove insignificant ones, and fit again with the noise found in the residual.
 
     `cells` belong to the group's band. Candidates outside the group represent the modes outside the band. Returns `None` if no mode is
     significant.

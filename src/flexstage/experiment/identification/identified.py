@@ -24,7 +24,8 @@ DampingRatio: TypeAlias = Annotated[float, RATIO, Heading("damping ratio", digit
 DampingInterval: TypeAlias = Annotated[tuple[float, float], RATIO, Heading("95 % interval", unit="%")]
 Widening: TypeAlias = Annotated[float, Heading("interval inflation", digits=2, mark=Graded(1.0))]
 INFLATION = (
-    "Interval inflation: width of the intervals over the width due to noise alone; above 1 where the residual near the mode exceeds noise."
+    "Interval inflation: width of the intervals divided by their width due to noise alone; above 1 if the residual near the mode exceeds "
+    "noise or may contain a further mode."
 )
 
 
@@ -40,8 +41,8 @@ class IdentifiedMode:
         "number frequency frequency_interval damping damping_interval widening complexity significance",
         notes=(
             INFLATION,
-            "Complexity: 0 where all outputs move in phase or opposite, 1 for a travelling wave.",
-            "Test statistic: chi-squared of the mode, over the value that noise would exceed once in 1e9 tries.",
+            "Complexity: 0 if all outputs move in phase or in opposite phase, 1 for a travelling wave.",
+            "Test statistic: chi-squared of the mode, divided by the value that noise exceeds once in 1e9 cases.",
         ),
     )
 
@@ -63,11 +64,12 @@ class Identified(InNotebook):
 
     `frequencies` (k,) [Hz] are natural frequencies |pole|/(2 pi), `damping` (k,) damping ratios. `shapes` (p, k) are complex, by output,
     with largest component 1; `participation` (k, m) is complex, by input. H is the sum of shape participation / (j w - pole) + conjugate.
-    Deviations of shapes apply to the real and to the imaginary part. `widening` (k,) is the inflation factor of deviations, above 1 if
-    the residual near the mode exceeds noise. `significance` (k,) is the mode's chi-squared statistic, relative to the level that noise
-    reaches once in 1e9. `close` lists modes closer than their half-widths: compare them by subspace. `noise` (p,) is the noise density of
-    the outputs, in the output's unit squared per Hz. `warnings` list limits of the data. `peaks` are peaks not confirmed as modes.
-    `delay` [s] is the common delay of all outputs, removed before the fit (0: none). With a delay, H is multiplied by e^{-j w delay}.
+    Deviations of shapes apply to the real and to the imaginary part. `widening` (k,) is the inflation factor of deviations, above 1 if the
+    residual near the mode exceeds noise or may contain a further mode. `significance` (k,) is the mode's chi-squared statistic, relative to
+    the level that noise reaches once in 1e9. `close` lists modes closer than their half-widths: compare their subspace. `noise` (p,) is the
+    noise density of the outputs, in the output's unit squared per Hz. `data_warnings` lists limits of the data. `peaks` are peaks not
+    confirmed as modes. `delay` [s] is the common delay of all outputs, removed before the fit (0: none). With a delay, H is multiplied by
+    e^{-j w delay}.
     """
 
     frequencies: Array
@@ -118,16 +120,19 @@ class Identified(InNotebook):
             return (f"No mode was found {band}",)
         late, spread = 1e3 * self.delay, 1e3 * NORMAL_95 * self.delay_deviation
         close = (
-            f"Modes {' and '.join(map(str, group))} are closer than their half-widths: use their subspace." for group in self.close_modes
+            f"Modes {' and '.join(map(str, group))} are closer than their half-widths: compare their subspace."
+            for group in self.close_modes
         )
         delay = (
-            [f"All outputs come {late:.4g} ms late (95 %: +-{spread:.2g} ms); the delay is removed before the fit."] if self.delay else []
+            [f"All outputs are {late:.4g} ms late (95 % interval: +-{spread:.2g} ms). The delay is removed before the fit."]
+            if self.delay
+            else []
         )
-        return (*close, f"Searched {band}", *delay)
+        return (*close, f"Modes were searched {band}", *delay)
 
     @property
     def close_modes(self) -> Annotated[tuple[tuple[int, ...], ...], VIEW]:
-        """Numbers (from 1) of modes closer than their half-widths, group by group: compare them by subspace."""
+        """Numbers (from 1) of modes closer than their half-widths, group by group: compare their subspace."""
         return tuple(tuple(index + 1 for index in group) for group in self.close)
 
     @property

@@ -38,7 +38,7 @@ _LEAST_PARTS, _MOST_PARTS = 3, 8
 
 @dataclass(frozen=True)
 class Search(CheckedFields):
-    """Search parameters: frequencies in `band` (Hz; default: the whole range of the record), damping up to `highest_damping`.
+    """Search parameters: frequencies in `band` (Hz; default: the whole range of the record), damping ratios up to `highest_damping`.
 
     `segments` are the segments of the spectra for candidate modes (default: by the record's length). `excitation` is the stage's
     excitation: without recorded inputs, `identification` identifies modes from outputs only.
@@ -58,13 +58,13 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     are spectra of the records, one for each, which are then not computed again. Tones absent from the inputs are removed from the outputs.
 
     Candidates are the stable poles of pLSCF on H1. Each group of close candidates is then fitted by maximum likelihood to the transform of
-    the whole record, with its transient, without window and leakage. Inputs are assumed exact, and the noise density of outputs to vary
+    the whole record, with its transient, without window and leakage. Inputs are assumed to be exact. The noise density of outputs must vary
     slowly with frequency. Intervals are also valid for noise correlated between outputs (Pintelon & Schoukens 2012, ch. 9 and 10).
 
-    If the residual near a mode exceeds noise (probability 1/1000), its intervals are inflated to the larger of two values: the residual,
-    or the scatter between independent parts of the data (`jackknife`). Parts are sub-bands, inputs, records and time intervals.
+    If the residual near a mode exceeds noise (probability 1/1000), its intervals are inflated in proportion to the residual, or to the
+    scatter between independent parts of the data (`jackknife`) if this is larger. Parts are sub-bands, inputs, records and time intervals.
 
-    A mode must be significant: noise must reach its chi-squared statistic at most once in 1e9. The limit is three times higher if the
+    A mode must be significant: noise reaches its chi-squared statistic at most once in 1e9 cases. The limit is three times higher if the
     standard deviation of the damping exceeds a third of the damping. The recorded inputs must also excite the mode (an F-test at 1e-9). If
     the inputs leave more than 2 % of a mode's motion unexplained, a force was not recorded: all modes are then fitted together.
 
@@ -131,7 +131,7 @@ def _band(known: Evidence, search: Search) -> tuple[float, float]:
         require(few_lines(known, chosen, int(np.sum((lines >= chosen[0]) & (lines <= chosen[1])))))
         return chosen
     what = f"modes between {asked[0]:g} and {asked[1]:g} Hz are requested; the data reach from {low:.4g} to {high:.4g} Hz"
-    require([Finding(known.where, what, "Request a band within it, or record faster or longer")])
+    require([Finding(known.where, what, "Request a band within this range, or record faster or longer")])
     return low, high
 
 
@@ -293,7 +293,7 @@ def _restore_units(known: Evidence, modal: Modal, wide: Array, order: Array) -> 
 
 
 def close_groups(poles: Array) -> tuple[tuple[int, ...], ...]:
-    """Group successive modes, with `poles` (k,), that are closer than the mean of their half-widths; returns the indices of each group."""
+    """Group successive modes (`poles` (k,)) that are closer than the mean of their half-widths, and return the indices of each group."""
     groups: list[list[int]] = []
     for index in range(len(poles)):
         before = groups[-1][-1] if groups else None

@@ -14,7 +14,7 @@ _OCTAVES = 6
 
 
 def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
-    """Compute deviations (k,) of poles in Hz, of real and of imaginary part, by omitting one group of cells at a time.
+    """Compute deviations (k,) in Hz of the real and the imaginary part of poles, by omitting one group of cells at a time.
 
     `groups` (c,) are the group numbers of the cells, from 0 to G - 1. The variance is sigma^2 = (G - 1)/G sum |d_g|^2 / 2. The change d_g
     of the pole without group g is a Newton step, -(I - I_g)^-1 s_g. I_g and s_g are the contributions of the group to information and
@@ -51,8 +51,8 @@ def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
 def sub_bands(band: Band, pole: complex) -> Array:
     """Divide the cells into groups (c,) by distance from a pole, for `jackknife`.
 
-    One group is within a half-width of the pole. On each side, every further octave of distance is a group. The residual of a wrong model
-    varies over a half-width near the resonance, and over the distance from the resonance further away.
+    One group is within a half-width of the pole. On each side, every further octave of distance is a group. Near the resonance, the
+    residual of a wrong model varies within a half-width; further away, it varies over its distance from the resonance.
 
     >>> from flexstage.experiment.example import POLE, one_mode_band
     >>> sub_bands(one_mode_band()[0], POLE).tolist()

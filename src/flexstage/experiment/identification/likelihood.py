@@ -24,7 +24,8 @@ _DIGITS = 1e-6
 class Modal:
     """Modes of a band: H = sum of shape participation / (j f - pole), plus terms of modes outside the band.
 
-    `poles` (k,) are in Hz (rad/s over 2 pi). `participation` (k, m+b) is by input and by transient of each block; `shapes` (p, k).
+    `poles` (k,) are in Hz (rad/s over 2 pi). `participation` (k, m+b) has a column for each input and each block's transient; `shapes` is
+    (p, k).
     """
 
     poles: Array
@@ -41,10 +42,10 @@ class Modal:
 class Band:
     """Data of one band: its cells, and the noise `variance` (p, c) of every output per line in every cell.
 
-    `background` (c, b, 8) are the basis functions of modes outside the band, as Legendre coefficients in every cell. `smear` describes the
-    smearing of lines by windows, if any. `shape` (p, c) is the known relative noise variance over frequency. `rounding` (p,) is the
-    variance per line caused by rounding of samples. The first `inputs` columns of the drive are inputs, the others transients (default:
-    all are inputs).
+    `background` (c, b, 8) are the basis functions of modes outside the band, as Legendre coefficients in every cell. `smear` describes how
+    windows smear the lines, if known. `shape` (p, c) is the known relative noise variance over frequency. `rounding` (p,) is the variance
+    per line caused by rounding of samples. The first `inputs` columns of the drive are inputs, the others transients (default: all are
+    inputs).
     """
 
     cells: Cells
@@ -58,7 +59,7 @@ class Band:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Modes fitted to a band, with the negative log-likelihood (`cost`: chi-squared per complex number) and Fisher information.
+    """Modes fitted to a band, with `cost`, the negative log-likelihood (half of chi-squared), and the Fisher information.
 
     `information` (q, q) is complex. Its parameters are, in this order: poles, participations mode by mode, shapes output by output.
     """
@@ -162,7 +163,7 @@ def with_shapes(band: Band, poles: Array, participation: Array) -> Modal:
 
 
 def residual_power(band: Band, modal: Modal) -> Array:
-    """Compute residual powers and cross powers (p, p, c) in every cell, the first output conjugated.
+    """Compute the powers and cross powers (p, p, c) of the residuals in every cell; the first output is conjugated.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -180,7 +181,7 @@ def residual_power(band: Band, modal: Modal) -> Array:
 
 
 def explained_share(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
-    """Compute the outputs explained by modes and background, as factors (p, c, 8, n) of Z (see `Cells`), block by block.
+    """Compute the outputs as explained by modes and background: factors (p, c, 8, n) of Z (see `Cells`), block by block.
 
     Yields the indices of the block's cells and the factors in these cells.
 
@@ -212,9 +213,9 @@ def noise(band: Band, modal: Modal) -> Array:
 def silence(cells: Cells, rounding: Array | float) -> Array:
     """Compute the lower bound of the noise variance (p, c) per line.
 
-    Cells represent responses to six digits. This relative error e is equal at all N lines, so averaging does not reduce it. The lower
-    bound of N e^2 times the power prevents false modes and too narrow intervals. `rounding` (p,) is the variance caused by rounding of an
-    output's samples, without other noise.
+    Cells represent responses to six digits. The relative error e of this representation is common to all N lines, so averaging does not
+    reduce it. The lower bound, N e^2 times the power, prevents false modes and too narrow intervals. `rounding` (p,) is the variance caused
+    by rounding of an output's samples, without other noise.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> cells = one_mode_band()[0].cells
@@ -253,9 +254,9 @@ def scatter(band: Band, modal: Modal) -> Array:
 
 
 def shares(band: Band, modal: Modal, groups: Array) -> tuple[Array, Array]:
-    """Compute the contribution of each group of cells to gradient (g, q) and information (g, q, q) (see `Fit.information`).
+    """Compute the contribution of each group of cells to the gradient (g, q) and the information (g, q, q) (see `Fit.information`).
 
-    `groups` (c,) are the group numbers of the cells, from 0. At the fit the gradients sum to zero.
+    `groups` (c,) are the group numbers of the cells, from 0. For fitted modes the gradients sum to zero.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()

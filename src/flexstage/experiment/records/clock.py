@@ -17,11 +17,11 @@ from flexstage.experiment.records.record import RATES, Channel, Record, Samples
 _LISTED = 5
 _BLOCK = 262_144
 TIME_SCALES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
-"""Seconds per time unit."""
+"""Seconds per unit of time."""
 
 
 def round_nominal(value: float, uncertainty: float) -> float:
-    """Find the number with the fewest digits, or with the fewest digits of its inverse, that agrees with a rounded value.
+    """Find the number that agrees with a rounded value and has the fewest digits, itself or in its inverse.
 
     `uncertainty` is the relative uncertainty of the value.
 
@@ -68,10 +68,10 @@ class Clock:
 
 
 def read_clock(times: Array, where: str) -> Clock:
-    """Determine the sampling clock from times (n,) in s. Raises `DesignError` for too few, non-finite, repeated or uneven times.
+    """Determine the sampling clock from times (n,) in s; raises `DesignError` for too few, non-finite, repeated or uneven times.
 
-    A time step is a gap if it differs from the median step by more than half. The rate follows from the other steps, rounded within the
-    precision of the times.
+    A time step is a gap if it differs from the median step by more than half of it. The rate follows from the other steps, rounded within
+    the precision of the times.
 
     >>> read_clock(np.array([0.0, 0.1, 0.2, 0.7, 0.8]), "a.csv").stretches
     ((0, 3), (3, 5))
@@ -89,9 +89,9 @@ def read_clock(times: Array, where: str) -> Clock:
 
 
 def determine_clock(samples: Samples, options: Options, where: str, *, scale: float = 1.0, stated: float | None = None) -> Clock:
-    """Determine the sampling clock from the first column of samples, times in units of `scale` [s]; raises `DesignError` with its faults.
+    """Determine the sampling clock from the first column of samples, times in units of `scale` [s]; raises `DesignError` if it is faulty.
 
-    A rate `stated` in the file [Hz] replaces the rate of the times; both must agree within a thousandth.
+    A rate `stated` in the file [Hz] replaces the rate that follows from the times; both must agree within a thousandth.
 
     >>> from flexstage.experiment.records.record import InMemory
     >>> times = InMemory(np.array([[0.0], [0.1], [0.2], [0.7], [0.8]]))
@@ -107,13 +107,13 @@ def determine_clock(samples: Samples, options: Options, where: str, *, scale: fl
         raise DesignError([_gaps(clock, where)])
     if stated is not None and abs(stated / clock.rate - 1.0) > 1e-3:
         raise refuse(
-            where, f"contradictory rates: {clock.rate:g} Hz by its times, {stated:g} Hz in the file", "Specify the correct rate (rate)"
+            where, f"contradictory rates: {clock.rate:g} Hz in its times, {stated:g} Hz in the file", "Specify the correct rate (rate)"
         )
     return replace(clock, rate=stated or clock.rate)
 
 
 def clocked_record(channels: Iterable[Channel], samples: Samples, clock: Clock, options: Options, *, name: str, where: str) -> Record:
-    """Build a record of the selected channels over the longest interval of a clock without gaps.
+    """Build a record of the selected channels over the clock's longest interval without gaps.
 
     >>> from flexstage.experiment.records.record import Channel, InMemory
     >>> clock = Clock(1.0, 0.0, ((0, 1), (1, 3)), (0.0, 7.0))
@@ -126,7 +126,7 @@ def clocked_record(channels: Iterable[Channel], samples: Samples, clock: Clock, 
 
 
 def longest_stretch(record: Record, clock: Clock) -> Record:
-    """Extract the longest interval of a record without gaps, with its start time; unchanged without gaps."""
+    """Return the longest interval without gaps of a record, with its start time; a record without gaps is unchanged."""
     if len(clock.stretches) < 2:
         return record
     return replace(record.part(*clock.longest), start=clock.starts[clock.stretches.index(clock.longest)])
@@ -140,21 +140,21 @@ def _gaps(clock: Clock, where: str) -> Finding:
         f"there {'is 1 gap' if gaps == 1 else f'are {gaps} gaps'} between samples, before {listed}{' and more' if gaps > _LISTED else ''}"
     )
     length = f"{stop - start} samples ({(stop - start) / clock.rate:.4g} s)"
-    return Finding(where, what, f'The longest stretch without gaps has {length}: accept "gaps" to use it alone')
+    return Finding(where, what, f'The longest stretch without gaps has {length}: accept "gaps" to use only this stretch')
 
 
 def _problems(times: Array, typical: float, jumps: int, where: str) -> Iterator[Finding]:
     """First fault of times as a clock."""
     count, broken = len(times), int(np.count_nonzero(~np.isfinite(times)))
     if count < 2:
-        yield Finding(where, f"it has {count} samples", "Use a record of at least two samples")
+        yield Finding(where, f"too few samples (got {count})", "Use a record of at least two samples")
     elif broken:
-        yield Finding(where, f"{broken} of {count} times are not numbers", "Correct them, or specify the rate")
+        yield Finding(where, f"{broken} of {count} times are not numbers", "Correct the times, or specify the rate")
     elif not typical > 0.0:
-        what = f"its times do not rise: the usual step is {typical:.4g} s, from {times[0]:.6g} s to {times[-1]:.6g} s"
+        what = f"its times do not increase: the median step is {typical:.4g} s, from {times[0]:.6g} s to {times[-1]:.6g} s"
         yield Finding(where, what, "Write times with more digits, or specify the rate")
     elif not RATES[0] <= 1.0 / typical <= RATES[1]:
-        yield Finding(where, f"its usual step is {typical:.4g} s, which is none", "Write times in s, or state the rate")
+        yield Finding(where, f"invalid median time step (got {typical:.4g} s)", "Write times in s, or specify the rate")
     elif jumps > max(2, 0.01 * count):
-        what = f"its samples are not evenly spaced: {jumps} of {count} steps differ by more than half from {typical:.4g} s"
+        what = f"its samples are not evenly spaced: {jumps} of {count} steps differ by more than half from the median, {typical:.4g} s"
         yield Finding(where, what, "Resample the record evenly, or specify the rate if only the times are wrong")

@@ -1,6 +1,6 @@
 """Checks of a record: faults by channel, and the usable remainder.
 
-One pass checks everything, and all faults are reported together. Data are omitted only if `FaultTolerance` accepts that.
+One pass checks everything, and all faults are reported together. Faulty data are omitted only if `FaultTolerance` accepts the fault.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ _SEGMENTS_AN_INPUT = 5
 _BROKEN_SHARE = 0.5
 _HAMMERS = ("hammer*", "force*", "impact*", "f", "f[0-9]*", "f[xyz]")
 _UNWINDOWED = (
-    'If only noise was cut off, accept "windowed" to use it as it is; outputs must not have been weighted by an exponential window, which '
-    "adds to damping: save those as recorded"
+    'If the window removed only noise, accept "windowed" to use the force unchanged. Save outputs without an exponential window, which '
+    "would add damping"
 )
 
 
@@ -40,7 +40,7 @@ _UNWINDOWED = (
 class RecordRequirements(CheckedFields):
     """Record requirements: `resolution` in Hz with a number of `averages`, the `highest` mode in Hz, channels of the stage as (name, unit).
 
-    With `unrecorded`, the excitation was not recorded, and the record has no inputs.
+    With `unrecorded`, the excitation was not recorded, and the record must have no inputs.
     """
 
     resolution: float | None = None
@@ -93,7 +93,7 @@ def examine(record: Record, requirements: RecordRequirements = _NEEDS) -> Examin
     >>> noise = np.random.default_rng(1).normal(size=(4096, 2)) * [1.0, 0.0]
     >>> shaken = in_memory([Channel("u1", "V", Role.INPUT), Channel("S1", "um", Role.OUTPUT)], 2048.0, noise)
     >>> [str(finding) for finding in examine(shaken).findings]
-    ['record: S1: it is zero throughout. Check cable and range, or accept "dead" to leave it out.']
+    ['record: S1: it is zero throughout. Check cable and range, or accept "dead" to omit the channel.']
     """
     found = gather(record)
     where = record.where
@@ -110,10 +110,10 @@ def examine(record: Record, requirements: RecordRequirements = _NEEDS) -> Examin
 def usable_record(
     record: Record, accept_faults: frozenset[FaultTolerance] = frozenset(), requirements: RecordRequirements = _NEEDS
 ) -> Record:
-    """Return the usable record: unchanged without faults, else without the faulty parts that `accept_faults` allows to omit.
+    """Return the usable record: unchanged without faults, else without the faulty data that `accept_faults` allows to omit.
 
-    Dead channels, dependent inputs, and channels without a role or absent from the stage are removed. Of a record with non-finite samples
-    the longest finite interval remains. Raises `DesignError` with every fault that is not accepted.
+    Dead channels, dependent inputs, and channels without a role or absent from the stage are removed. If a record has non-finite samples,
+    only its longest interval of finite samples is kept. Raises `DesignError` with every fault that is not accepted.
 
     >>> from flexstage.experiment.records.record import in_memory
     >>> noise = np.random.default_rng(1).normal(size=(4096, 3)) * [1.0, 0.0, 1.0]
@@ -141,7 +141,7 @@ def responses_findings(responses: Responses, requirements: RecordRequirements = 
 
     >>> one = Responses(np.array([1.0, 2.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.ones((2, 1, 1), complex))
     >>> [fault.finding.what for fault in responses_findings(one, RecordRequirements(highest=5.0))]
-    ['its responses end at 2 Hz, the highest mode is at 5 Hz']
+    ['its responses end at 2 Hz, below the highest mode at 5 Hz']
     """
     where = responses.where
     faults = [
@@ -152,8 +152,8 @@ def responses_findings(responses: Responses, requirements: RecordRequirements = 
     if (falling := rising_problem(frequencies)) is not None:
         faults.append(_fault(None, where, "", falling, "Export each frequency once, from the lowest to the highest"))
     elif requirements.highest is not None and requirements.highest > frequencies[-1]:
-        what = f"its responses end at {frequencies[-1]:g} Hz, the highest mode is at {requirements.highest:g} Hz"
-        faults.append(_fault(FaultTolerance.SLOW, where, "", what, 'Measure a wider band, or accept "slow" to use the available one'))
+        what = f"its responses end at {frequencies[-1]:g} Hz, below the highest mode at {requirements.highest:g} Hz"
+        faults.append(_fault(FaultTolerance.SLOW, where, "", what, 'Measure a wider band, or accept "slow" to use the available band'))
     if responses.coherence is not None:
         faults += _coherence(responses.coherence, where)
     return faults
@@ -168,8 +168,8 @@ def _coherence(coherence: Array, where: str) -> Iterator[Fault]:
     outside = int(np.sum(~((coherence >= 0.0) & (coherence <= 1.0 + 1e-6))))
     if outside:
         low, high = float(np.nanmin(coherence)), float(np.nanmax(coherence))
-        what = f"its coherence runs from {low:g} to {high:g}, outside 0 to 1 in {outside} of {coherence.size} values"
-        yield _fault(FaultTolerance.CLIPPED, where, "", what, 'Check the export, or accept "clipped" to limit it')
+        what = f"its coherence ranges from {low:g} to {high:g}: {outside} of {coherence.size} values are outside 0 to 1"
+        yield _fault(FaultTolerance.CLIPPED, where, "", what, 'Check the export, or accept "clipped" to limit it to 0 to 1')
 
 
 def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault]:
@@ -182,10 +182,10 @@ def _samples(record: Record, found: RecordNumbers, where: str) -> Iterator[Fault
         if (windowed := _force_window(record, channel, numbers)) is not None:
             yield _fault(FaultTolerance.WINDOWED, where, name, windowed, _UNWINDOWED)
         elif (dead := _dead(record, channel, numbers) or _faint(record, found, channel, numbers)) is not None:
-            yield _fault(FaultTolerance.DEAD, where, name, dead, 'Check cable and range, or accept "dead" to leave it out')
+            yield _fault(FaultTolerance.DEAD, where, name, dead, 'Check cable and range, or accept "dead" to omit the channel')
         elif (clipped := _clipped(record, channel, numbers)) is not None:
             size = "wider" if clipped.startswith("it is clipped") else "smaller"
-            advice = f'Record with a {size} range, or accept "clipped" to use it unchanged'
+            advice = f'Record with a {size} range, or accept "clipped" to use the channel unchanged'
             yield _fault(FaultTolerance.CLIPPED, where, name, clipped, advice)
 
 
@@ -194,9 +194,9 @@ def _broken_samples(record: Record, name: str, numbers: Numbers, stretch: tuple[
     first = record.start + numbers.first_broken / record.rate
     what = f"{numbers.broken} of {record.length} samples are not numbers, the first at {first:.6g} s"
     if numbers.broken > _BROKEN_SHARE * record.length:
-        return _fault(FaultTolerance.DEAD, record.where, name, what, 'Record it again, or accept "dead" to leave it out')
+        return _fault(FaultTolerance.DEAD, record.where, name, what, 'Record it again, or accept "dead" to omit the channel')
     length = f"{stop - start} samples ({(stop - start) / record.rate:.4g} s)"
-    advice = f'The longest stretch without has {length}: accept "gaps" to use it alone'
+    advice = f'The longest finite stretch has {length}: accept "gaps" to use only this stretch'
     return _fault(FaultTolerance.GAPS, record.where, name, what, advice)
 
 
@@ -215,7 +215,7 @@ def _dead(record: Record, channel: Channel, numbers: Numbers) -> str | None:
         return None
     start = record.start + numbers.still_from / record.rate
     stop = start + numbers.still / record.rate
-    return f"it is frozen from {start:.6g} s to {stop:.6g} s, {numbers.still} of {record.length} samples"
+    return f"it is frozen from {start:.6g} s to {stop:.6g} s: {numbers.still} of {record.length} samples are equal"
 
 
 def _force_window(record: Record, channel: Channel, numbers: Numbers) -> str | None:
@@ -226,8 +226,8 @@ def _force_window(record: Record, channel: Channel, numbers: Numbers) -> str | N
     if not zeros or not force or channel.role is Role.OUTPUT:
         return None
     start, share = record.start + numbers.still_from / record.rate, 100.0 * numbers.still_from / record.length
-    stretch = f"for {numbers.still} of {record.length} samples"
-    return f"it looks force-windowed: exact zeros from {start:.6g} s on, at {share:.3g} % of the record, {stretch}"
+    zeros = f"{numbers.still} of {record.length} samples"
+    return f"it looks force-windowed: exact zeros from {start:.6g} s on, after {share:.3g} % of the record ({zeros})"
 
 
 def _faint(record: Record, found: RecordNumbers, channel: Channel, numbers: Numbers) -> str | None:
@@ -237,7 +237,7 @@ def _faint(record: Record, found: RecordNumbers, channel: Channel, numbers: Numb
     others = [each.rms for other, each in pairs if other is not channel and (other.unit, other.role) == kind and each.rms > 0.0]
     if not others or numbers.rms >= _DEAD_BESIDE_OTHERS * float(np.median(others)):
         return None
-    return f"its rms is {numbers.rms:.3g} {channel.unit} (others of its kind: {float(np.median(others)):.3g} {channel.unit})"
+    return f"its rms is {numbers.rms:.3g} {channel.unit} (median of similar channels: {float(np.median(others)):.3g} {channel.unit})"
 
 
 def _clipped(record: Record, channel: Channel, numbers: Numbers) -> str | None:
@@ -248,18 +248,18 @@ def _clipped(record: Record, channel: Channel, numbers: Numbers) -> str | None:
         return f"it has {round(numbers.levels) + 1} levels between {span}: its resolution is too coarse"
     for end, value, pair, tail in (
         ("highest", numbers.high, numbers.pairs[1], numbers.highs),
-        ("least", numbers.low, numbers.pairs[0], -numbers.lows),
+        ("lowest", numbers.low, numbers.pairs[0], -numbers.lows),
     ):
         at, after = count_ends(tail)
         if pair == value and at >= _PILE and at > _PILE_RATIO * (after + _MISSED):
-            return f"it is clipped: {at} or more of {record.length} samples are exactly its {end} value, {_with_unit(value, channel)}"
+            return f"it is clipped: at least {at} of {record.length} samples equal its {end} value, {_with_unit(value, channel)}"
     return None
 
 
 def _units(channels: Iterable[Channel], where: str) -> Iterator[Fault]:
     for channel in channels:
         if (problem := unit_problem(channel.unit)) is not None:
-            advice = 'State it (units, by names or patterns, such as "S*=um"), or accept "units" to use the numbers as they are'
+            advice = 'Specify it (units), e.g. "S*=um", or accept "units" to use the numbers unchanged'
             yield _fault(FaultTolerance.UNITS, where, channel.name, problem, advice)
 
 
@@ -273,8 +273,8 @@ def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fau
         if shares[worst] < _EXPLAINED:
             return
         name = names[alive.pop(worst)]
-        what = f"{100.0 * shares[worst]:.3g} % of it is explained by the other inputs, {', '.join(names[number] for number in alive)}"
-        advice = 'Drive the inputs with independent noise, or accept "dependent" to omit it: its effect then counts with the others'
+        what = f"{100.0 * shares[worst]:.3g} % of its power is explained by the other inputs, {', '.join(names[k] for k in alive)}"
+        advice = 'Drive the inputs with independent noise, or accept "dependent" to omit this input, whose effect is then part of theirs'
         yield _fault(FaultTolerance.DEPENDENT, where, name, what, advice)
 
 
@@ -287,16 +287,16 @@ def _remove_bias(shares: Array, inputs: int, segments: int) -> Array:
 def _roles(record: Record, requirements: RecordRequirements, where: str) -> Iterator[Fault]:
     for channel in record.channels:
         if channel.role is Role.UNKNOWN:
-            advice = 'Specify it (inputs, outputs), or accept "names" to leave it out'
+            advice = 'Specify it (inputs, outputs), or accept "names" to omit the channel'
             yield _fault(FaultTolerance.NAMES, where, channel.name, "its role is unknown", advice)
     if requirements.unrecorded and record.inputs:
-        what = f"{', '.join(each.name for each in record.inputs)}: taken for inputs, where none is said to have been recorded"
-        yield _fault(None, where, "", what, "Select the channels (only), or specify recorded inputs")
+        what = f"inputs in a record of unrecorded excitation: {', '.join(each.name for each in record.inputs)}"
+        yield _fault(None, where, "", what, "Select only outputs (channels), or omit the excitation")
     for kind, channels in (("input", record.inputs), ("output", record.outputs)):
         if not channels and not (requirements.unrecorded and kind == "input"):
             what = f"none of its channels ({', '.join(record.names[:12])}) is an {kind}"
             other = ", or specify the excitation (excitation)" if kind == "input" else ""
-            yield _fault(None, where, "", what, f"Select the {kind}s ({kind}s), by names or patterns{other}")
+            yield _fault(None, where, "", what, f"Specify the {kind}s ({kind}s) by names or patterns{other}")
     yield from _name_faults(record.inputs, record.outputs, requirements, where)
 
 
@@ -308,23 +308,23 @@ def _name_faults(
         known = dict(expected or ())
         for channel in channels if expected is not None else ():
             if channel.name not in known:
-                advice = f'{suggest_nearest(channel.name, known)}; rename it, or accept "names" to leave it out'
+                advice = f'{suggest_nearest(channel.name, known)}; rename the channel, or accept "names" to omit it'
                 yield _fault(FaultTolerance.NAMES, where, channel.name, f"unknown {kind}", advice)
             elif unit_problem(channel.unit) is None and not same_dimension(channel.unit, known[channel.name]):
-                what = f"its unit is {channel.unit}, that of the stage's {kind} {known[channel.name]}"
+                what = f"wrong unit (got {channel.unit}, expected {known[channel.name]} as for the stage's {kind})"
                 yield _fault(
-                    FaultTolerance.UNITS, where, channel.name, what, 'State its unit, or accept "units" to use the numbers as they are'
+                    FaultTolerance.UNITS, where, channel.name, what, 'Specify its unit, or accept "units" to use the numbers unchanged'
                 )
 
 
 def _extent(record: Record, requirements: RecordRequirements, where: str) -> Iterator[Fault]:
     resolution, averages, highest = requirements.resolution, requirements.averages, requirements.highest
     if resolution is not None and record.duration * resolution < averages:
-        required = f"at a resolution of {resolution:g} Hz, {averages} are required"
-        what = f"{record.duration:.4g} s give {record.duration * resolution:.3g} averages {required}"
+        got = f"(got {record.duration * resolution:.3g} in {record.duration:.4g} s, expected {averages})"
+        what = f"too few averages at a resolution of {resolution:g} Hz {got}"
         advice = f'Request {averages / record.duration:.3g} Hz, record longer, or accept "short" to use fewer averages'
         yield _fault(FaultTolerance.SHORT, where, "", what, advice)
     if highest is not None and record.rate <= 2.0 * highest:
         what = f"it is sampled at {record.rate:g} Hz, less than twice the highest mode at {highest:g} Hz"
-        advice = f'Sample at {2.56 * highest:.4g} Hz or more, or accept "slow" to identify modes below {0.5 * record.rate:g} Hz'
+        advice = f'Sample at {2.56 * highest:.4g} Hz or more, or accept "slow" to identify only modes below {0.5 * record.rate:g} Hz'
         yield _fault(FaultTolerance.SLOW, where, "", what, advice)

@@ -22,10 +22,10 @@ _KEPT = 2048
 class Numbers:
     """Statistics of the samples of one channel, accumulated block by block.
 
-    `broken` of `count` samples are not finite; `first_broken` is the index of the first. The longest interval of constant value has
-    `still` samples of value `still_at` from sample `still_from`. `lows` and `highs` are the lowest and highest samples, enough to
-    distinguish clipping from a tail of the distribution. `step` is the smallest nonzero step. `pairs` are the lowest and the highest value
-    that two successive samples share.
+    `broken` of `count` samples are not finite; `first_broken` is the index of the first. The longest interval of constant value has `still`
+    samples of value `still_at` from sample `still_from`. `lows` and `highs` are the lowest and highest samples, enough to distinguish
+    clipping from a tail of the distribution. `step` is the smallest nonzero step. `pairs` are the lowest and the highest value that occur
+    in two successive samples.
     """
 
     count: int = 0
@@ -100,7 +100,7 @@ class Numbers:
 
     @property
     def levels(self) -> Annotated[float, VIEW]:
-        """Range of the values in smallest steps."""
+        """Range of the values divided by the smallest step."""
         return (self.high - self.low) / self.step if np.isfinite(self.step) else 0.0
 
 
@@ -168,10 +168,10 @@ def count_ends(values: Array) -> tuple[int, int]:
 
 
 def explained_share(spectra: Array) -> Array:
-    """Compute the share (m,) of each input's power explained by the other inputs, from cross-spectra G (f, m, m).
+    """Compute the fraction (m,) of each input's power that the other inputs explain, from cross-spectra G (f, m, m).
 
-    It is the power-weighted multiple coherence 1 - sum of 1/(G^-1)_ii over sum of G_ii (Bendat and Piersol, Random Data, 4th edition,
-    section 7.3). The other inputs may be delayed within a segment.
+    It is the power-weighted multiple coherence 1 - (sum of 1/(G^-1)_ii)/(sum of G_ii) (Bendat and Piersol, Random Data, 4th edition,
+    section 7.3). Delays between inputs have no influence if they are short relative to a segment.
 
     >>> explained_share(np.array([[[1.0, 0.8], [0.8, 1.0]]])).round(2).tolist()
     [0.64, 0.64]

@@ -34,7 +34,7 @@ class Kind(Enum):
 
 
 class FaultTolerance(Enum):
-    """Fault of a record that a user accepts, and the resulting use of the data; by default no fault is accepted."""
+    """Fault of a record that a user accepts, and how the data are then used; by default no fault is accepted."""
 
     TRUNCATED = "truncated"
     """Use the available part of a truncated file."""
@@ -47,7 +47,7 @@ class FaultTolerance(Enum):
     UNITS = "units"
     """Use numbers with a missing or unknown unit unchanged."""
     DEPENDENT = "dependent"
-    """Omit inputs explained by the others."""
+    """Omit inputs that the other inputs explain."""
     SHORT = "short"
     """Use a record that is short for the requested resolution."""
     SLOW = "slow"
@@ -55,16 +55,16 @@ class FaultTolerance(Enum):
     NAMES = "names"
     """Omit channels without a role, or absent from the stage."""
     WINDOWED = "windowed"
-    """Use a hammer force with zeros after the impact unchanged: a free decay after an impact."""
+    """Use a hammer force unchanged although it is exactly zero after the impact."""
     INCOMPLETE = "incomplete"
-    """Omit outputs with missing responses, and coherence if the last response lacks it."""
+    """Omit outputs with missing responses, and all coherence if the last response has none."""
 
 
 @dataclass(frozen=True)
 class Arrays(CheckedFields):
     """Assignment of arrays of a MAT or HDF5 file, or of columns of a CSV file: names or patterns.
 
-    A record has `samples`, and `time` [s], `rate` [Hz] or `step` [s]; `names` and `units` are lists of texts, one per channel. Responses
+    A record has `samples`, and `time` [s], `rate` [Hz] or `step` [s]; `names` and `units` are lists of strings, one per channel. Responses
     have `frequencies` [Hz], complex `responses`, and optional `coherence`. Default names are those in files written by flexstage. For a CSV
     file only `time` and `frequencies` apply: the other columns are channels.
     """
@@ -80,7 +80,7 @@ class Arrays(CheckedFields):
     coherence: tuple[str, ...] = ("coherence",)
 
     def stated(self) -> tuple[tuple[str, str], ...]:
-        """Return pairs of a meaning and an assigned name, if different from the default.
+        """Return pairs (meaning, name) of the assignments that differ from the default.
 
         >>> Arrays(samples=("u", "y"), time=("t",)).stated()
         (('samples', 'u'), ('samples', 'y'), ('time', 't'))
@@ -94,8 +94,8 @@ class Options(CheckedFields):
     """User options for reading a file.
 
     `inputs` and `outputs` are names or patterns (`u*`, `S?`) of channels. If only one of them is specified, all other channels have the
-    other role. `only` selects the channels used. `rate` in Hz replaces the times in the file. `units` are pairs of a name or pattern and a
-    unit. `arrays` assigns the file's arrays. `accept_faults` are the accepted faults.
+    other role. `only` (option `--channels`) selects the channels to use. `rate` in Hz replaces the times in the file. `units` are pairs of
+    a name or pattern and a unit. `arrays` assigns the file's arrays. `accept_faults` are the accepted faults.
     """
 
     inputs: tuple[str, ...] = ()
@@ -109,7 +109,7 @@ class Options(CheckedFields):
 
 
 def assign(channels: Iterable[Channel], options: Options, where: str) -> tuple[Channel, ...]:
-    """Assign roles and units to channels: from the user, else from the file, else by names.
+    """Assign roles and units to channels: from the user, else from the file; roles, if still unknown, by channel names.
 
     Raises `DesignError` for patterns that match no channel and for channels with both roles.
 
@@ -172,7 +172,7 @@ def _unknown_names(names: list[str], options: Options, where: str) -> list[Findi
 
 def _named_twice(names: list[str], options: Options, where: str) -> list[Finding]:
     twice = [name for name in names if matches(name, options.inputs) and matches(name, options.outputs)]
-    return [Finding(f"{where}: {name}", "it is named as an input and as an output", "Name it once") for name in twice]
+    return [Finding(f"{where}: {name}", "it is named as an input and as an output", "Assign one role to it") for name in twice]
 
 
 def _role(channel: Channel, options: Options) -> Role:

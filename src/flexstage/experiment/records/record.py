@@ -44,7 +44,7 @@ class Channel(CheckedFields):
 
 
 class Samples(Protocol):
-    """Samples from any source: `length` samples of every channel, read in any range."""
+    """Samples from any source: `length` samples of every channel; any range of them can be read."""
 
     @property
     def length(self) -> int:
@@ -121,7 +121,7 @@ class Record(InNotebook, CheckedFields):
 
     @property
     def where(self) -> str:
-        """Location in messages: the file, else the name."""
+        """Name of the record in messages: its file, else its name."""
         return self.source or self.name or "record"
 
     @property
@@ -136,7 +136,7 @@ class Record(InNotebook, CheckedFields):
 
     @property
     def duration(self) -> Annotated[float, TIME]:
-        """Length in seconds: number of samples over rate."""
+        """Duration in seconds: number of samples divided by the rate."""
         return self.length / self.rate
 
     @property
@@ -193,7 +193,7 @@ class Record(InNotebook, CheckedFields):
         return replace(self, start=self.start + start / self.rate, samples=samples)
 
     def blocks(self, size: int, overlap: int = 0) -> Iterator[Array]:
-        """Iterate over blocks (size, channels), each starting with the last `overlap` samples of the previous one; the last may be short.
+        """Iterate over blocks (size, channels), each starting with the last `overlap` samples of the previous one. The last may be short.
 
         >>> five = Record((Channel("a"),), 1.0, InMemory(np.arange(5.0)[:, None]))
         >>> [block[:, 0].tolist() for block in five.blocks(3, overlap=1)]
@@ -210,8 +210,8 @@ class Responses(InNotebook, CheckedFields):
     """Frequency responses of an analyser: H_ij = output i over input j, for e^{+j omega t}.
 
     `frequencies` (f,) in Hz, ascending; `values` (f, outputs, inputs), complex, in output unit over input unit. `coherence` has the same
-    shape, if stored; `window` and `averages` are set if the file specifies them. Raises `DesignError` for duplicate names on one side and
-    for shapes that do not match.
+    shape, if stored; `window` and `averages` are set if the file specifies them. Raises `DesignError` for duplicate names of outputs or of
+    inputs and for shapes that do not match.
 
     >>> one = Responses(np.array([1.0]), (Channel("S1", "um"),), (Channel("u1", "V"),), np.array([[[2j]]]))
     >>> one.at("S1", "u1").tolist(), one.units
@@ -243,7 +243,7 @@ class Responses(InNotebook, CheckedFields):
 
     @property
     def where(self) -> str:
-        """Location in messages: the file, else the name."""
+        """Name of the responses in messages: their file, else their name."""
         return self.source or self.name or "responses"
 
     @property
@@ -263,7 +263,7 @@ class Responses(InNotebook, CheckedFields):
 
     @property
     def units(self) -> tuple[tuple[str, ...], ...]:
-        """Unit of every entry by output and input; empty if the output's or the input's unit is missing."""
+        """Unit of every entry, by output and input; empty if the unit of the output or of the input is missing."""
         columns = [channel.unit for channel in self.inputs]
         ratios = ratio_units(tuple(channel.unit for channel in self.outputs), tuple(columns))
         stated = ((row, [channel.unit and unit for unit in columns]) for row, channel in zip(ratios, self.outputs, strict=True))
@@ -288,7 +288,7 @@ class Responses(InNotebook, CheckedFields):
 
 
 def report_reading(record: Record, tell: Callable[[int], None]) -> Record:
-    """Wrap a record to report the number of samples read so far with each block, for progress bars.
+    """Wrap a record so that each block read reports the number of samples up to its end to `tell`, for progress bars.
 
     >>> told = []
     >>> long = report_reading(in_memory([Channel("S1")], 1.0, np.zeros((5, 1))), told.append)
@@ -318,17 +318,17 @@ def rising_problem(frequencies: Array) -> str | None:
     """Describe why frequencies do not increase: fewer than two, a duplicate, or a decrease; None if they increase.
 
     >>> rising_problem(np.array([1.0, 2.0, 2.0, 3.0]))
-    'its frequencies do not rise: 2 Hz occurs twice, lines 2 and 3'
+    'its frequencies do not increase: 2 Hz occurs twice, as values 2 and 3'
     """
     if len(frequencies) < 2:
-        return f"it has {len(frequencies)} frequencies"
+        return f"too few frequencies (got {len(frequencies)})"
     falling = np.flatnonzero(~(np.diff(frequencies) > 0.0))
     if not len(falling):
         return None
     line = int(falling[0])
     first, second = frequencies[line], frequencies[line + 1]
-    how = f"{first:g} Hz occurs twice, lines" if first == second else f"{second:g} Hz follows {first:g} Hz, lines"
-    return f"its frequencies do not rise: {how} {line + 1} and {line + 2}"
+    how = f"{first:g} Hz occurs twice, as" if first == second else f"{second:g} Hz follows {first:g} Hz, as"
+    return f"its frequencies do not increase: {how} values {line + 1} and {line + 2}"
 
 
 def name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
@@ -338,7 +338,7 @@ def name_findings(where: str, channels: tuple[Channel, ...]) -> list[Finding]:
     ['2 channels have this name']
     """
     if not channels:
-        return [Finding(where, "there is no channel", "Use at least one")]
+        return [Finding(where, "there is no channel", "Use at least one channel")]
     counts = Counter(channel.name for channel in channels)
     unnamed = [Finding(where, f"{counts['']} of {len(channels)} channels have no name", "Name every channel")] if counts[""] else []
     twice = [name for name, count in counts.items() if count > 1 and name]

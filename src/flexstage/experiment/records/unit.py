@@ -43,10 +43,10 @@ def unit_problem(unit: str) -> str | None:
     """Describe why a unit is unusable; None if it is usable.
 
     >>> unit_problem("um"), unit_problem(""), unit_problem("furlong")
-    (None, 'no unit is stated', '"furlong" is not a known unit')
+    (None, 'no unit is specified', '"furlong" is not a known unit')
     """
     if not unit:
-        return "no unit is stated"
+        return "no unit is specified"
     try:
         dimension_of(unit)
     except ValueError as error:

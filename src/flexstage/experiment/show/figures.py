@@ -14,7 +14,7 @@ from flexstage.show.display import to_typography
 from flexstage.show.figures.style import FULL, INK, MUTED, SERIES, Margins, canvas, panels, style_context
 
 LARGEST = 6
-"""Maximum rows and columns of responses in a figure."""
+"""Maximum number of rows and of columns of responses in a figure."""
 
 _BINS, _FINE = 110, 90
 _POINTS = 3500
@@ -25,7 +25,7 @@ _MANY = 4000
 
 
 def response_matrix_figure(found: Identified) -> Any:
-    """Plot the response matrix of the first outputs and inputs: magnitude over phase, data grey and fit coloured, as a matplotlib Figure.
+    """Plot the response matrix of the first outputs and inputs: magnitude above phase, data grey and fit coloured, as a matplotlib Figure.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -57,7 +57,7 @@ def response_matrix_figure(found: Identified) -> Any:
 
 
 def density_figure(found: Identified) -> Any:
-    """Plot amplitude densities of outputs without recorded inputs, with the identified modes, as a matplotlib Figure."""
+    """Plot the outputs' amplitude densities for a test without recorded inputs, with the identified modes, as a matplotlib Figure."""
     lines = found.responses.frequencies
     inside = _inside(lines, focus(found))
     with style_context():
@@ -223,12 +223,12 @@ def stabilisation_figure(found: Identified) -> Any:
     >>> len(stabilisation_figure(identify(one_mode_record())).axes)
     2
     """
-    kinds = (("new", ".", "#b8c1cc", 2.0), ("frequency stable", "x", SERIES[1], 2.6), ("damping too", "^", SERIES[4], 2.6))
+    kinds = (("new", ".", "#b8c1cc", 2.0), ("frequency stable", "x", SERIES[1], 2.6), ("also damping", "^", SERIES[4], 2.6))
     with style_context():
         figure = canvas(FULL, 3.1)
         axes = panels(figure, 1, 1, Margins(left=0.5, right=0.55, top=0.4))[0, 0]
         _envelope(axes, found)
-        for stable, (label, marker, colour, size) in enumerate((*kinds, ("participation too", "o", SERIES[2], 2.6))):
+        for stable, (label, marker, colour, size) in enumerate((*kinds, ("also participation", "o", SERIES[2], 2.6))):
             style = {"color": colour, "markersize": size, "markeredgewidth": 0.6, "linestyle": "none"}
             axes.plot(*_poles(found, stable), marker, label=label, **style)
         _mark_modes(axes, found, "mode found")

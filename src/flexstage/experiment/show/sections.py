@@ -37,16 +37,16 @@ from flexstage.show.viewer.data import StageData
 from flexstage.show.viewer.motions import Group, Motion, Skeleton
 
 _FLOOR = (
-    "No input was recorded. Candidates are stable poles of covariance-driven stochastic subspaces, band by band; intervals come from the "
-    "scatter between forty blocks of the record, to first order. Shapes are over their largest component: their scale by mass is unknown."
+    "No input was recorded. Modes are stable poles of covariance-driven stochastic subspace identification, band by band. Intervals follow "
+    "from the scatter between forty blocks, to first order. Shapes are divided by their largest component: their scale by mass is unknown."
 )
 
 
 def found_section(seen: Identification) -> Section | None:
     """Section of identified modes, and of the limits of the data."""
     text = (
-        "Candidates are the stable poles of the poly-reference least-squares complex frequency-domain estimator on H1; each group of near "
-        "ones is fitted by maximum likelihood to the transform of the whole record. Insignificant modes are omitted."
+        "Candidates are the stable poles of the poly-reference least-squares complex frequency-domain estimator, applied to H1. Each group "
+        "of close candidates is fitted by maximum likelihood to the transform of the whole record. Insignificant modes are omitted."
     )
     found = seen.found
     text = text if found.inputs else _FLOOR
@@ -62,22 +62,22 @@ def found_section(seen: Identification) -> Section | None:
 
 
 def response_data_section(seen: Identification) -> Section | None:
-    """Section of responses with fit and data, and of the estimators side by side; without recorded inputs, of amplitude densities."""
+    """Section of responses (data and fit) and of the estimators side by side; without recorded inputs, of amplitude densities."""
     found = seen.found
     if not found.inputs:
         picture = to_svg(density_figure(found), "measured-densities", "Amplitude density of outputs over frequency, and the modes found")
         return section("Densities", [Picture(picture, "Amplitude densities of the outputs. Dotted: modes found.")])
-    drawn = to_svg(response_matrix_figure(found), "measured-responses", "Responses of outputs to inputs, with the fit over the data")
-    caption = "Responses, magnitude over phase: grey the data (H1), blue the fit. Columns: inputs; rows: outputs."
+    drawn = to_svg(response_matrix_figure(found), "measured-responses", "Responses of outputs to inputs: data and fit")
+    caption = "Responses: magnitude, and phase below it. Grey: data (H1); blue: fit. Columns are inputs, rows are outputs."
     cut = max(len(found.outputs), len(found.inputs)) > LARGEST
-    caption += f" The first {LARGEST} of {len(found.outputs)} outputs and {len(found.inputs)} inputs." if cut else ""
+    caption += f" At most {LARGEST} of {len(found.outputs)} outputs and {len(found.inputs)} inputs are shown." if cut else ""
     others = [each for each in (seen.second, seen.ratio) if each is not None]
     estimators: Block | None = None
     if others and seen.spectra is not None:
         picture = to_svg(estimator_figure(found.responses, others, focus(found)), "estimators", "Comparison of response estimates")
         text = (
-            "Each output with its dominant input. H1 for noise at outputs, H2 for noise at inputs; G_ij/G_ii (Eq. 29 of Shin & "
-            "Moon) equals H1 where one input acts alone or inputs are uncorrelated."
+            "Response of each output to its dominant input. H1 assumes noise at outputs, H2 at inputs. G_ij/G_ii (Eq. 29 of Shin & "
+            "Moon) equals H1 for a single input and for uncorrelated inputs."
         )
         estimators = Picture(picture, text)
     return section("Responses", [Picture(drawn, caption), fold("H1, H2 and the paper's ratio", estimators)])
@@ -94,7 +94,9 @@ def coherence_section(seen: Identification) -> Section | None:
     if known is not None:
         window = known.segments.window.value.capitalize()
         cut = f" Segments of {number(known.segments.seconds, 4)} s, {window} window, {known.averages} averages."
-    caption = "Multiple: the share of an output's power explained by all inputs together. Ordinary: by one input." + cut
+    caption = (
+        "Multiple coherence: fraction of an output's power that all inputs explain. Ordinary coherence: fraction that one explains." + cut
+    )
     return section("Coherence", [Picture(drawn, caption)])
 
 
@@ -103,7 +105,10 @@ def stabilisation_section(found: Identified) -> Section | None:
     if not found.stabilisation:
         return None
     drawn = to_svg(stabilisation_figure(found), "stabilisation", "Stabilisation diagram: poles by order and frequency")
-    caption = "Poles of increasing order; stable: within 0.2 % in frequency, 5 % in damping, 0.98 in participation of the order below."
+    caption = (
+        "Poles of increasing order. A pole is stable if it differs from one of the order below by less than 0.2 % in frequency and 5 % in "
+        "damping, and if the MAC of their participations exceeds 0.98."
+    )
     return section("Stabilisation", [Picture(drawn, caption)])
 
 
@@ -114,14 +119,14 @@ def measured_shape_section(found: Identified, shapes: StageShapes, data: StageDa
     if shapes.missing:
         return section("Shapes on the stage", [Prose(f"Not drawn: {shapes.missing}.")])
     note = (
-        f"From {', '.join(shapes.used)}, through the inverse of the ideal stage's mapping; bodies move as ideal hinges let them. "
+        f"Computed from {', '.join(shapes.used)} with the inverse mapping of the ideal stage; bodies move as if hinges were ideal. "
         f"{motion_explained_text(shapes.explained)} {SHAPES}"
     )
     return section("Shapes on the stage", [BlockRow(tuple(_pictures(found, data)), narrow=True), Prose(note)])
 
 
 def measured_motions(found: Identified, shapes: StageShapes, bones: Skeleton) -> tuple[Motion, ...]:
-    """Convert the measured shapes to motions of the viewer; empty if they have no stage motion."""
+    """Convert the measured shapes to motions of the viewer; empty if the shapes cannot be mapped to the stage."""
     return tuple(
         Motion(
             Group.MODE,
@@ -143,7 +148,7 @@ def pair_section(found: Compared, data: StageData) -> Section | None:
         for mode in found.modes
         if mode.experiment is not None and mode.number <= len(theory) and f"measured {mode.experiment.number}" in known
     ]
-    text = "Left: theory; right: the experiment, with the paired mode. Signs are arbitrary; repeated modes mix."
+    text = "Left: theory; right: the paired mode of the experiment. Signs are arbitrary; repeated modes may be mixed."
     joined = joined_viewers(partners)
     return None if joined is None else section("Side by side", [joined, Prose(text)])
 
@@ -159,9 +164,9 @@ def _pictures(found: Identified, data: StageData) -> Iterator[Picture]:
 
 def compare_section(found: Compared) -> Section | None:
     """Section of model, finite elements and test: figure, tables, warnings."""
-    drawn = to_svg(compare_figure(found), "compared", "Frequencies by theory, FEA and experiment")
+    drawn = to_svg(compare_figure(found), "compared", "Frequencies of theory, FEA and experiment")
     shown = "theory, FEA and experiment" if found.fea is not None else "theory and experiment"
-    caption = f"Frequencies by {shown}; below, the difference from the experiment. Whiskers and bands: the experiment's 95 % intervals."
+    caption = f"Above: frequencies of {shown}. Below: difference from the experiment. Whiskers and bands: 95 % intervals of the experiment."
     return section("Theory and experiment", [Picture(drawn, caption), *compare_tables(found)])
 
 

@@ -22,14 +22,14 @@ def recorded_table(test: Sequence[Record] | Responses) -> Table:
     """
     if isinstance(test, Responses):
         low, high = float(test.frequencies[0]), float(test.frequencies[-1])
-        extent = f"{len(test.frequencies)} lines, {number(low)} to {number(high)} Hz"
+        extent = f"{len(test.frequencies)} frequencies, {number(low)} to {number(high)} Hz"
         rows = [(_source(test), _channels(test.inputs), _channels(test.outputs), extent)]
     else:
         rows = [
             (_source(each), _channels(each.inputs), _channels(each.outputs), f"{number(each.duration)} s at {number(each.rate)} Hz")
             for each in test
         ]
-    return make_table("What was measured", ["file", "inputs", "outputs", "extent"], rows)
+    return make_table("Recorded data", ["file", "inputs", "outputs", "extent"], rows)
 
 
 def _source(what: Record | Responses) -> Cell:
@@ -56,7 +56,7 @@ def identified_table(found: Identified) -> Table:
 
 
 def measured_shape_table(found: Identified) -> Table:
-    """Tabulate the shapes, each rotated to be as real as possible, with largest component 1.
+    """Tabulate the shapes, each rotated in phase to be as real as possible, with largest component 1.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -65,7 +65,7 @@ def measured_shape_table(found: Identified) -> Table:
     """
     units = {channel.unit for channel in found.outputs}
     return matrix_table(
-        "Shapes of the modes", found.shape_matrix, notes=["Rows in different units, as recorded."] if len(units) > 1 else []
+        "Shapes of the modes", found.shape_matrix, notes=["Each row is in the unit of its output."] if len(units) > 1 else []
     )
 
 
@@ -81,11 +81,11 @@ def data_warning_table(warnings: Sequence[str]) -> Table | None:
 
 
 def motion_explained_text(explained: Array) -> str:
-    """Describe the share of the measured shapes explained by ideal stage motion.
+    """Describe the fraction of the measured shapes that ideal stage motion explains.
 
     >>> motion_explained_text(np.array([0.999, 1.0]))
-    'The drawn motion explains 99.9 % or more of every measured shape.'
+    'The drawn motion explains at least 99.9 % of every measured shape.'
     """
     if float(np.min(explained)) > 1.0 - 1e-9:
-        return "As many outputs as degrees of freedom: the drawn motion has no independent check."
-    return f"The drawn motion explains {percent(np.floor(1e3 * float(np.min(explained))) / 1e3)} or more of every measured shape."
+        return "There are no more outputs than degrees of freedom, so the drawn motion cannot be checked."
+    return f"The drawn motion explains at least {percent(np.floor(1e3 * float(np.min(explained))) / 1e3)} of every measured shape."

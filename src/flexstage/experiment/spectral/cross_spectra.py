@@ -21,7 +21,7 @@ BATCH = 2_000_000
 
 
 class Window(Enum):
-    """Window by which a segment is multiplied before its transform."""
+    """Window function by which a segment is multiplied before its transform."""
 
     HANN = "hann"
     HAMMING = "hamming"
@@ -87,11 +87,11 @@ class Spectra:
 
 @check_arguments
 def spectra(record: Record, segments: Segments) -> Spectra:
-    """Estimate the spectra of a record's inputs and outputs by Welch's method: averages of windowed, overlapping segments without mean.
+    """Estimate the spectra of a record's inputs and outputs by Welch's method: averages over windowed, overlapping segments.
 
-    Reference: Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70. The memory does not depend on the record's length. The window smears
-    the estimate over about two lines: choose segments so long that several lines are within the sharpest resonance. Raises `DesignError`
-    for a record without outputs, or shorter than a segment.
+    Reference: Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70. The memory does not depend on the record's length. The mean of each
+    segment is subtracted. The window smears the estimate over about two lines: choose segments so long that several lines are within the
+    sharpest resonance. Raises `DesignError` for a record without outputs, or shorter than a segment.
 
     >>> from flexstage.experiment.records.record import Role, in_memory
     >>> noise = np.random.default_rng(0).standard_normal((64_000, 1))
@@ -123,7 +123,7 @@ def spectra(record: Record, segments: Segments) -> Spectra:
 
 
 def example_spectra() -> Spectra:
-    """Return spectra of a small record with one output, three times its input, for examples.
+    """Return spectra of a small record whose output is three times its input, for examples.
 
     >>> example_spectra().averages
     7
@@ -153,16 +153,16 @@ def _findings(record: Record, size: int, outputs: tuple[Channel, ...]) -> list[F
     where = record.where
     found = [] if outputs else [Finding(where, "no channel is an output", "Specify the output channels")]
     if size < 8:
-        found.append(Finding(where, f"a segment has {size} samples", "Use segments of 8 samples or more"))
+        found.append(Finding(where, f"segments are too short (got {size} samples)", "Use segments of 8 samples or more"))
     elif record.length < size:
-        lasts = f"the record lasts {record.duration:.4g} s and a segment {size / record.rate:.4g} s"
+        lasts = f"the record is shorter than a segment ({record.duration:.4g} s and {size / record.rate:.4g} s)"
         found.append(Finding(where, lasts, "Use shorter segments, that is a coarser resolution, or record longer"))
     return found
 
 
 def _hop(size: int, segments: Segments) -> int:
     if not 0.0 <= segments.overlap < 1.0:
-        raise refuse("segments", f"an overlap of {segments.overlap:g} was requested", "Use a share of at least 0 and less than 1")
+        raise refuse("segments", f"wrong overlap (got {segments.overlap:g})", "Use a fraction of at least 0 and less than 1")
     return max(1, round(size * (1.0 - segments.overlap)))
 
 

@@ -27,7 +27,7 @@ class Lines:
     """Transform lines of one block: `frequencies` (k,) in Hz, `drive` (k, n) and `outputs` (k, p).
 
     The scale is such that white noise has the same variance at every line as in time. `columns` (n,) are the indices of the drive's
-    columns, inputs and a transient, among those of all blocks.
+    columns, inputs and a transient, among the columns of all blocks.
     """
 
     frequencies: Array
@@ -76,7 +76,7 @@ class Cells:
 
 
 def record_lines(record: Record, inputs: tuple[int, ...], first: int, least: int = 1) -> Iterator[Lines]:
-    """Transform a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), without mean.
+    """Transform a record's blocks, Y(f_k) = N^-1/2 sum y_n exp(-2 pi j k n/N), after subtraction of the mean.
 
     The record is divided into at least `least` blocks, or as many as memory requires. `inputs` are the column indices of the record's
     inputs in the drive. The transient of the first block has the index `first`, the next block's `first` + 1, and so on.

@@ -33,7 +33,7 @@ def h1(spectra: Spectra) -> Responses:
 
 @check_arguments
 def h2(spectra: Spectra) -> Responses:
-    """Estimate H2 = G_yy G_xy^-1, for noise at the inputs; a least-squares inverse for more outputs than inputs.
+    """Estimate H2 = G_yy G_xy^-1, for noise at the inputs; with more outputs than inputs, the inverse is a least-squares inverse.
 
     H2 has more variance than H1, and noise at the outputs causes an upward bias. Raises `DesignError` for fewer outputs than inputs.
 
@@ -43,7 +43,7 @@ def h2(spectra: Spectra) -> Responses:
     """
     outputs, inputs = spectra.yx.shape[1:]
     if outputs < inputs:
-        raise refuse("H2", f"it has {outputs} outputs for {inputs} inputs", "Use H1, or record as many outputs as inputs")
+        raise refuse("H2", f"too few outputs for {inputs} inputs (got {outputs})", "Use H1, or record as many outputs as inputs")
     crossed = np.conj(np.swapaxes(spectra.yx, 1, 2))
     return _responses(spectra, spectra.yy @ np.linalg.pinv(crossed), "H2")
 
@@ -72,7 +72,7 @@ def ordinary_coherence(spectra: Spectra) -> Array:
 
 
 def multiple_coherence(spectra: Spectra) -> Array:
-    """Compute the multiple coherence (f, p), the share of every output's power explained by all inputs (Bendat & Piersol, ch. 7).
+    """Compute the multiple coherence (f, p), the fraction of every output's power that all inputs explain (Bendat & Piersol, ch. 7).
 
     It is H1 G_xx H1^H / G_yy. For outputs of noise only, it is about the number of inputs over the number of independent averages, not
     zero.
@@ -86,7 +86,7 @@ def multiple_coherence(spectra: Spectra) -> Array:
 
 
 def noise_density(spectra: Spectra) -> Array:
-    """Estimate the power density (f, p) of the outputs not explained by inputs, corrected for the bias of a finite number of averages.
+    """Estimate the power density (f, p) of outputs that inputs do not explain, corrected for the bias of a finite number of averages.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> bool(noise_density(example_spectra())[3, 0] < 1e-9)

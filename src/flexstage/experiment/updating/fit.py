@@ -25,9 +25,9 @@ _NEAR = 1e-3
 class Problem(Generic[_State]):
     """Least-squares problem, defined by three functions.
 
-    `state` computes the model's state at parameters (P,), starting from the previous state. `residuals` (n,) of a state are data minus
-    model over the data's standard deviations. `slopes` (n, P) of a state are the model's derivatives by the parameters, in the same scale.
-    The prior covariance of the parameters is the identity.
+    `state` computes the model's state at parameters (P,), starting from the previous state. `residuals` (n,) of a state are (data -
+    model)/deviation, with the standard deviations of the data. `slopes` (n, P) are the model's derivatives by the parameters, divided by
+    the same deviations. The prior covariance of the parameters is the identity.
     """
 
     state: Callable[[Array, _State], _State]
@@ -74,8 +74,8 @@ def gauss_newton(problem: Problem[_State], start: Array, state: _State) -> Fitte
             slopes = problem.slopes(state)
         if taken is None or length < _STILL:
             return Fitted(here, state, residuals, slopes, count)
-    what = f"after {count} steps the numbers still move by {length:.2g} prior standard deviations"
-    raise refuse("update", what, "Specify narrower priors, free fewer numbers, or start with a design nearer to the test")
+    what = f"no convergence: after {count} steps, parameters still change by {length:.2g} prior standard deviations"
+    raise refuse("update", what, "Specify narrower priors, update fewer parameters, or start with a design nearer to the test")
 
 
 def _step(slopes: Array, residuals: Array, here: Array) -> Array:

@@ -21,9 +21,9 @@ from flexstage.mechanism.mechanism import Mechanism
 class Prior(CheckedFields):
     """Priors of an update, as relative standard deviations, with default assumptions.
 
-    `prior` applies to every free number, unless `priors` has a value for its address. `model_error` is the remaining error of the model's
-    frequencies with the best parameters. `gain_error` is the error of static gains: of the model, and of the scales of gauges and drives.
-    With `None`, static gains are not used.
+    `prior` applies to every free parameter, unless `priors` has a value for its address. `model_error` is the error of the model's
+    frequencies that remains with the best parameters. `gain_error` is the error of static gains, due to the model and to the scales of
+    gauges and drives. With `None`, static gains are not used.
     """
 
     prior: float = 0.1
@@ -37,7 +37,7 @@ DEFAULT = Prior()
 
 @dataclass(frozen=True, eq=False)
 class Free:
-    """Free numbers of an update: full addresses, units, initial values (P,), and prior standard deviations (P,) of the logarithms.
+    """Free parameters of an update: full addresses, units, initial values (P,), and prior standard deviations (P,) of the logarithms.
 
     `mechanism` is the description, including the overrides that these addresses require.
     """
@@ -49,7 +49,7 @@ class Free:
     deviations: Array
 
     def multiply(self, logarithms: Array) -> Mechanism:
-        """Return the description with each free number multiplied by exp(x), with its entry x in `logarithms` (P,)."""
+        """Return the description with each free parameter multiplied by exp(x), where x is its entry in `logarithms` (P,)."""
         result = self.mechanism
         for name, value in zip(self.names, self.values * np.exp(logarithms), strict=True):
             result = set_value(result, name, float(value))
@@ -57,7 +57,7 @@ class Free:
 
 
 def free(mechanism: Mechanism, names: Sequence[str], known: Prior = DEFAULT) -> Free:
-    """Define the numbers at these addresses as free. Raises `DesignError` for addresses that are unknown, ambiguous, no number, or zero.
+    """Free the parameters at these addresses; raises `DesignError` for addresses that are unknown, ambiguous, zero or not a number.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> free(double_triangle(), ["lever_notch.thickness"]).names
@@ -67,7 +67,7 @@ def free(mechanism: Mechanism, names: Sequence[str], known: Prior = DEFAULT) -> 
     full = tuple(locate(mechanism, name).address for name in names)
     own = {canonical(mechanism, name): share for name, share in known.priors.items()}
     require(
-        Finding(f"prior of {name}", "it is not among the free numbers", suggest_nearest(name, full)) for name in own if name not in full
+        Finding(f"prior of {name}", "it is not among the free parameters", suggest_nearest(name, full)) for name in own if name not in full
     )
     ordered = sorted(full, key=lambda name: override_level(mechanism, name))
     started = mechanism
@@ -86,12 +86,12 @@ def _error_findings(known: Prior) -> list[Finding]:
     stated = {"prior": known.prior, "model error": known.model_error} | {f"prior of {name}": share for name, share in known.priors.items()}
     stated |= {} if known.gain_error is None else {"gain error": known.gain_error}
     advice = 'Use a relative standard deviation between 0.0001 % and 100 %, e.g. "5 %"'
-    return [Finding(where, f"{share:g} is none", advice) for where, share in stated.items() if not 1e-6 <= share <= 1.0]
+    return [Finding(where, f"out of range (got {share:g})", advice) for where, share in stated.items() if not 1e-6 <= share <= 1.0]
 
 
 def _address_findings(mechanism: Mechanism, names: Sequence[str], priors: Sequence[str]) -> list[Finding]:
     if not names:
-        return [Finding("free", "no number is free", "Name at least one, e.g. parts.neck.thickness")]
+        return [Finding("free", "no parameter is free", "Specify at least one, e.g. parts.neck.thickness")]
     findings: list[Finding] = []
     lost: set[str] = set()
     for name in (*names, *priors):
@@ -130,7 +130,7 @@ def _advise(mechanism: Mechanism, finding: Finding) -> Finding:
         return finding
     solids = f"bodies.{body[1]}.solids"
     shape = next(iter(mechanism.bodies[body[1]].solids))
-    advice = f"Free a size or a density, e.g. {solids}.{shape}.size.z, or state the mass instead of the solids"
+    advice = f"Free a size or a density, e.g. {solids}.{shape}.size.z, or specify the mass instead of the solids"
     return replace(finding, what="the body's mass follows from its solids", advice=advice)
 
 
@@ -139,5 +139,5 @@ def _value_findings(name: str, value: object) -> list[Finding]:
     if number.ndim:
         return [Finding(name, f"wrong number of values (got {number.size}, expected 1)", "Update one design at a time")]
     if number == 0.0:
-        return [Finding(name, "zero has no relative uncertainty", "Free another number, or use a value that is not 0")]
+        return [Finding(name, "zero has no relative uncertainty", "Free another parameter, or use a value other than 0")]
     return []

@@ -30,7 +30,7 @@ _LENGTH, _ANGLE, _VOLTAGE = dimension_of("m"), dimension_of("rad"), dimension_of
 
 @dataclass(frozen=True, eq=False)
 class Gains:
-    """Static gains (p, m) in SI units of reading per input (free stroke, current or force), and their standard deviations by noise.
+    """Static gains (p, m), SI: reading per input (free stroke, current or force), and their standard deviations due to noise.
 
     `units` (p, m) are the SI units of the gains.
     """
@@ -47,17 +47,17 @@ class Gains:
         return np.max(np.abs(self.values), axis=0)
 
     def errors(self, share: float) -> Array:
-        """Compute the standard deviations (p, m) of two independent errors: noise, and a `share` of each actuator's largest gain."""
+        """Compute the standard deviations (p, m) due to two independent errors: noise, and a `share` of each actuator's largest gain."""
         return np.hypot(self.deviations, share * self.scale)
 
 
 def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identified, outputs: tuple[str, ...]) -> Gains:
-    """Estimate the gains of the named outputs to the record's inputs that are actuators of the stage.
+    """Estimate the gains from those inputs of the record that are actuators of the stage to the named outputs.
 
-    The real part of H1 up to x = f/f_1 = 0.35 is fitted by a + (b x^2 + c x^4)/(1 - x^2), least squares; a is the gain. This function
-    represents the lowest mode f_1 exactly. Even powers approximate higher modes, lags and the amplifier's bandwidth. A drive in volts is
-    converted by the stroke and voltage range of its stack. Raises `DesignError` without an actuator input, for units not convertible to the
-    model's, or for too few lines below the modes.
+    The real part of H1 up to x = f/f_1 = 0.35 is fitted by a + (b x^2 + c x^4)/(1 - x^2) by least squares; a is the gain. This function
+    represents the lowest mode, at f_1, exactly. Even powers approximate higher modes, lags and the amplifier's bandwidth. A drive in volts
+    is converted by the stroke and voltage range of its stack. Raises `DesignError` without an actuator input, for units not convertible to
+    the model's, or for too few lines below the modes.
     """
     known = drivable_actuators(mechanism, model)
     inputs = tuple(channel.name for channel in experiment.inputs if channel.name in known)
@@ -86,7 +86,7 @@ def _low_lines(experiment: Identified) -> tuple[Array, Array]:
     chosen = (frequencies > (_SKIPPED + 0.5) * step) & (frequencies <= _SHARE * lowest)
     count = int(np.sum(chosen))
     if count < _FEWEST:
-        what = f"{count} lines are below {_SHARE * lowest:.3g} Hz ({_SHARE:g} of the lowest mode), {_FEWEST} are needed for static gains"
+        what = f"too few lines below {_SHARE * lowest:.3g} Hz ({_SHARE:g} of the lowest mode) for gains (got {count}, expected {_FEWEST})"
         raise refuse(experiment.responses.source or "record", what, "Record longer, from lower frequencies, or compare without gains")
     return frequencies[chosen] / lowest, experiment.responses.values[chosen]
 
@@ -103,8 +103,8 @@ def _extrapolate_to_zero(lines: Array, values: Array) -> tuple[Array, Array]:
 
 
 def _unit_findings(channels: list[Channel]) -> list[Finding]:
-    advice = "State the unit of a stroke, voltage, current or force, or that of the gauge, or compare without gains"
-    return [Finding(channel.name, f'its unit "{channel.unit}" leads to no reading or input of the stage', advice) for channel in channels]
+    advice = "Use the unit of a stroke, voltage, current or force for an input, of length or angle for a gauge, or compare without gains"
+    return [Finding(channel.name, f'its unit "{channel.unit}" does not fit a gauge or an actuator', advice) for channel in channels]
 
 
 def is_voltage(unit: str) -> bool:

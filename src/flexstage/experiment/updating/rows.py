@@ -1,4 +1,4 @@
-"""Data compared between test and model: frequencies of paired modes, the mean of repeated ones, and static gains."""
+"""Data compared between test and model: frequencies of paired modes (for repeated modes their mean), and static gains."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class ModeRow:
     """Row of data: one mode, or a group of repeated modes, of the model and of the test.
 
     `modes` are the model's modes, counted from 0 over all modes of the model. `frequency` [Hz] is sqrt(mean of f^2) over the `measured`
-    modes, the square root of the mean eigenvalue. It is symmetric in repeated modes and therefore smooth in every parameter. `deviation`
-    is the relative standard deviation of the frequency.
+    modes, the square root of the mean eigenvalue. This mean is symmetric in repeated modes and therefore smooth in every parameter.
+    `deviation` is the relative standard deviation of the frequency.
     """
 
     name: str
@@ -39,7 +39,7 @@ class ModeRow:
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """Intermediate design of an update: its lumped model, the model's modes, and the mode numbers of each row."""
+    """Intermediate design of an update: its lumped model, the model's modes, and the mode indices of each row."""
 
     mechanism: Mechanism
     model: LinearModel
@@ -91,8 +91,8 @@ def start_design(mechanism: Mechanism, rows: tuple[ModeRow, ...]) -> Design:
 def follow_modes(before: Design, mechanism: Mechanism) -> Design:
     """Solve the modes of a changed `mechanism`, and assign to each row the modes most similar to its modes in the design `before`.
 
-    Shapes are compared with the mass matrix M of the previous design, for all rows together. Modes with crossing frequencies therefore keep
-    their rows.
+    Similarity is measured with the mass matrix M of the previous design; all rows are assigned together. Modes whose frequencies cross
+    therefore keep their rows.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> here = start_design(double_triangle(), (ModeRow("z", (2,), (0,), 126.0, 1e-4),))
@@ -102,7 +102,7 @@ def follow_modes(before: Design, mechanism: Mechanism) -> Design:
     model = lumped(mechanism)
     solved = eigen(model)
     if len(solved.shapes) != len(before.solved.shapes):
-        what = f"its numbers moved so far that the model has {len(solved.shapes)} coordinates where it had {len(before.solved.shapes)}"
+        what = f"its parameters changed so far that the model has {len(solved.shapes)} coordinates, not {len(before.solved.shapes)}"
         raise refuse("update", what, "Check units and names of the record's channels (flexstage compare), or specify narrower priors")
     weighted = before.model.inertia_matrix @ before.solved.shapes
     likeness = []
@@ -140,7 +140,7 @@ def static_gains(design: Design, gains: Gains) -> Array:
 
 
 def gain_slopes(design: Design, names: tuple[str, ...], gains: Gains) -> Array:
-    """Compute the derivatives (p, m, P) of the model's static gains by the numbers at addresses `names`."""
+    """Compute the derivatives (p, m, P) of the model's static gains by the parameters at addresses `names`."""
     result = np.zeros((*gains.values.shape, len(names)))
     for chunk, model in _complex_steps(design, names):
         moved = slope(static_gain(model, gains.outputs, gains.inputs).values)

@@ -1,4 +1,4 @@
-"""Tables of an update: numbers before and after, identifiability, and agreement of model and test."""
+"""Tables of an update: parameters before and after, identifiability, and agreement of model and test."""
 
 from __future__ import annotations
 
@@ -21,11 +21,13 @@ def update_tables(found: Updated) -> Iterator[Table | None]:
 
 
 def residual_table(found: Updated) -> Table | None:
-    """Tabulate the data measured, and by the model before and after: all frequencies, and the gains with the largest misfit."""
+    """Tabulate measured data with their values in the model before and after: all frequencies, and the gains with the largest misfit."""
     modes = [each for each in found.residuals if each.unit == "Hz"]
     gains = sorted((each for each in found.residuals if each.unit != "Hz"), key=lambda each: -abs(each.misfit_before))
     before, after = number(found.chi_square_before, 3), number(found.chi_square, 3)
     notes = [f"Chi-square of {found.freedoms} data: {before} before, {after} after (prior included), probability {found.probability:.2g}."]
     if len(gains) > _MOST_GAINS:
-        notes.append(f"Of {len(gains)} gains the {_MOST_GAINS} with the largest misfit; errors relative to the actuator's largest gain.")
+        notes.append(
+            f"The {_MOST_GAINS} of {len(gains)} gains with the largest misfit; errors are relative to the actuator's largest gain."
+        )
     return result_table([*modes, *gains[:_MOST_GAINS]], notes=notes)

@@ -12,7 +12,7 @@ _DIGITS = 7
 def updated_text(text: str, found: Updated, record: str, *, where: str = "text") -> str:
     """Format the stage's design file with the updated values, each tagged `derived update RECORD` with its deviation.
 
-    Raises `DesignError` if the file's layout does not allow it.
+    Raises `DesignError` if the file's layout does not allow the change.
     """
     values = {name: float(f"{value:.{_DIGITS}g}") for name, value in zip(found.addresses, found.after.tolist(), strict=True)}
     tags = {name: _tag(found, index, record) for index, name in enumerate(found.addresses)}

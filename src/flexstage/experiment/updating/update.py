@@ -48,16 +48,16 @@ _CONTRADICTING = 10.0
 
 
 class Identifiability(Enum):
-    """Identifiability of a number, by the share of the prior variance that remains after the test."""
+    """Identifiability of a parameter, by the fraction of the prior variance that remains after the test."""
 
     WELL = "identified"
     """At most 10 % of the prior variance remains."""
     WEAKLY = "weakly identified"
     """At most 20 % of the prior variance remains."""
     NOT = "not identifiable"
-    """More than 20 % remains: the value depends strongly on the prior."""
+    """More than 20 % of the prior variance remains: the value depends strongly on the prior."""
     WITHHELD = "withheld"
-    """Model and test differ too much for conclusions on single numbers."""
+    """Model and test differ too much for conclusions on single parameters."""
 
 
 _GRADES = dict(zip(Identifiability, (Mark.PASS, Mark.WARN, Mark.FAIL, Mark.FAIL), strict=True))
@@ -67,15 +67,15 @@ _REMAINING = Heading("remaining variance", digits=2, unit="%")
 
 @dataclass(frozen=True)
 class Residual:
-    """Datum, a frequency [Hz] or a static gain: measured, by the model before and after, with the relative standard deviation.
+    """Frequency [Hz] or static gain: measured, and by the model before and after the update, with its relative standard deviation.
 
-    The deviation is relative to `scale`, for a gain the largest gain of its actuator.
+    The deviation is relative to `scale`: the frequency itself, or the largest gain of the gain's actuator.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Theory and test",
         "name measured before after deviation misfit_before misfit_after",
-        notes=("Misfits: measured less theory, in standard deviations.",),
+        notes=("Misfits: measured value minus theory, in standard deviations.",),
     )
 
     name: Annotated[str, Heading("datum")]
@@ -88,29 +88,29 @@ class Residual:
 
     @property
     def misfit_before(self) -> Annotated[float, VIEW, Heading(digits=3)]:
-        """Measured minus model before, in standard deviations."""
+        """Measured value minus that of the initial model, in standard deviations."""
         return (self.measured - self.before) / (self.scale * self.deviation)
 
     @property
     def misfit_after(self) -> Annotated[float, VIEW, Heading(digits=3, mark=Graded(2.0, 3.0))]:
-        """Measured minus model after, in standard deviations."""
+        """Measured value minus that of the updated model, in standard deviations."""
         return (self.measured - self.after) / (self.scale * self.deviation)
 
 
 @dataclass(frozen=True)
 class UpdatedNumber:
-    """Updated number before and after, in SI; `change` is relative, deviations are standard deviations of the logarithm.
+    """Updated parameter before and after, in SI; `change` is relative, deviations are standard deviations of the logarithm.
 
-    `prior_variance_left` is the remaining share of the prior variance. `identifiability` is its class, `verdict` a statement on it.
+    `prior_variance_left` is the fraction of the prior variance that remains; `identifiability` and `verdict` follow from it.
     """
 
     TABLE: ClassVar[Layout] = Layout(
-        "Numbers after the test",
+        "Parameters after the test",
         "address before after change prior_deviation deviation prior_variance_left identifiability",
-        notes=("Remaining variance: of the prior's. Identified: at most 10 %; weakly identified: at most 20 %.",),
+        notes=("Remaining variance: fraction of the prior variance. Identified: at most 10 %; weakly identified: at most 20 %.",),
     )
 
-    address: Annotated[str, Heading("number")]
+    address: Annotated[str, Heading("parameter")]
     unit: str
     before: Annotated[float, UnitIn("unit")]
     after: Annotated[float, UnitIn("unit")]
@@ -132,18 +132,18 @@ class UpdatedNumber:
 
     @property
     def prior_variance_left(self) -> Annotated[float, VIEW, RATIO, _REMAINING]:
-        """Remaining share of the prior variance."""
+        """Fraction of the prior variance that remains."""
         return (self.deviation / self.prior_deviation) ** 2
 
 
 @dataclass(frozen=True)
 class Combination:
-    """Linear combination of updated numbers, in prior standard deviations; 1/(1 + s^2) of its prior variance remains, s: singular value."""
+    """Linear combination of updated parameters, in prior standard deviations; 1/(1 + singular_value^2) of its prior variance remains."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Identifiable combinations",
         "combination singular_value prior_variance_left",
-        notes=("In prior standard deviations. A singular value of 1 halves the prior variance; far below 1, it has no effect.",),
+        notes=("In prior standard deviations. With a singular value of 1, the test halves the variance; far below 1, it has no effect.",),
     )
 
     singular_value: Annotated[float, Heading(digits=3)]
@@ -151,24 +151,24 @@ class Combination:
 
     @property
     def combination(self) -> str:
-        """Text of the components above 0.05, for tables."""
+        """Components above 0.05 as text, for tables."""
         return ", ".join(f"{part:+.2f} {name}" for name, part in self.direction.items() if abs(part) > 0.05)
 
     @property
     def prior_variance_left(self) -> Annotated[float, VIEW, RATIO, _REMAINING]:
-        """Remaining share of the prior variance."""
+        """Fraction of the prior variance that remains."""
         return 1.0 / (1.0 + self.singular_value**2)
 
 
 @dataclass(frozen=True, eq=False)
 class Updated(InNotebook):
-    """Result of an update: numbers before and after a test, in SI, with standard deviations of their logarithms.
+    """Result of an update: parameters before and after a test, in SI, with standard deviations of their logarithms.
 
-    Small deviations of logarithms equal relative deviations. `addresses` (P) are full addresses; `prior` (P,) and `covariance` (P, P) are
-    deviations and covariance of the logarithms. The columns of `directions` (P, P) are parameter combinations in prior standard deviations,
-    best identified first. With the combination's value s in `singular` (P,), the share 1/(1 + s^2) of its prior variance remains.
-    `chi_square` is the sum for data and priors at the result; `freedoms` is the number of data. `chi_square_before` is the sum for data
-    before the update. `mechanism` is the updated description. `warnings` list unreliable results.
+    Small deviations of logarithms equal relative deviations. `addresses` (P) are full addresses. `prior` (P,) are prior deviations and
+    `covariance` (P, P) is the posterior covariance of the logarithms. The columns of `directions` (P, P) are parameter combinations in
+    prior standard deviations, best identified first. With the combination's singular value s in `singular` (P,), 1/(1 + s^2) of its prior
+    variance remains. `chi_square` is the sum over data and priors at the result; `freedoms` is the number of data. `chi_square_before` is
+    the sum over data before the update. `mechanism` is the updated description. `data_warnings` lists unreliable results.
     """
 
     addresses: Annotated[tuple[str, ...], INNER]
@@ -194,19 +194,19 @@ class Updated(InNotebook):
         """Notes on the assumed errors, and longer statements on identifiability."""
         known = self.assumed
         gains = "" if known.gain_error is None else f", gains {100.0 * known.gain_error:.3g} %"
-        errors = f"Assumed errors: frequencies of theory {100.0 * known.model_error:.3g} %{gains}; +- is one standard deviation."
+        errors = f"Assumed errors: theoretical frequencies {100.0 * known.model_error:.3g} %{gains}; +- is one standard deviation."
         return errors, *(f"{each.address}: {each.verdict}." for each in self.parameters if each.verdict != each.identifiability.value)
 
     @property
     def parameters(self) -> Annotated[tuple[UpdatedNumber, ...], VIEW]:
-        """List of updated numbers."""
+        """List of updated parameters."""
         values = (column.tolist() for column in (self.before, self.after, self.prior, self.deviations))
         columns: tuple[Iterable[Any], ...] = (self.addresses, self.units, *values, self.identifiability, self.verdicts)
         return tuple(UpdatedNumber(*row) for row in zip(*columns, strict=True))
 
     @property
     def combinations(self) -> Annotated[tuple[Combination, ...], VIEW]:
-        """Combinations of the numbers, best identified first."""
+        """Combinations of the parameters, best identified first."""
         columns = zip(self.singular, self.directions.T, strict=True)
         return tuple(Combination(float(size), dict(zip(self.addresses, column.tolist(), strict=True))) for size, column in columns)
 
@@ -228,12 +228,12 @@ class Updated(InNotebook):
 
     @property
     def remaining_variance(self) -> Array:
-        """Remaining share (P,) of each prior variance."""
+        """Fraction (P,) of each prior variance that remains."""
         return np.diag(self.covariance) / self.prior**2
 
     @property
     def identifiability(self) -> tuple[Identifiability, ...]:
-        """Identifiability of each number; withheld if data differ from the model by more than three standard deviations on average."""
+        """Identifiability of each parameter; withheld if data differ from the model by more than three standard deviations on average."""
         grades = Identifiability
         known = (
             grades.WELL if share <= _IDENTIFIED else grades.WEAKLY if share <= _HARDLY else grades.NOT for share in self.remaining_variance
@@ -242,7 +242,7 @@ class Updated(InNotebook):
 
     @property
     def is_withheld(self) -> bool:
-        """Whether model and test differ beyond any admissible values of the numbers."""
+        """Whether model and test differ more than any plausible values of the parameters explain."""
         return self.chi_square > _CONTRADICTING * max(1, self.freedoms)
 
     @property
@@ -252,7 +252,7 @@ class Updated(InNotebook):
 
     @property
     def verdicts(self) -> tuple[str, ...]:
-        """Statement on the identifiability of each number; `not identifiable from frequencies` is a valid result."""
+        """Statement on the identifiability of each parameter; `not identifiable from frequencies` is a valid result."""
         return tuple(self._verdict(index, each) for index, each in enumerate(self.identifiability))
 
     @property
@@ -272,14 +272,14 @@ class Updated(InNotebook):
             return grade.value
         row = np.where(np.arange(len(self.addresses)) == index, 0.0, self.correlations.values[index])
         other = int(np.argmax(np.abs(row)))
-        rest = f"; only together with {self.addresses[other]}" if abs(row[other]) > _ALONE else ""
+        rest = f"; only in combination with {self.addresses[other]}" if abs(row[other]) > _ALONE else ""
         return f"{grade.value} from {self.data}{rest}"
 
 
 @check_arguments
 @one_thread
 def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], known: Prior = DEFAULT) -> Updated:
-    """Update the numbers at the addresses `names` so that the lumped model agrees best with a test; `known` are their priors.
+    """Update the parameters at the addresses `names` so that the lumped model agrees best with a test; `known` are their priors.
 
     The method is Bayesian least squares in the logarithms x = ln(p/p0) (Tarantola 2005, ch. 3; Friswell & Mottershead 1995, ch. 8).
     Gauss-Newton steps, with exact derivatives by complex step, minimise sum ((d - g(x))/sigma)^2 + sum (x/sigma_p)^2. The posterior
@@ -289,8 +289,8 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
     identified deviations and the model error. With a `gain_error`, static gains are also data. Intervals are valid if frequencies are
     nearly linear in x within the intervals.
 
-    Raises `DesignError` for numbers that are unknown, ambiguous, zero or without effect, for fewer data than numbers, and for a record
-    without the stage's gauges. Raises it also if the iteration does not converge.
+    Raises `DesignError` for parameters that are unknown, ambiguous, zero or without effect, for fewer data than parameters, for a record
+    without the stage's gauges, and if the iteration does not converge.
     """
     freed = free(mechanism, names, known)
     model = start_design(freed.mechanism, ()).model
@@ -411,15 +411,15 @@ def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
     if scipy.special.chdtrc(len(found.residuals), found.cost) < _IMPROBABLE:
         yield (
             f"chi-square is {found.cost:.3g} with {len(found.residuals)} data: model and test differ by more than the assumed "
-            f"errors, and the intervals are too narrow: state a larger model error than {100.0 * errors.model_error:.2g} %, or free "
-            "what else may be off."
+            f"errors, and the intervals are too narrow. Specify a model error above {100.0 * errors.model_error:.2g} %, or free other "
+            "parameters that may be wrong."
         )
     for name, moved, prior in zip(freed.names, found.parameters, freed.deviations, strict=True):
         if abs(moved) > _FAR:
-            yield f"{name} moved by {abs(moved):.2g} of its prior standard deviations of {100.0 * prior:.2g} %: something else may be off."
+            yield f"{name} changed by {abs(moved):.2g} prior deviations of {100.0 * prior:.2g} %: another parameter may be wrong."
     for group in compared.repeated:
         if 0 < group.seen < len(group.numbers):
-            yield f"the repeated modes {' and '.join(map(str, group.numbers))} are compared by the {group.seen} measured ones."
+            yield f"the test shows {group.seen} of the repeated modes {' and '.join(map(str, group.numbers))}; their mean represents all."
 
 
 def _too_few_data(experiment: Identified, rows: tuple[ModeRow, ...], freed: Free, gains: Gains | None) -> list[Finding]:
@@ -427,20 +427,20 @@ def _too_few_data(experiment: Identified, rows: tuple[ModeRow, ...], freed: Free
     count = len(rows) + (0 if gains is None else gains.values.size)
     if not rows:
         what = f"none of the {len(experiment.frequencies)} identified modes matches a platform mode"
-        return [Finding(where, what, "Check names and signs of gauges and the band (flexstage compare shows both sides)")]
+        return [Finding(where, what, "Check names and signs of gauges and the band (flexstage compare lists all modes)")]
     if count >= len(freed.names):
         return []
     seen = ", ".join(row.name for row in rows)
-    what = f"too few data (got {count}: {seen}; repeated modes count once) for {len(freed.names)} free numbers"
-    return [Finding(where, what, "Free fewer numbers, or also compare static gains" if gains is None else "Free fewer numbers")]
+    what = f"too few data for {len(freed.names)} free parameters (got {count}: {seen}; repeated modes count once)"
+    return [Finding(where, what, "Free fewer parameters, or also compare static gains" if gains is None else "Free fewer parameters")]
 
 
 def _without_effect(slopes: Array, freed: Free, gains: Gains | None) -> list[Finding]:
-    """Numbers whose prior deviation changes no datum by a millionth of the datum's deviation."""
+    """Parameters whose prior deviation changes no datum by a millionth of the datum's deviation."""
     strength = np.max(np.abs(slopes), axis=0)
-    data = "frequencies compared" if gains is None else "frequencies and gains compared"
+    data = "compared frequencies" if gains is None else "compared frequencies and gains"
     return [
-        Finding(name, f"it has no effect on the {data}", "Remove it from the free numbers: the test has no information on it")
+        Finding(name, f"it has no effect on the {data}", "Remove it from the free parameters: the test has no information on it")
         for name, size in zip(freed.names, strength, strict=True)
         if size < _NO_EFFECT
     ]

@@ -1,4 +1,4 @@
-"""Measuring chain of a virtual test in the frequency domain: from white numbers to recorded inputs and gauge readings.
+"""Measuring chain of a virtual test in the frequency domain: from white noise to recorded inputs and gauge readings.
 
 The whole chain is linear and time-invariant except for the gauges' quantisation, and the drive is band-limited. The continuous response is
 therefore exactly the convolution of the drive's samples with the chain's impulse response. It is computed block by block by transforms,
@@ -36,9 +36,9 @@ _LINES = 4096
 class Chain:
     """Transfer functions of the measuring chain, from white noise of unit variance, at the frequency lines of a transform.
 
-    The transform has three blocks of `size` samples at `finer` times the sampling rate. `strokes` (l, m) lead to the free strokes, `inputs`
-    (l, m) to the recorded inputs [m], `outputs` (l, p, m) to the gauges [m, rad]. Their l lines end with the drive's band. `gauge` (f, p)
-    leads to the gauges' noise, at all lines. `note` describes the damping model.
+    The transform has three blocks of `size` samples at `finer` times the sampling rate. `strokes` (l, m) is the transfer function to the
+    inputs after the amplifiers, `inputs` (l, m) to the recorded inputs [m, A or N], `outputs` (l, p, m) to the gauges [m, rad]. Their l
+    lines end with the drive's band. `gauge` (f, p) is that to the gauges' noise, at all lines. `note` describes the damping model.
     """
 
     size: int
@@ -52,7 +52,7 @@ class Chain:
 
     @property
     def input_rms(self) -> Array:
-        """Expected rms (m,) of the recorded inputs [m]."""
+        """Expected rms (m,) of the recorded inputs [m, A or N]."""
         return np.sqrt(self._power(np.abs(self.inputs) ** 2))
 
     @property
@@ -62,7 +62,7 @@ class Chain:
 
     @property
     def stroke_rate_rms(self) -> Array:
-        """Expected rms (m,) of the free strokes' rate [m/s]."""
+        """Expected rms (m,) of the rate of the inputs after the amplifiers [m/s, A/s or N/s]."""
         omega = 2.0 * np.pi * self.frequencies[: len(self.strokes), None]
         return np.sqrt(self._power(np.abs(omega * self.strokes) ** 2))
 
@@ -74,7 +74,7 @@ class Chain:
 def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
     """Compute the measuring chain of a plan. Raises `DesignError` for a stage that decays too slowly.
 
-    Structural damping has no time-domain form: each mode has its equivalent damping ratio, with a note.
+    Structural damping has no time-domain form: each mode has its equivalent damping ratio, and `note` mentions this.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -83,7 +83,7 @@ def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
     >>> stage = double_triangle()
     >>> model = mapped(stage)
     >>> found = chain(model, plan_test(stage, model, RigSetup(seconds=1.0)), model.damping)
-    >>> (1e6 * found.input_rms).round(3).tolist()  # 1.5 and 2 um, what the filter leaves of them
+    >>> (1e6 * found.input_rms).round(3).tolist()  # 1.5 and 2 um, reduced by the filter
     [1.418, 1.418, 1.418, 1.89, 1.89, 1.89]
     """
     finer = max(_FINER, int(np.ceil(2.0 * (1.0 + TAPER) * plan.band[1] / plan.rate)))
@@ -113,7 +113,7 @@ def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
 
 
 def butterworth(frequencies: Array, order: int, corner: float) -> Array:
-    """Evaluate an analogue Butterworth low-pass (f,): product of 1/(s - p_k), p_k = e^{j pi (2k + n + 1)/(2n)}, s = j f/corner.
+    """Evaluate an analogue Butterworth low-pass filter (f,): product of 1/(s - p_k), p_k = e^{j pi (2k + n + 1)/(2n)}, s = j f/corner.
 
     >>> abs(butterworth(np.array([0.0, 100.0]), 6, 100.0)).round(4).tolist(), butterworth(np.array([5.0]), 0, 1.0).tolist()
     ([1.0, 0.7071], [(1+0j)])
@@ -150,7 +150,7 @@ def _memory(model: LinearModel, plan: Plan, damping: Damping) -> float:
     decays = omega * (ratios - over)
     slowest = int(np.argmin(decays))
     if decays[slowest] <= 0.0:
-        what = f"the mode at {omega[slowest] / (2.0 * np.pi):.4g} Hz has no damping: it would ring for ever"
+        what = f"the mode at {omega[slowest] / (2.0 * np.pi):.4g} Hz has no damping: its vibration would never decay"
         require([Finding("damping", what, "Specify damping, for example a modal ratio of 0.01")])
     lags = sum(_FORGOTTEN / (2.0 * np.pi * float(np.min(each, initial=np.inf))) for each in (plan.bandwidths, plan.lags))
     order = plan.setup.filter.order
@@ -163,8 +163,8 @@ def _block(memory: float, rate: float) -> int:
     """Block size, a power of two: longer than the chain's impulse response, and than the drive's spectral edges in time."""
     size = max(_SHORTEST, 2 ** int(np.ceil(np.log2(memory * rate))))
     if size > _LONGEST:
-        what = f"the test rings for {memory:.4g} s, {memory * rate:.3g} samples; {_LONGEST:.3g} can be held"
-        require([Finding("damping", what, "Use more damping, a lower rate, or a band with a lower limit of 0 or higher")])
+        what = f"vibrations decay too slowly (got {memory:.4g} s or {memory * rate:.3g} samples, expected at most {_LONGEST:.3g})"
+        require([Finding("damping", what, "Use more damping, a lower rate, or a band that starts at 0 or at a higher frequency")])
     return size
 
 

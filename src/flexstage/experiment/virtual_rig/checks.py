@@ -35,7 +35,7 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
     ['seconds: must be greater than 0 s (got 0 s). Use e.g. "0.1 s".']
     """
     if model.stiffness_matrix.ndim > 2:
-        yield Finding("stage", "it is a batch of designs", "Test one design at a time")
+        yield Finding("stage", "it is a batch of several designs", "Test one design at a time")
         return
     for address, value, node in node_of(RigSetup).numbers(setup):
         yield from number_findings(address, value, node)
@@ -44,18 +44,18 @@ def setup_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) ->
     drive, amplifier, order = setup.drive, setup.amplifier, setup.filter.order
     if len(drive.amounts) > 1:
         named = " and as a ".join(each.value for each in drive.amounts)
-        yield Finding("drive", f"its rms is given as a {named}", "Remove one of them")
+        yield Finding("drive", f"its rms is specified as a {named}", "Remove one of them")
     if drive.band is not None and not drive.band[0] < drive.band[1]:
         yield Finding("band", f"{drive.band[0]:g} Hz to {drive.band[1]:g} Hz is no band", "Use 0 <= low < high in Hz")
     if amplifier.bandwidth is not None and amplifier.resistance is not None:
-        yield Finding("amplifier", "both its bandwidth and its resistance are given", "Specify one of them: the other follows")
+        yield Finding("amplifier", "both its bandwidth and its resistance are specified", "Specify one of them: the other follows")
     if not 0 <= order <= _HIGHEST_ORDER:
-        yield Finding("filter", f"its order is {order}", f"Use an order from 0 (none) to {_HIGHEST_ORDER}")
+        yield Finding("filter", f"wrong order (got {order})", f"Use an order from 0 (no filter) to {_HIGHEST_ORDER}")
 
 
 def _clock_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup) -> Iterator[Finding]:
     if setup.seed < 0:
-        yield Finding("seed", f"it is {setup.seed}", "Use a whole number of 0 or more")
+        yield Finding("seed", f"it is negative (got {setup.seed})", "Use a whole number of 0 or more")
     highest = platform_modes(mechanism, model).highest
     top = np.inf if setup.drive.band is None else (1.0 + TAPER) * setup.drive.band[1]
     if setup.rate is not None and 0.0 < setup.rate < 2.0 * min(highest, top):
@@ -68,9 +68,9 @@ def _channel_findings(mechanism: Mechanism, model: LinearModel, setup: RigSetup)
     known = drivable_actuators(mechanism, model)
     asked = setup.drive.actuators
     if not known:
-        yield Finding("actuators", "the stage has no piezo stack or force actuator to be driven", "Add one")
+        yield Finding("actuators", "the stage has no piezo stack or force actuator to be driven", "Add one to the design")
     elif asked is not None and not asked:
-        yield Finding("actuators", "none is to be driven", f"Name at least one: {', '.join(known)}")
+        yield Finding("actuators", "no actuator is selected", f"Name at least one: {', '.join(known)}")
     for name in dict.fromkeys(asked or ()):
         if name not in known:
             yield Finding(f"actuator {name}", "unknown actuator", suggest_nearest(name, known))
@@ -94,18 +94,18 @@ def plan_findings(plan: Plan) -> Iterator[Finding]:
     for name, each in zip(plan.actuators, plan.inputs, strict=True):
         yield from (_stack_findings if each.own is InputQuantity.STROKE else _thrust_findings)(name, each, setup)
     if not _FEWEST <= plan.length < _MOST:
-        what = f"{setup.seconds:g} s at {plan.rate:g} Hz are {plan.length:.3g} samples"
+        what = f"wrong number of samples (got {plan.length:.3g}: {setup.seconds:g} s at {plan.rate:g} Hz)"
         yield Finding("seconds", what, f"Record between {_FEWEST} and {_MOST:.2g} samples")
 
 
 def _stack_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterator[Finding]:
     requested = {*setup.drive.amounts, setup.input_quantity} - {None}
     if requested - {InputQuantity.STROKE, InputQuantity.VOLTAGE}:
-        yield Finding(name, "the input of its stack is a stroke or a voltage", 'Use these, for example --drive-rms "1 um"')
+        yield Finding(name, "the input of its stack is a stroke or a voltage", 'Use one of these, for example --drive-rms "1 um"')
     if np.isnan(driven.factor(InputQuantity.VOLTAGE)) and (InputQuantity.VOLTAGE in requested or setup.amplifier.current is not None):
-        yield Finding(name, "its stack states no range of voltage", "State voltage_low and voltage_high, or use strokes")
+        yield Finding(name, "its stack has no voltage range", "Specify voltage_low and voltage_high, or use strokes")
     if np.isnan(driven.capacitance) and (setup.amplifier.resistance is not None or setup.amplifier.current is not None):
-        yield Finding(name, "its stack states no capacitance", "State it, or give the amplifier's bandwidth in Hz")
+        yield Finding(name, "its stack has no capacitance", "Specify it, or specify the amplifier's bandwidth in Hz")
 
 
 def _thrust_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterator[Finding]:
@@ -116,9 +116,9 @@ def _thrust_findings(name: str, driven: DrivenInput, setup: RigSetup) -> Iterato
         if np.isnan(driven.factor(quantity)):
             yield Finding(name, f"its input is a {own}, not a {quantity.value}", f'Use {own}, for example --drive-rms "{example}"')
     if not setup.drive.amounts and np.isnan(driven.full):
-        yield Finding(name, "it states no limit, and the default drive is 1 % of it", f'Use for example --drive-rms "{example}"')
+        yield Finding(name, "its sustained limit, which defines the default drive, is unknown", f'Use for example --drive-rms "{example}"')
     if setup.amplifier.resistance is not None:
-        yield Finding(name, "an output resistance needs a stack's capacitance", "Set the amplifier's bandwidth in Hz")
+        yield Finding(name, "an output resistance requires the capacitance of a stack", "Specify the amplifier's bandwidth in Hz")
 
 
 def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
@@ -133,17 +133,17 @@ def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
     >>> model = mapped(stage)
     >>> plan = plan_test(stage, model, RigSetup(seconds=1.0, drive=NoiseDrive(stroke=20e-6, actuators=("B1",))))
     >>> print(next(range_findings(plan, chain(model, plan, model.damping))))
-    B1: peaks of 6 x 20 um rms pass the stroke of -75 um to 75 um. Drive with 12.5 um rms at most.
+    B1: peaks of 6 x 20 um rms exceed the stroke of -75 um to 75 um. Drive with 12.5 um rms at most.
     """
     limit = plan.setup.amplifier.current
     for name, driven, rms, rate in zip(plan.actuators, plan.inputs, plan.rms, chain.stroke_rate_rms, strict=True):
         scale = 1e6 if driven.own is InputQuantity.STROKE else 1.0
         unit, low, high = RECORDED_UNITS[driven.own], scale * driven.low, scale * driven.high
         if _PEAK * scale * rms > min(-low, high):
-            what = f"peaks of 6 x {scale * rms:.4g} {unit} rms pass the {driven.own.value} of {low:.4g} {unit} to {high:.4g} {unit}"
+            what = f"peaks of 6 x {scale * rms:.4g} {unit} rms exceed the {driven.own.value} of {low:.4g} {unit} to {high:.4g} {unit}"
             yield Finding(name, what, f"Drive with {min(-low, high) / _PEAK:.4g} {unit} rms at most")
         if rms > driven.sustained:
-            yield Finding(name, f"{rms:.4g} {unit} rms pass the sustained {driven.sustained:.4g} {unit}", "Drive less")
+            yield Finding(name, f"{rms:.4g} {unit} rms exceed the sustained limit of {driven.sustained:.4g} {unit}", "Reduce the drive")
         current = {InputQuantity.STROKE: driven.capacitance * driven.factor(InputQuantity.VOLTAGE) * rate, InputQuantity.CURRENT: rms}
         yield from _current_findings(name, current.get(driven.own, 0.0), limit)
     yield from _gauge_findings(plan, chain)
@@ -151,19 +151,19 @@ def range_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
 
 def _current_findings(name: str, rms: float, limit: float | None) -> Iterator[Finding]:
     if limit is not None and _PEAK * rms > limit:
-        what = f"peaks of 6 x {rms:.4g} A rms pass the amplifier's {limit:.4g} A"
-        yield Finding(name, what, "Drive less, in a narrower band, or with a stronger amplifier")
+        what = f"peaks of 6 x {rms:.4g} A rms exceed the amplifier's limit of {limit:.4g} A"
+        yield Finding(name, what, "Reduce the drive or its band, or use a stronger amplifier")
 
 
 def _gauge_findings(plan: Plan, chain: Chain) -> Iterator[Finding]:
     walked = plan.walks * np.sqrt(plan.length / plan.rate / 60.0)
     for name, unit, rms, span in zip(plan.gauges, plan.units, np.hypot(chain.output_rms, walked), plan.ranges, strict=True):
         if _PEAK * rms > 0.5 * span:
-            what = f"peaks of 6 x {1e6 * rms:.4g} u{unit} rms pass half its range of {1e6 * span:.4g} u{unit}"
+            what = f"peaks of 6 x {1e6 * rms:.4g} u{unit} rms exceed half its range of {1e6 * span:.4g} u{unit}"
             yield Finding(name, what, "Reduce the drive or the drift, or use a gauge of larger range")
     seen = np.hypot(chain.output_rms, walked)
     if np.all(_PEAK * seen < 0.5 * plan.steps):
         best = int(np.argmin(plan.steps / np.maximum(seen, 1e-300)))
-        unit, within = plan.units[best], "and so at the others"
-        what = f"peaks of 6 x {1e6 * seen[best]:.4g} u{unit} rms stay within half a step of {1e6 * plan.steps[best]:.4g} u{unit}, {within}"
+        unit, also = plan.units[best], "as at all other gauges"
+        what = f"peaks of 6 x {1e6 * seen[best]:.4g} u{unit} rms are below half a step of {1e6 * plan.steps[best]:.4g} u{unit}, {also}"
         yield Finding(plan.gauges[best], what, "Increase the drive, or use gauges of finer resolution: all readings would be constant")

@@ -34,6 +34,6 @@ class InputSignal(Enum):
     """Source signal of the recorded inputs."""
 
     MONITOR = "monitor"
-    """After the amplifier and the gauges' filter: amplifier and filter cancel in the frequency response."""
+    """Amplifier output, through the gauges' filter: amplifier and filter cancel in the frequency response."""
     COMMAND = "command"
-    """Before the amplifier, not filtered: amplifier and filter are part of the frequency response."""
+    """Amplifier input, not filtered: amplifier and filter are part of the frequency response."""

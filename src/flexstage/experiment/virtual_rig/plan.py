@@ -29,8 +29,8 @@ class DrivenInput:
     """Input of a driven actuator: free stroke [m] of a stack, current [A] or force [N] of a force actuator.
 
     `own` is the quantity of the input. `low` and `high` limit peaks, `sustained` limits the rms (infinite: no limit). `full` is the range
-    for the default drive (NaN: unknown). `factors` convert the input to other quantities. `capacitance` is that of a stack [F].
-    `lag` [Hz] is the corner frequency of the coil (infinite: none).
+    for the default drive (NaN: unknown). `factors` convert the input to other quantities. `capacitance` [F] is known for stacks only. `lag`
+    [Hz] is the corner frequency of the coil (infinite: none).
     """
 
     own: InputQuantity
@@ -51,8 +51,9 @@ class DrivenInput:
 class Plan:
     """Set-up of a virtual test with all defaults resolved, in SI, by driven actuator (m,) and by gauge (p,).
 
-    `units` (p,) are the units of gauge readings. `rms` (m,) is of the commanded `inputs`. `bandwidths` (m,) are of amplifiers (infinite:
-    ideal). `lags` (p,) are corner frequencies of gauges, `walks` (p,) their drift per minute. `highest` is the highest platform mode [Hz].
+    `units` (p,) are the units of gauge readings. `rms` (m,) are rms values of the commanded `inputs`. `bandwidths` (m,) are those of
+    amplifiers and coils [Hz] (infinite: ideal). `lags` (p,) are corner frequencies of gauges, `walks` (p,) their drifts after a minute.
+    `highest` is the highest platform mode [Hz].
     """
 
     setup: RigSetup

@@ -22,15 +22,15 @@ _MICROMETRE = 1e6
 
 @check_arguments
 def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None) -> Record:
-    """Simulate the record of a test: strokes, voltages, currents or forces in, gauges out, by name and with units.
+    """Simulate the record of a test: inputs are strokes, voltages, currents or forces, outputs are gauges, with names and units.
 
     `model` is any elastic model of the mechanism (lumped, mapped, solid); `damping` replaces the model's damping. The drive of each
-    actuator is band-limited Gaussian noise, filtered by the amplifier 1/(1 + j f/f_a). Gauges measure the stage's motion with lag, noise,
-    anti-alias filter, drift and quantisation, in this order. The record starts in the steady state. Strokes are free strokes around the
-    bias. The stage is linear, with an exact continuous response to the noise. Structural damping is converted to equivalent modal damping
-    ratios, with a note in the record's name. Samples are computed on demand, in blocks; equal set-ups give equal samples.
+    actuator is band-limited Gaussian noise, filtered by the amplifier 1/(1 + j f/f_a). Gauges add noise to the stage's motion; lag,
+    anti-alias filter, drift and quantisation follow, in this order. The record starts in the steady state. Strokes are free strokes around
+    the bias. The stage is linear, with an exact continuous response to the noise. Structural damping is converted to equivalent modal
+    damping ratios, with a note in the record's name. Samples are computed on demand, in blocks; equal set-ups give equal samples.
 
-    Raises `DesignError` with all findings: invalid duration or rate, a rate below twice the highest platform mode, unknown actuators, no
+    Raises `DesignError` with all errors: invalid duration or rate, a rate below twice the highest platform mode, unknown actuators, no
     gauges, peaks beyond strokes, currents or gauge ranges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -45,7 +45,7 @@ def rig(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: D
 
 
 def simulate_test(mechanism: Mechanism, model: LinearModel, setup: RigSetup, *, damping: Damping | None = None) -> Simulated:
-    """Prepare a virtual test: plan, measuring chain with expected rms values, and samples. Raises `DesignError` for the errors of `rig`.
+    """Prepare a virtual test: plan, measuring chain with expected rms values, and samples. Raises `DesignError` as `rig` does.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

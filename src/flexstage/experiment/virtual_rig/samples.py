@@ -18,8 +18,8 @@ _HELD = 2**24
 class Simulated:
     """Simulated samples (n, inputs + outputs) in the record's units, computed in independent blocks that can be read in any order.
 
-    `input_scale` (m,) and `output_scale` convert SI units to the record's units. Short records are cached; of long records only the last
-    block.
+    `input_scale` (m,) and `output_scale` convert SI units to the record's units. Short records are cached completely; of long records, only
+    the last block is cached.
     """
 
     plan: Plan
@@ -36,7 +36,7 @@ class Simulated:
 
     @property
     def block(self) -> int:
-        """Samples per block."""
+        """Number of samples per block."""
         return self.chain.size // self.chain.finer
 
     def read(self, start: int, stop: int) -> Array:

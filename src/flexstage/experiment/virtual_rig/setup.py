@@ -27,7 +27,7 @@ class NoiseDrive(CheckedFields):
     """Independent Gaussian noise drive of the actuators.
 
     `stroke` [m] and `voltage` [V] are the rms of a stack's commanded free stroke or voltage. `current` [A], `force` [N] or `torque` [N m]
-    is the rms of a force actuator's input. Default: 1 % of each full stroke, or of the largest sustained input of a force actuator.
+    is the rms of a force actuator's input. Default: 1 % of a stack's full stroke, or of a force actuator's sustained input limit.
 
     The density is constant within `band` (low, high) [Hz], by default 0 to 0.4 times the sampling rate. It decays to zero from `low` to
     `low`/2 and from `high` to 1.25 `high`. `actuators` names the driven and recorded actuators (default: all).
@@ -43,7 +43,7 @@ class NoiseDrive(CheckedFields):
 
     @property
     def amounts(self) -> dict[InputQuantity, float]:
-        """The specified rms values by quantity.
+        """Specified rms values by quantity.
 
         >>> NoiseDrive(current=0.1).amounts
         {<InputQuantity.CURRENT: 'current'>: 0.1}
@@ -74,7 +74,7 @@ class Sensing(CheckedFields):
 
 @dataclass(frozen=True)
 class RigSetup(CheckedFields):
-    """Virtual test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`; gauges are recorded `delay` [s] late.
+    """Virtual test: `seconds` long, sampled at `rate` [Hz], with the random numbers of `seed`; readings are recorded `delay` [s] late.
 
     A test with peaks beyond the amplifier's current is refused, because a saturated amplifier is not linear.
     The default rate is the lowest power of two that is at least ten times the highest platform mode. Equal set-ups of equal stages give

@@ -9,7 +9,7 @@ from flexstage.show.table import Cell, Mark, Table, make_table
 
 
 def rig_table(test: Simulated) -> Table:
-    """Tabulate the channels of a virtual test with their units, expected rms values, and steps of the gauges.
+    """Tabulate the channels of a virtual test with their units, expected rms values, and quantisation steps of the gauges.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -31,7 +31,7 @@ def rig_table(test: Simulated) -> Table:
     clock = f"{test.length} samples at {number(plan.rate, 6)} Hz"
     noise = f"noise from {number(plan.band[0], 4)} to {number(plan.band[1], 4)} Hz"
     slower = [value for value in (*plan.bandwidths, *plan.lags) if value != float("inf")]
-    lag = f"; slowest amplifier or gauge {number(min(slower), 4)} Hz" if slower else ""
+    lag = f"; lowest bandwidth of amplifiers and gauges {number(min(slower), 4)} Hz" if slower else ""
     note = f"{clock}; {noise}{lag}; highest platform mode {number(plan.highest, 4)} Hz. {test.chain.note[0].upper()}{test.chain.note[1:]}."
     return make_table(
         "Virtual test", ["channel", "role", "unit", "expected rms", "step"], [*driven, *read], notes=[note], provenance=test.source

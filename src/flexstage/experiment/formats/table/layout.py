@@ -109,7 +109,9 @@ def _broken_row(path: Path, above: list[str], form: tuple[str | None, str, int])
         line, count = above[at].strip()[:60], len(_fields(above[at], form[0]))
         wrong = "a field is not a number" if count == columns else f"wrong number of fields (got {count}, expected {columns})"
         what = f'{wrong} between rows of numbers: "{line}"'
-        yield Finding(f"{path}:{at + 1}", what, f'Correct it; if line {rows[0] + 1} is not a row of numbers, start that line with "#"')
+        yield Finding(
+            f"{path}:{at + 1}", what, f'Correct this line; if line {rows[0] + 1} is not a row of numbers, start that line with "#"'
+        )
 
 
 def _is_row(line: str) -> bool:
@@ -125,10 +127,10 @@ def _lines(raw: bytes, path: Path) -> tuple[list[str], str]:
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise refuse(str(path), "it is UTF-16 text", "Save it as UTF-8")
     if b"\x00" in raw:
-        raise refuse(str(path), "it is neither text nor a known form of record", "Export UFF, MAT, HDF5 or CSV")
+        raise refuse(str(path), "it is neither text nor in a supported format of records", "Export UFF, MAT, HDF5 or CSV")
     raw = raw.removeprefix(b"\xef\xbb\xbf")
     if b"\r" in raw and b"\n" not in raw:
-        raise refuse(str(path), "its lines end in carriage returns alone", "Save it with line feeds")
+        raise refuse(str(path), "its lines end in carriage returns only", "Save it with line feeds")
     lines = io.BytesIO(raw).readlines()
     whole = lines[:-1] if len(lines) > 1 and len(raw) > _HEAD - 8 else lines
     try:

@@ -68,7 +68,7 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
 
 
 def read_record(samples: TableSamples, said: Mapping[str, Attribute], options: Options, time: int | None) -> tuple[Record | Responses, ...]:
-    """Build a record from a table: times from the column with index `time`, channels from all others; `said` are the file's attributes."""
+    """Build a record from a table with times in the column `time` (index) and channels in all others; `said` are the file's attributes."""
     layout = samples.layout
     columns = tuple(number for number in range(len(layout.names)) if number != time)
     texts: dict[str, Attribute] = {kind: tuple(getattr(layout, kind)[number] for number in columns) for kind in ("names", "units")}
@@ -106,7 +106,9 @@ def _unknown_names(path: Path, layout: Layout, arrays: Arrays) -> Iterator[Findi
     for meaning, name in arrays.stated():
         if meaning not in ("time", "frequencies"):
             yield Finding(
-                f"{path}: {meaning}={name}", "only time and frequencies of a table can be assigned", "Select channels otherwise (only)"
+                f"{path}: {meaning}={name}",
+                "in a table, only time and frequencies can be assigned",
+                "Select other columns as channels (channels)",
             )
         elif not any(matches(each, [name]) for each in layout.names):
             yield Finding(f"{path}: {meaning}={name}", "unknown column", suggest_nearest(name, layout.names))
@@ -121,22 +123,22 @@ def _column(layout: Layout, names: tuple[str, ...]) -> int | None:
 def complete_rows(path: Path, layout: Layout, options: Options, announced: int | None, *, closed: bool) -> TableSamples:
     """Read all columns of a table, and check that it has the `announced` number of lines.
 
-    A truncated file is read without its last line if the options accept it. With `closed`, the last line must end with a line feed:
+    A truncated file is read without its last line if the options accept this fault. With `closed`, the last line must end with a line feed:
     otherwise its last number may be truncated.
     """
     whole = index_table(path, layout)
     ends = _ends_with_newline(path)
     if announced is not None and whole.length > announced:
-        what = f"it has {whole.length} lines of numbers, its header says {announced}"
-        raise refuse(f"{path}:{layout.line + announced}", what, "Save one record a file")
+        what = f"too many lines of numbers (got {whole.length}, expected {announced} from its header)"
+        raise refuse(f"{path}:{layout.line + announced}", what, "Save each record in its own file")
     cut = _cut_short(path, layout, whole.end)
     if cut is None and (announced is None or (whole.length == announced and (ends or not closed))):
         return whole
     unsure = whole.length - 1 if cut is not None or not ends or not closed else whole.length
     if FaultTolerance.TRUNCATED in options.accept_faults and unsure > 0:
         return replace(whole, length=unsure)
-    what = f"it breaks off: {cut}" if cut is not None else f"it breaks off: it has {whole.length} of {announced} samples"
-    advice = f'Export it again, or accept "truncated" to use the {max(0, unsure)} samples before'
+    what = f"it is truncated: {cut}" if cut is not None else f"it is truncated: it has {whole.length} of {announced} samples"
+    advice = f'Export it again, or accept "truncated" to use the first {max(0, unsure)} samples'
     raise refuse(f"{path}:{layout.line + whole.length - 1}", what, advice)
 
 
@@ -207,11 +209,11 @@ def _parts(path: Path, layout: Layout, chosen: list[int]) -> tuple[tuple[str, ..
     partial = {name for name in owners if tuple(ending for own, ending in zip(owners, endings, strict=True) if own == name) != order}
     whole = [name for name in dict.fromkeys(owners) if name not in partial]
     advice = (
-        'Write real and imaginary part of each, "frequency [Hz], S1 re [um/V], S1 im [um/V]", with or without "S1 coherence", or magnitude '
-        'and phase, "frequency [Hz], S1 magnitude [um/V], S1 phase [deg]"'
+        'Write real and imaginary part of each response, "frequency [Hz], S1 re [um/V], S1 im [um/V]", with or without "S1 coherence", or '
+        'magnitude and phase, "frequency [Hz], S1 magnitude [um/V], S1 phase [deg]"'
     )
-    named = f"; or use only the complete ones (only): {', '.join(whole[:12])}" if all(whole) and whole else ""
-    raise refuse(str(path), f"frequencies together with {', '.join(names[:12])}", advice + named)
+    named = f"; or select the complete ones (channels): {', '.join(whole[:12])}" if all(whole) and whole else ""
+    raise refuse(str(path), f"its columns are not complete responses: {', '.join(names[:12])}", advice + named)
 
 
 def _rectangular(path: Path, layout: Layout, chosen: list[int], found: Array, order: tuple[str, ...]) -> Array:

@@ -100,7 +100,7 @@ class TableSamples:
         where = f"{self.path}:{self.layout.line + number}"
         fields = fields[:-1] if len(fields) == expected + 1 and not fields[-1] else fields
         if len(fields) != expected:
-            what = f'it has {len(fields)} of {expected} fields: "{text.strip()[:_LISTED]}"'
+            what = f'wrong number of fields (got {len(fields)}, expected {expected}): "{text.strip()[:_LISTED]}"'
             raise refuse(where, what, "Correct the line, or remove it")
         return [self._field(fields[column], f"{where}: {self.layout.names[column]}") for column in self.columns]
 

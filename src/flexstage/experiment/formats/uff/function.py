@@ -1,7 +1,7 @@
 """Header of a function at nodal degrees of freedom: data set 58 of universal files, records 1 to 11.
 
 Reference: Structural Dynamics Research Laboratory, University of Cincinnati, "Universal File Formats", data set number 58. Fields have
-fixed columns; only the first abscissa and the step may also be padded differently.
+fixed columns, except that the first abscissa and the step may be padded differently.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ class Function:
 
     @property
     def is_response(self) -> bool:
-        """Whether the function is a frequency response: a response or transmissibility by type, or of type 0, complex, over frequency."""
+        """Whether the function is a frequency response: type 4, type 5 (transmissibility), or type 0 if complex and over frequency."""
         return self.kind in (RESPONSE, TRANSMISSIBILITY) or (self.kind == 0 and self.is_complex and self.abscissa.kind == _FREQUENCY_AXIS)
 
     @property
@@ -120,7 +120,7 @@ def parse_head(lines: list[str]) -> Function:
     ('3+X', 2048.0, 'um', 'output')
     """
     if len(lines) < HEAD_LINES:
-        raise ValueError(f"its head has {len(lines)} of {HEAD_LINES} lines")
+        raise ValueError(f"its header has {len(lines)} of {HEAD_LINES} lines")
     number, response, reference = _parse_places(lines[5])
     precision, count, is_even, first, step = _parse_form(lines[6])
     axes = [_axis(line) for line in lines[7:11]]
@@ -149,11 +149,11 @@ def _parse_form(line: str) -> tuple[int, int, bool, float, float]:
     except ValueError:
         raise ValueError(f'record 7, the form of the data, cannot be read: "{line.strip()}"') from None
     if precision not in (REAL_SINGLE, REAL_DOUBLE, COMPLEX_SINGLE, COMPLEX_DOUBLE):
-        raise ValueError(f"its data type is {precision}, where 2, 4, 5 and 6 are known")
+        raise ValueError(f"unknown data type (got {precision}, expected 2, 4, 5 or 6)")
     if spacing and not (1.0 / RATES[1] <= step <= 1.0 / RATES[0] and math.isfinite(first)):
-        raise ValueError(f"its values are evenly spaced by {step:g}, from {first:g}")
+        raise ValueError(f"invalid even spacing (got {step:g}, from {first:g})")
     if count < 0:
-        raise ValueError(f"it has {count} values")
+        raise ValueError(f"invalid number of values (got {count})")
     return precision, count, bool(spacing), first, step
 
 

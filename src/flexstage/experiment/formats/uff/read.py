@@ -47,7 +47,9 @@ def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     and functions that are neither time histories nor responses.
     """
     stated = options.arrays.stated()
-    require(Finding(f"{path}: {meaning}={name}", "universal files have no named arrays", "Omit it") for meaning, name in stated)
+    require(
+        Finding(f"{path}: {meaning}={name}", "universal files have no named arrays", "Omit this assignment") for meaning, name in stated
+    )
     found, findings = scan(path)
     truncated = [Finding(_where(path, each), each.problem, _ADVICE) for each in found if each.problem is not None]
     require([*findings, *([*truncated, *_missing_functions(path, found)] if FaultTolerance.TRUNCATED not in options.accept_faults else ())])
@@ -68,7 +70,7 @@ def _missing_functions(path: Path, found: list[DataSet]) -> Iterable[Finding]:
     told = [COUNTED.fullmatch(each.function.texts[3]) for each in found if each.function.texts[4].startswith("flexstage ")]
     stated = max((int(each["count"]) for each in told if each), default=0)
     if len(found) < stated:
-        yield Finding(str(path), f"it breaks off: {len(found)} of the {stated} functions that were written are there", _ADVICE)
+        yield Finding(str(path), f"it is truncated: it has {len(found)} of the {stated} functions that were written", _ADVICE)
 
 
 def _where(path: Path, found: DataSet) -> str:
@@ -130,7 +132,7 @@ def _common_clock(path: Path, chosen: list[tuple[str, DataSet]], options: Option
 def _lengths(path: Path, chosen: list[tuple[str, DataSet]]) -> Iterable[Finding]:
     lengths = Counter(each.values.length for _, each in chosen)
     usual = max(lengths, key=lambda length: (lengths[length], length))
-    advice = "Export all channels over the same time, or select matching ones (only)"
+    advice = "Export all channels over the same time, or select matching ones (channels)"
     for name, each in chosen:
         if each.values.length != usual:
             yield Finding(f"{path}: {name}", f"it has {each.values.length} samples, others have {usual}", advice)
@@ -140,8 +142,8 @@ def _clock_findings(path: Path, clocks: dict[str, Clock]) -> Iterable[Finding]:
     known, first = next(iter(clocks.items()))
     for name, clock in clocks.items():
         if abs(clock.rate / first.rate - 1.0) > 1e-6 or abs(clock.start - first.start) * first.rate > 0.01:
-            what = f"it has {clock.rate:g} Hz from {clock.start:g} s, {known} {first.rate:g} Hz from {first.start:g} s"
-            yield Finding(f"{path}: {name}", what, "Select channels of one sampling (only)")
+            what = f"it is sampled at {clock.rate:g} Hz from {clock.start:g} s, {known} at {first.rate:g} Hz from {first.start:g} s"
+            yield Finding(f"{path}: {name}", what, "Select channels with the same sampling (channels)")
 
 
 def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
@@ -283,6 +285,6 @@ def _coherence(
     stored = {_pair(each): each for each in found if each.values.length == rows[0][0].values.length}
     lack = [_pair(each) for each in itertools.chain(*rows) if _pair(each) not in stored]
     if lack and lack == list(table)[-1:] and len(table) > 1 and FaultTolerance.INCOMPLETE not in options.accept_faults:
-        what = f"all responses have their coherence but the last, of {lack[0][0]} to {lack[0][1]}: the file may break off there"
+        what = f"only the last response, of {lack[0][0]} to {lack[0][1]}, has no coherence: the file may be truncated"
         raise DesignError([Finding(str(path), what, 'Export the file again, or accept "incomplete" to omit coherence')])
     return None if lack else [[stored[_pair(each)] for each in row] for row in rows]

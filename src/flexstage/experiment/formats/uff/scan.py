@@ -37,8 +37,8 @@ class DataSet:
 def scan(path: Path) -> tuple[list[DataSet], list[Finding]]:
     r"""Scan the functions of a file in order, with errors for unreadable functions; other data sets are skipped.
 
-    Values in fixed columns stay in the file; others are read at once. A truncated function has its available values and a description of
-    the missing part.
+    Values in fixed columns stay in the file; others are read at once. A truncated function contains its available values and a description
+    of the missing part.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -99,7 +99,7 @@ def _read(path: Path, stream: BinaryIO, line: int, opening: bytes) -> DataSet:
     begin = stream.tell()
     lines = [stream.readline() for _ in range(HEAD_LINES)]
     if not all(raw.endswith(b"\n") for raw in lines):
-        raise ValueError("the file ends within its head")
+        raise ValueError("the file ends within its header")
     try:
         function = parse_head([decode(raw).rstrip("\r\n") for raw in lines])
     except ValueError:
@@ -114,10 +114,10 @@ def _read_binary(path: Path, stream: BinaryIO, line: int, head: tuple[Function, 
     function, opening = head
     words = opening[7:].split()
     if len(words) < 2:
-        raise ValueError("the line that opens its values is cut short")
+        raise ValueError("its first line is truncated")
     order, form = (int(word) for word in words[:2])
     if form != 2:
-        raise ValueError(f"its numbers are of form {form} (1: VAX, 3: IBM), only 2, IEEE, is read")
+        raise ValueError(f"unsupported number format (got {form}, expected 2: IEEE; 1 is VAX, 3 is IBM)")
     start = stream.tell()
     layouts = [
         Layout.of(function, short_axis=short) for short in ((False, True) if not function.is_even and function.is_double else (False,))
@@ -149,9 +149,9 @@ def _read_part(path: Path, stream: BinaryIO, line: int, function: Function, data
     needed = f"{function.count * layout.size} bytes for {function.count} values"
     problem = f"{end - start} bytes of values (expected {needed} by its header)"
     if count == function.count:
-        raise ValueError(f"it has {problem}; the file was changed as text")
+        raise ValueError(f"it has {problem}: the file was altered, probably by a transfer as text")
     _skip(stream)
-    return DataSet(function, binary_values(path, start, count, layout, big=big), line, f"it breaks off: it has {problem}")
+    return DataSet(function, binary_values(path, start, count, layout, big=big), line, f"it is truncated: it has {problem}")
 
 
 def _next_mark(stream: BinaryIO, start: int) -> int:
@@ -181,7 +181,7 @@ def _words(stream: BinaryIO, layout: Layout, function: Function) -> tuple[Array,
     count = min(function.count, len(numbers) // layout.columns)
     if np.any(numbers[function.count * layout.columns :]):  # zeros may fill the last line
         raise ValueError(f"it has {len(numbers) // layout.columns} values (expected {function.count} by its header)")
-    problem = f"it breaks off: it has {count} values where its head announces {function.count}" if count < function.count else None
+    problem = f"it is truncated: it has {count} values (expected {function.count} by its header)" if count < function.count else None
     return numbers[: count * layout.columns].reshape(count, layout.columns), problem
 
 

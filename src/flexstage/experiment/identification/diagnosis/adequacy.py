@@ -44,7 +44,7 @@ def line_distance(known: Evidence) -> float:
 
 
 def few_lines(known: Evidence, band: tuple[float, float], count: int) -> list[Finding]:
-    """Check a band for fewer than eight lines: too few for a polynomial of order 2, even with one input.
+    """Check that a band has at least the eight lines that a polynomial of order 2 with one input requires.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
@@ -58,7 +58,7 @@ def few_lines(known: Evidence, band: tuple[float, float], count: int) -> list[Fi
 
 
 def coarse_lines(known: Evidence, poles: Array) -> str | None:
-    """Warn of a line spacing beyond the width of the narrowest mode, at `poles` in Hz.
+    """Warn if the line spacing exceeds the width of the narrowest mode; `poles` in Hz.
 
     Candidates are poles of responses at frequency lines: a mode closer than one line spacing to another mode may be missed. If the line
     spacing equals the half-power bandwidth B = 2 zeta f, a record of n averages lasts about n / B.
@@ -84,7 +84,7 @@ def coarse_lines(known: Evidence, poles: Array) -> str | None:
 
 
 def unsearched_band(known: Evidence, reach: Reach) -> str | None:
-    """Warn of an unsearched part of the requested band.
+    """Warn if part of the requested band is not searched.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
@@ -110,8 +110,8 @@ def no_mode_warning(known: Evidence, reach: Reach) -> str:
     middle = float(np.sqrt(reach.low * reach.high))
     apart = line_distance(known)
     seen = (
-        f"Modes narrower than the {apart:.3g} Hz between frequency lines may be missing: at {middle:.3g} Hz modes with a damping ratio "
-        f"below {apart / (2.0 * middle):.2g}. {_advise_length(known, None)}"
+        f"Modes narrower than the line spacing of {apart:.3g} Hz may be missing: at {middle:.3g} Hz, modes with a damping ratio below "
+        f"{apart / (2.0 * middle):.2g}. {_advise_length(known, None)}"
         if middle > 0.0
         else f"Too few frequency lines to search for modes. {_advise_length(known, None)}"
     )

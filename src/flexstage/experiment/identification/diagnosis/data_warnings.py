@@ -20,7 +20,7 @@ _MOTIONS = ("m/s", "m/s^2", "rad/s", "rad/s^2")
 class Modes:
     """Identified modes: `poles` (k,) in Hz, `close` groups of indices, interval inflation factor `widening` (k,).
 
-    `elsewhere` (k,) is the share of each mode's motion that the recorded inputs do not explain.
+    `elsewhere` (k,) is the fraction of each mode's motion that the recorded inputs do not explain.
     """
 
     poles: Array
@@ -50,8 +50,8 @@ def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...
     listed = ", ".join(f"{abs(pole):.4g}" for pole in poles[:8]) + (" ..." if len(poles) > 8 else "")
     if inputs == 1 and len(poles):
         found.append(
-            f"only {known.responses.inputs[0].name} was driven: of a repeated pair it shows one combination only, so that each mode found "
-            f"({listed} Hz) may stand for several. Add records with other inputs driven."
+            f"only {known.responses.inputs[0].name} was driven: one input shows only one combination of repeated modes, so each mode found "
+            f"({listed} Hz) may represent several. Add records with other inputs driven."
         )
     if outputs == 1 and len(poles):
         found.append(
@@ -60,26 +60,26 @@ def data_warnings(known: Evidence, modes: Modes, reach: Reach) -> tuple[str, ...
     for group in close:
         if inputs > 1 and len(group) >= min(inputs, outputs):
             near = ", ".join(f"{abs(poles[index]):.5g}" for index in group)
-            found.append(f"as many modes as inputs or outputs lie together ({near} Hz): there may be more. Add inputs and outputs.")
+            found.append(f"as many close modes as inputs or outputs ({near} Hz): there may be more. Add inputs and outputs.")
     systematic = np.flatnonzero(modes.widening > 1.0)
     if len(systematic):
         listed = ", ".join(f"{abs(poles[index]):.5g} Hz (intervals {modes.widening[index]:.2g} times wider)" for index in systematic)
-        window = " The responses do not say their window: if there was one, damping is too large." if known.unstated else ""
+        window = " The window of the responses is unknown; if there was one, damping is too large." if known.unstated else ""
         found.append(
-            f"the fit leaves a systematic residual near {listed}: parts of the data do not give the same mode. It is not linear, not "
-            f"alone, shaken by other forces, or changes during the test: test with smaller or longer drives, or finer lines.{window}"
+            f"the fit leaves a systematic residual near {listed}. The mode may be nonlinear, close to another, excited by unrecorded "
+            f"forces, or changing during the test. Test with a smaller or longer drive, or with finer frequency lines.{window}"
         )
     moved = [channel for channel in known.responses.inputs if _is_motion(channel)]
     if moved:
         listed = ", ".join(f"{channel.name} ({channel.unit})" for channel in moved)
         found.append(
-            f"taken as input, and a motion: {listed}. With an imposed motion the modes are those of a stage fixed there, not its own: "
-            "correct only for ground excitation. Record forces, or strokes."
+            f"inputs that are motions: {listed}. The modes are those of the stage with this motion fixed, which is correct only for ground "
+            "excitation. Record forces or strokes instead."
         )
     shaken = np.flatnonzero(modes.elsewhere > _MOST_ELSEWHERE)
     if len(shaken):
         listed = ", ".join(f"{abs(poles[index]):.5g} Hz ({1.0 - modes.elsewhere[index]:.0%})" for index in shaken)
         found.append(
-            f"recorded inputs explain less than half of the motion in a mode: of {listed}. Record what else drives, or drive more."
+            f"recorded inputs explain less than half of the motion in modes at {listed}. Record all excitation, or increase the drive."
         )
     return tuple(found)

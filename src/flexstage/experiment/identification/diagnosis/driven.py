@@ -22,7 +22,7 @@ _HALVINGS = 40
 class Drive:
     """Excitation of the modes (k,) of a band by the recorded inputs.
 
-    `chance` (k,) is the probability of the observed correlation without excitation by the inputs. `elsewhere` (k,) is the share of the
+    `chance` (k,) is the probability of the observed correlation without excitation by the inputs. `elsewhere` (k,) is the fraction of the
     motion in the half-power band that the inputs do not explain.
     """
 
@@ -33,12 +33,12 @@ class Drive:
 def measure_drives(bands: Sequence[tuple[Band, Modal]], lines: Iterable[Lines]) -> list[Drive]:
     """Test whether the recorded inputs excite each mode, band by band.
 
-    The modal motion q is the output after subtraction of all other fitted parts, weighted by shape and noise. The modal force plus output
-    noise is q (j f - p), with the pole p. It is regressed on inputs and transients over the lines within four half-widths, at least three
-    times as many as regressors. Without excitation by the inputs the explained share is F-distributed, regardless of unrecorded forces or
-    tones. The variance of a line is a + b |j f - p|^2: b is the outputs' noise, and the unrecorded force a follows from the residual. The
-    lines nearest to the pole, as many as regressors, have equal weights. Transients count as inputs if the inputs equal them to a tenth
-    of their power, as for an impact at the start of a record.
+    The modal motion q is the output after subtraction of all other fitted components, weighted by shape and noise. The modal force plus
+    output noise is q (j f - p), with the pole p. It is regressed on inputs and transients over the lines within four half-widths, at least
+    three times as many as regressors. Without excitation by the inputs the explained fraction is F-distributed, regardless of unrecorded
+    forces or tones. The variance of a line is a + b |j f - p|^2: b is the outputs' noise, and the unrecorded force a follows from the
+    residual. The lines nearest to the pole, as many as regressors, have equal weights. Transients count as inputs if the inputs equal them
+    to a tenth of their power, as for an impact at the start of a record.
 
     >>> from flexstage.experiment.example import one_mode_band, one_mode_record
     >>> from flexstage.experiment.identification.likelihood import fit

@@ -49,13 +49,13 @@ class _Residue:
 
 
 def common_delay(found: Identified) -> Delay | None:
-    """Estimate the common delay of all outputs, with the assumption of proportional damping.
+    """Estimate the common delay of all outputs, assuming proportional damping.
 
     In a proportionally damped stage a mode's residue R in H = R/(s - p) + ... is imaginary (real for a velocity; Heylen, Lammens & Sas,
     Modal Analysis Theory and Testing, 1997, A.1). A delay tau multiplies the residue by e^{-p tau}, so that the phase falls with frequency.
     Lags and filters with the same phase count as delay. The signs of residues are unknown. Delays up to 3 periods of the lowest mode can
-    therefore be determined from three modes, and up to 0.45 periods from fewer. Among equally good delays the shortest is returned. `None`
-    if no delay makes the residues imaginary, or if the delay is not significant.
+    therefore be determined from three modes, and up to 0.45 periods from fewer. Among equally good delays the shortest is returned. Returns
+    `None` if no delay makes the residues imaginary, or if the delay is not significant.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -69,11 +69,11 @@ def common_delay(found: Identified) -> Delay | None:
 
 
 def late_channels(found: Identified) -> Iterator[str]:
-    """Find single channels with another delay than the other inputs or outputs, and yield a warning for each.
+    """Find single channels whose delay differs from the other inputs or outputs, and yield a warning for each.
 
     The delay of each channel is estimated from its residues in three modes or more. A channel is reported if its delay differs from the
-    median by 6 deviations, and rotates the highest mode by a tenth of a turn or more. Most channels must agree with the median. Half turns
-    in all modes are a wrong sign of the channel, not a delay.
+    median by more than 6 standard deviations and by more than a tenth of the highest mode's period. Most channels must agree with the
+    median. A phase shift of half a turn in all modes is a wrong sign of the channel, not a delay.
     """
     if len(_groups(found)) < _ENOUGH:
         return
@@ -93,8 +93,8 @@ def late_channels(found: Identified) -> Iterator[str]:
             for channel, by, _ in late:
                 word = "late" if by > 0.0 else "early"
                 yield (
-                    f"{channel.name} looks {word} by {1e3 * abs(by):.3g} ms against the other {role.value}s: after correction, its part "
-                    f"in the modes is in phase with theirs."
+                    f"{channel.name} looks {word} by {1e3 * abs(by):.3g} ms relative to the other {role.value}s: after correction, the "
+                    f"phases of its modal residues agree with theirs."
                 )
 
 

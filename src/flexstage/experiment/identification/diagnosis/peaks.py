@@ -30,10 +30,10 @@ _MOST = 20
 
 
 class PeakCause(Enum):
-    """Reason to reject a peak as a mode."""
+    """Reason why a peak is not accepted as a mode."""
 
     TONE = "tone"
-    """Sinusoid in the outputs, absent from the inputs, which is removed."""
+    """Sinusoid in the outputs but not in the inputs; it is removed."""
     UNDRIVEN = "not driven"
     """Resonance without excitation by the recorded inputs."""
     WEAK = "weak"
@@ -41,7 +41,7 @@ class PeakCause(Enum):
     UNSURE = "unsure"
     """Resonance in outputs alone whose width is not significantly different from zero."""
     FREE = "free"
-    """Free oscillation with too little decay to determine its damping, or its excitation by an input."""
+    """Free oscillation that decays too little to determine its damping, or its excitation by an input."""
     NARROW = "narrow"
     """Single prominent line: too few lines to distinguish a resonance from a tone."""
 
@@ -51,41 +51,41 @@ class Peak:
     """Peak at `frequency` in Hz, `width` Hz wide at half power (absent: at most a line).
 
     `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of such a
-    peak without a mode. For a tone, noise is as pure with this probability; for a weak or narrow peak, noise is as strong. For an undriven
-    peak, the inputs explain as much of the motion by chance. A mode requires 1e-9, and a line spacing below its width.
+    peak without a mode: that noise is as pure as a tone, as strong as a weak or narrow peak, or that the inputs explain as much of the
+    motion of an undriven peak by chance. A mode requires at most 1e-9, and a line spacing below its width.
     """
 
     TABLE: ClassVar[Layout] = Layout(
-        "Peaks seen, not confirmed as modes",
+        "Peaks not confirmed as modes",
         "frequency outputs width resolution chance reason",
-        notes=("Probability: of a peak as large without a mode. A mode needs 1e-9, and frequency lines within its width.",),
+        notes=("The probability is that of such a peak without a mode. A mode requires at most 1e-9, and lines finer than its width.",),
     )
 
     frequency: Annotated[float, FREQUENCY, Heading(digits=5)]
     doubt: PeakCause
     chance: Annotated[float, Heading("probability by chance", digits=2)]
-    width: Annotated[float | None, FREQUENCY, Heading(digits=3, absent="below a line")]
+    width: Annotated[float | None, FREQUENCY, Heading(digits=3, absent="below line spacing")]
     resolution: Annotated[float, FREQUENCY, Heading("line spacing", digits=3)]
-    outputs: Annotated[tuple[str, ...], Heading("seen in")]
+    outputs: Annotated[tuple[str, ...], Heading("outputs")]
 
     @property
     def reason(self) -> Annotated[str, VIEW]:
-        """Reason to reject the peak as a mode, with advice.
+        """Reason why the peak is not accepted as a mode, with advice.
 
         >>> Peak(120.0, PeakCause.NARROW, 1e-6, None, 0.3125, ("y",)).reason
-        'one line, 0.3125 Hz from the next: a narrower resonance or a tone (2 x 60 Hz: the mains?). Measure with finer lines.'
+        'a single line (spacing 0.3125 Hz): a narrower resonance or a tone (2 x 60 Hz: the mains?). Measure with finer lines.'
         """
         if self.doubt is PeakCause.TONE:
             return f"a tone absent from the inputs{_mains(self)}, or an oscillation without decay in the record. It is removed."
         if self.doubt is PeakCause.FREE:
-            return "a free oscillation with too little decay in the record to determine its damping. Record longer."
+            return "a free oscillation that decays too little in the record to determine its damping. Record longer."
         if self.doubt is PeakCause.UNDRIVEN:
-            return "the recorded inputs do not drive it: an unrecorded force does, or an unsteady tone. Record all excitation of the stage."
+            return "not driven by the recorded inputs, but by an unrecorded force or an unsteady tone. Record all excitation of the stage."
         if self.doubt is PeakCause.UNSURE:
             return "its damping is too uncertain: noise or a neighbouring mode could cause it. Record longer."
         if self.doubt is PeakCause.WEAK:
-            return "noise could be as strong. Record longer, or increase the drive."
-        lines = f"one line, {self.resolution:.4g} Hz from the next"
+            return "noise could cause such a peak. Record longer, or increase the drive."
+        lines = f"a single line (spacing {self.resolution:.4g} Hz)"
         return f"{lines}: a narrower resonance or a tone{_mains(self)}. Measure with finer lines."
 
 
@@ -103,9 +103,9 @@ def peaks(
 ) -> tuple[Peak, ...]:
     """List all peaks that are not modes, by ascending frequency.
 
-    The list has removed tones, resonances `refused` because the inputs do not excite them, and resonances `lost` because they are not
-    significant. A lost resonance is listed only if noise is as strong in less than one of a thousand trials. For an analyser's responses,
-    the list also has prominent single lines.
+    The list contains removed tones, resonances `refused` because the inputs do not excite them, and resonances `lost` because they are not
+    significant. A lost resonance is listed only if the probability that noise is as strong is below 1/1000. For an analyser's responses,
+    the list also contains prominent single lines.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record
@@ -139,7 +139,7 @@ def _is_listed(pole: complex, poles: Iterable[complex], found: Sequence[Peak], s
 
 
 def tone_peaks(tones: Iterable[Tone], resolution: float, outputs: Sequence[Channel], size: Array) -> list[Peak]:
-    """List tones removed from records, with near ones merged, and their dominant outputs; `size` (p,) is the rms.
+    """List the tones of records as peaks with their dominant outputs; near tones are merged. `size` (p,) is the rms of each output.
 
     >>> outputs = (Channel("S1"), Channel("S2"))
     >>> hums = [Tone(50.0 + 1e-4 * each, np.array([0.3, 1e-6]), 0, 1000, 1e-12) for each in range(2)]

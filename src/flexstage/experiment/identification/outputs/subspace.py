@@ -59,11 +59,12 @@ class Band:
 
 
 def band_covariances(record: Record, low: float, high: float) -> tuple[list[Band], Responses]:
-    """Compute output covariances of all bands from `low` to `high` in Hz, by block; and the outputs' amplitude density, unit/Hz^0.5.
+    """Compute output covariances of all bands from `low` to `high` in Hz by block, and the outputs' amplitude density in unit/Hz^0.5.
 
-    Each block is transformed. The inverse transform of products of lines within a band, tapered at the ends, is the band's covariance
-    R(l) = E[y(n + l) y(n)^H]. This is equivalent to mixing and decimation. R is divided by 1 - l/N, the share of the block's N samples
-    available at lag l. Outputs are divided by their root mean squares. The floor's density must be smooth only within each band.
+    Each block is transformed. The inverse transform of products of lines within a band, tapered at the ends, is the band's covariance R(l)
+    = E[y(n + l) y(n)^H]. This is equivalent to mixing and decimation. R is divided by 1 - l/N, the fraction of the block's N samples
+    available at lag l. Outputs are divided by their root mean squares. The density of the floor motion must be smooth within each band
+    only.
     """
     chosen = record.select([channel.name for channel in record.outputs])
     size = record.length // BLOCKS
@@ -172,7 +173,7 @@ def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, lis
 
     The equations are projected onto the signal subspace of the whole record, U^H W H(shifted) V = Lambda U^H W H V. Deviations follow from
     a first-order perturbation by the covariances of independent blocks (Doehler & Mevel, MSSP 38 (2013) 346). Modes outside the band bias
-    low orders, spurious poles bias high orders: each mode has its own order (`_select_order`).
+    low orders, spurious poles bias high orders: the order is selected for each mode (`_select_order`).
     """
     outputs = band.covariances.shape[2]
     diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)
@@ -276,8 +277,7 @@ def _risk(index: int, track: Sequence[tuple[Array, Array]]) -> tuple[Array, Arra
 
     For values v_i and block changes of all orders, the largest |v_i - v_j|^2 - (2 sigma_ij)^2 of orders j above i is the squared bias
     (Goldenshluger & Lepski, Ann. Statist. 39 (2011) 1608), with sigma_ij the deviation of the difference. A smaller difference may be
-    chance or
-    bias: it counts as uniformly distributed, averaged over orders with at most three times the uncertainty.
+    chance or bias: it counts as uniformly distributed, averaged over orders with at most three times the uncertainty.
     """
     value, changes = track[index]
     own = _deviation(changes)

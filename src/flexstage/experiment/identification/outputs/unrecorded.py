@@ -24,16 +24,16 @@ _FEWEST = 400
 _SAME, _LOCATED = 0.95, 0.1
 _UNSCALED = (
     "no input was recorded: participations, masses and mass-normalised shapes are unknown. Shapes have largest component 1; "
-    "scaling them takes a record with a known force or stroke."
+    "scaling them requires a record with a known force or stroke."
 )
 
 
 def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     """Identify the modes of a stage under floor excitation from outputs only: `shaken_modes`, band by band, with 95 % intervals.
 
-    The density of the exciting forces must be smooth within each band (frequency ratio 1.4). Repeated modes require as many independent
-    force directions. A mode is reported if its half-power width differs from zero by 6.1 standard deviations, which noise reaches once in
-    1e9. Steady tones are removed first. A resonance narrower than the line spacing of a block cannot be distinguished from a tone.
+    The density of the exciting forces must be smooth within each band (frequency ratio 1.4). Repeated modes require excitation in as many
+    independent directions. A mode is reported if its half-power width differs from zero by 6.1 standard deviations, which noise reaches
+    once in 1e9. Steady tones are removed first. A resonance narrower than the line spacing of a block cannot be distinguished from a tone.
     Participations are unknown: the result has no inputs. Raises `DesignError` for several records, and for a record that is too short.
     """
     require(_floor_findings(records))
@@ -43,12 +43,12 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     high = min(_HIGHEST * record.rate, search.band[1] if search.band else np.inf)
     where = record.where
     if low >= high:
-        what = f"modes up to {high:.4g} Hz are requested; the record shows them from {low:.4g} Hz on"
+        what = f"modes up to {high:.4g} Hz are requested, but the record shows only modes above {low:.4g} Hz"
         require([Finding(where, what, "Request another band, or record longer")])
     began, low = low, searched_from(low, high, outputs=len(record.outputs), resolution=resolution)
     if low == np.inf:
-        what = f"bands between {began:.4g} and {high:.4g} Hz hold too few lines in a fortieth of {record.duration:.4g} s"
-        require([Finding(where, what, "Record longer: modes in floor noise need minutes; or request a wider band")])
+        what = f"bands between {began:.4g} and {high:.4g} Hz have too few lines in a block, a fortieth of {record.duration:.4g} s"
+        require([Finding(where, what, "Record longer (modes in floor noise need minutes), or request a wider band")])
     bands, density = band_covariances(record, low, high)
     every = [shaken_modes(band, search.highest_damping) for band in bands]
     modes = [
@@ -104,7 +104,7 @@ def identify_decay(records: Sequence[Record], search: Search) -> Identified:
     decays = tuple(Channel(f"decay {number + 1}", "s^-1", Role.INPUT) for number in range(len(records)))
     found = identify(Responses(lines[inside], first.outputs, decays, values[inside], source=where), search)
     began = ", ".join(f"{start / record.rate + record.start:.5g} s" for record, start in zip(records, starts, strict=True))
-    said = f"a free decay is taken from where outputs are largest: {began}."
+    said = f"each free decay starts where outputs are largest: at {began}."
     return replace(
         found,
         data_warnings=(_UNSCALED, said, *found.data_warnings),
