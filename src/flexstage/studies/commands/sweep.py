@@ -31,7 +31,7 @@ def sweep(
     resume: Resume = False,
     workers: Workers = None,
 ) -> CommandResult:
-    """Compute many designs of a study.
+    """Analyse many designs of a study.
 
     The study file selects a grid, a Latin hypercube, a Sobol sequence, or Saltelli's plan for Sobol indices.
 
