@@ -1,4 +1,4 @@
-"""Results for other programs as CSV, pandas or xarray, in full precision and SI units. `base.sheet` defines the parts of a result."""
+"""Results as CSV, pandas or xarray, in full precision and SI units. `base.storage.sheet` defines the parts of a result."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _FORMULA = ("=", "+", "-", "@")
 
 @check_arguments
 def to_csv(result: Any) -> dict[str, str]:
-    r"""Convert every part of a result to CSV (RFC 4180), by its path: names first, unformatted numbers, SI units in the heads.
+    r"""Convert every part of a result to CSV (RFC 4180), by the path of the part, with SI units in the column heads.
 
-    Texts that a spreadsheet would run as formulas (`=`, `+`, `-`, `@` first) begin with an apostrophe. An unknown number is an empty cell.
-    If a column of a matrix has no common unit, the units are in a column `unit`. If a row has no common unit either, each entry of the
-    matrix is a row with its unit.
+    The first columns are names. Numbers are not rounded; an unknown number is an empty cell. Texts that a spreadsheet would execute as
+    formulas (they start with `=`, `+`, `-` or `@`) begin with an apostrophe. If a column of a matrix has no common unit, the units are in
+    a column `unit`. If a row has no common unit either, each entry of the matrix is a row with its unit.
 
     >>> to_csv({"gain": 2.0, "loss": {"B1": 0.1}})
     {'': 'gain\r\n2.0\r\n', 'loss': 'name,loss\r\nB1,0.1\r\n'}
@@ -40,7 +40,7 @@ def _lines(part: Sheet | Matrix) -> Iterator[Sequence[Any]]:
 
 @dataclass(frozen=True)
 class Grid:
-    """A part of a result as a spreadsheet: heads, SI units of the columns, and rows. The first `named` cells of a row are names."""
+    """A part of a result as a spreadsheet: column heads, SI units, and rows. The first `named` cells of a row are names."""
 
     heads: tuple[str, ...]
     units: tuple[str, ...]
