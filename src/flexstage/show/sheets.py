@@ -49,7 +49,7 @@ class Grid:
 
 
 def grid_of(part: Sheet | Matrix) -> Grid:
-    """Convert a part of a result to a grid. The units of a matrix are in the heads, else in a column, else each entry is a row.
+    """Convert a part of a result to a grid. Units of a matrix are in the heads, else in a column, else each entry becomes a row.
 
     >>> import numpy as np
     >>> grid_of(Matrix(np.array([[2.0, 3.0]]), ("x",), ("a", "b"), (("m", "N"),)))
@@ -90,9 +90,9 @@ def _cell(value: Any) -> Any:
 
 @check_arguments
 def to_pandas(result: Any) -> dict[str, Any]:
-    """Convert every part of a result to a pandas frame, by its path; row names are the index (extra `tables`).
+    """Convert every part of a result to a pandas frame, by the path of the part. Needs the extra `tables`.
 
-    Units are in the names of columns; units of matrices are in `attrs["unit"]`.
+    Row names are the index. Units are in the names of columns; units of matrices are in `attrs["unit"]`.
     """
     return {path: part.to_pandas() if isinstance(part, Matrix) else _frame(part) for path, part in parts(result)}
 
@@ -106,8 +106,8 @@ def _frame(sheet: Sheet) -> Any:
 
 @check_arguments
 def to_xarray(result: Any) -> dict[str, Any]:
-    """Convert every part of a result to xarray, by its path: a matrix to an array, another part to a dataset (extra `tables`).
+    """Convert every part of a result to xarray, by the path of the part. Needs the extra `tables`.
 
-    Names of rows are coordinates of a dimension.
+    A matrix becomes an array, another part a dataset. Names of rows are coordinates of a dimension.
     """
     return {path: part.to_xarray() if isinstance(part, Matrix) else _frame(part).to_xarray() for path, part in parts(result)}

@@ -92,7 +92,7 @@ def drawing_section(mechanism: Mechanism, data: StageData) -> Section | None:
             BlockRow((first, BlockRow(tuple(others)))),
             Picture(plan, " ".join(["Plan, dimensions in mm.", *_ring_texts(mechanism)])),
             composition_table(mechanism),
-            fold("Links as in the design file", link_table(mechanism)),
+            fold("Links in the design file", link_table(mechanism)),
         ],
     )
 
