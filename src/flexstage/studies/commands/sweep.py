@@ -1,4 +1,4 @@
-"""The command `sweep`: compute many designs of a stage, and the effects of the variables."""
+"""The command `sweep`: many designs of a stage, and the effects of the variables."""
 
 from __future__ import annotations
 
