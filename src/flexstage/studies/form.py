@@ -101,7 +101,7 @@ class ToleranceTable:
     """Number of `copies` (samples), their `sampling` and `seed`, and the required `yield` of each requirement.
 
     `requirements`: the requirements of the design file are included. `crosstalk`: the platform's crosstalk at a `point` is computed, by
-    default if the stage has crosstalk.
+    default if the strokes determine the platform.
     """
 
     copies: Annotated[int, _TWO] = 1024
