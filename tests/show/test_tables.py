@@ -46,7 +46,7 @@ TITLES = {
     "kinematics": "Actuator mapping R_a",
     "statics": "Stiffness at platform",
     "mass": "Mass at platform, whole stage",
-    "deflection": "Permanent load, platform",
+    "deflection": "Deflection of platform under permanent load",
     "units": "Isolated units",
     "lost_motion": "Lost motion",
     "modes": "Modes",
@@ -56,7 +56,7 @@ TITLES = {
     "buckling": "Buckling",
     "stress": "Stress in the hinges",
     "drift": "Thermal drift",
-    "error_budget": "Error budget, ideal mapping commanded",
+    "error_budget": "Error budget, command by ideal mapping",
     "verdicts": "Requirements",
 }
 REACH = {
