@@ -74,6 +74,6 @@ def response_table(response: Response) -> Table:
         tuple((curve.unit, curve.unit, "Hz", "1") for curve in curves),
     )
     band = f"From {number(float(response.frequencies[0]), 4)} to {number(float(response.frequencies[-1]), 4)} Hz."
-    noise = ["0: below 1e-9 of the largest magnitude with the same unit, hence rounding noise."] if not np.all(low) else []
+    noise = ["0: rounding noise, below 1e-9 of the largest magnitude with the same unit."] if not np.all(low) else []
     notes, provenance = [band, *noise], response.provenance
     return column_table("Frequency responses", found, head="output, leading input", notes=notes, provenance=provenance)
