@@ -62,7 +62,7 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage schema > flexstage.schema.json"),
     Command("studio", _DESCRIBE, "Open a stage in the browser, and edit it.", "flexstage.apps.studio.command:studio",
             "flexstage studio stage.toml"),
-    Command("plan", _DESCRIBE, "Draw the dimensioned plan.", f"{_APPS}.describe:plan",
+    Command("plan", _DESCRIBE, "Draw the dimensioned plan of a stage.", f"{_APPS}.describe:plan",
             "flexstage plan stage.toml -o plan.svg"),
     Command("catalogue", _DESCRIBE, "List the shipped materials, actuators and sensors.", f"{_APPS}.describe:catalogue",
             "flexstage catalogue stacks"),

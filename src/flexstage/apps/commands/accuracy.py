@@ -47,7 +47,8 @@ Commands: TypeAlias = Annotated[
     text_option(
         "--command",
         "AXIS=VALUE",
-        "Platform motion along an axis in both directions, e.g. x=50um for +-50 um. Repeatable. Default: the required strokes.",
+        "Platform motion along an axis in both directions, e.g. x=50um for +-50 um. Repeatable. "
+        "Default: the required strokes. Without them, budget uses the single-axis strokes.",
     ),
 ]
 
@@ -114,7 +115,7 @@ def drift(
         text_option(
             "--ground",
             "MATERIAL",
-            "Material of the ground, or none for a ground without expansion. Default: from the design, else the material of its links.",
+            'Material of the ground, or "none" for a ground without expansion. Default: from the design, else the material of its links.',
         ),
     ] = None,
 ) -> CommandResult:
@@ -160,7 +161,7 @@ def budget(
     mechanism: Lumped,
     *,
     command: Commands = None,
-    temperature: Annotated[str | None, temperature_option("1 K, if drift is known")] = None,
+    temperature: Annotated[str | None, temperature_option("1 K if the drift is known")] = None,
     point: Point = PLATFORM,
     input_asd: InputDensities = None,
     band: Annotated[tuple[str, str] | None, band_option("as in flexstage response")] = None,

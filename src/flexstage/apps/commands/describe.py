@@ -150,7 +150,7 @@ def plan(
     output: Annotated[Path, output_option("PLAN.SVG", "SVG, PDF or PNG file to write.")],
     changes: Changes = None,
 ) -> None:
-    """Draw the dimensioned plan.
+    """Draw the dimensioned plan of a stage.
 
     The plan shows the stage from above, with names, radii, angles, and sizes in mm.
     """
@@ -170,7 +170,7 @@ def catalogue(
 ) -> None:
     """List the shipped materials, actuators and sensors.
 
-    Each number has its source. In a design file, like = "NAME" starts from an entry.
+    The list contains the source of each number. In a design file, like = "NAME" copies an entry.
     """
     require_writable([("--json", json)])
     known = shipped_catalogue() if section is None else find_section(shipped_catalogue(), section)

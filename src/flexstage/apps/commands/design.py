@@ -46,7 +46,7 @@ def design(
     Theoretical bounds exclude impossible pairs of architecture and actuator. The other pairs are optimised within the requirements, with
     corrections for elastic bodies and large displacements. Each answer is a design file with a study.
 
-    If no answer is found, the exit code is 1. An interrupted search keeps its results in the folder; --resume continues it.
+    If no answer is found, the exit code is 1. An interrupted search keeps its results in the folder; --resume continues the search.
     """
     if resume and output is None:
         raise refuse("--resume", "output folder missing", "Specify the folder of the interrupted search with --output")

@@ -72,7 +72,7 @@ def stroke(
             "--to",
             "VALUE",
             'Last value of the drive, e.g. "5 mm". Default: the required stroke. '
-            "Without one, the full stroke of a driven stack, or 0.1 mm (1 mrad) of another coordinate.",
+            "Without one, the full stroke of a driven stack, or 0.1 mm (1 mrad) for another coordinate.",
         ),
     ] = "",
     steps: Annotated[int | None, STEPS] = None,
