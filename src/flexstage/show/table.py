@@ -457,7 +457,7 @@ def matrix_table(
     """Make a table of a labelled matrix (first design of a batch) in display units.
 
     Rows and columns have units, and the unit of an entry is row unit per column unit. If the units of the entries are not such ratios, each
-    entry shows its unit. Rounding noise, relative to the largest value in both the matrix and the matrix `against`, is shown as 0. `units`
+    entry shows its unit. Rounding noise is shown as 0; a further matrix `against` may define its level. `units`
     replace the preferred display units (with mrad, lever arms are in mm).
 
     >>> table = matrix_table("K", Matrix(np.array([[2e6]]), ("fx",), ("x",), (("N/m",),)))

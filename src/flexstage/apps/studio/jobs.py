@@ -85,9 +85,9 @@ class Jobs:
             raise refuse(request.command, "record not found", "Name a file, relative to the folder of the design")
         for option in request.options:
             if "\0" in option:
-                raise refuse(request.command, "an option has a null character", "Leave it out")
+                raise refuse(request.command, "an option has a null character", "Remove the option")
             if option.partition("=")[0] in _WRITING:
-                raise refuse(request.command, f"the studio sets {option}", "Leave it out")
+                raise refuse(request.command, f"the studio sets {option}", "Remove this option")
         number = len(self._jobs) + 1
         job = _Job(
             number, request, self.path, text, say.JobState(number, request.command, "waits", "waits for its turn", None, None, (), None)

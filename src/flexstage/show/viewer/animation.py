@@ -128,7 +128,7 @@ def _words(found: Stroke | Misaligned, point: int) -> Iterator[str]:
     strained = found.strained
     for place in _over(found, point):
         stress, limit = (format_value(float(each), "Pa", 4) for each in (strained.stress[point, place], strained.limit[place]))
-        yield f"stress in {strained.names[place]} {stress}, limit {limit}"
+        yield f"{strained.names[place]}: stress {stress}, limit {limit}"
     loose = found.along.values[point, found.along.columns.index("unstable")]
     if np.isnan(loose):
         yield "no equilibrium found"
