@@ -109,7 +109,7 @@ def test_undefined_statics_are_named():
     assert analysis.statics is not None
     assert "without stiffness" in analysis.missing["force_workspace"]
     assert floating_line(analysis.linear) == (
-        "No stiffness along x, driven by motor: a mode at 0 Hz; static stiffness and strokes at force are undefined there."
+        "No stiffness along x, driven by motor: a mode at 0 Hz. Static stiffness, and strokes under force, are undefined along these axes."
     )
 
 
@@ -152,9 +152,9 @@ def test_the_error_budget_without_stiffness_is_that_of_a_closed_loop(tmp_path, c
     path.write_text(fs.dumps(slide(film())))
     assert run(["budget", str(path)]) == 0
     shown = capfd.readouterr().out
-    assert "No stiffness along the drive" in shown
+    assert "The drive direction has no stiffness." in shown
     assert "PID in platform coordinates" in shown
     assert "Positioning noise" in shown
     for option, value in (("--input-asd", "motor=1 uA/Hz^0.5"), ("--command", "x=1 um"), ("--temperature", "1 K"), ("--band", "1 Hz 9 Hz")):
         assert run(["budget", str(path), option, *(value.split(" Hz ") if option == "--band" else [value])]) == 2
-        assert "error: budget: the drive direction has no stiffness, so the budget is of a closed loop" in capfd.readouterr().err
+        assert "error: budget: the drive direction has no stiffness, so the budget is computed for a closed loop" in capfd.readouterr().err

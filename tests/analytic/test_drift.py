@@ -43,7 +43,7 @@ def test_a_bar_grows_piece_by_piece():
     assert found.taken["platform"] == "aluminium, of its solids"
     shown = drift_table(drift(bar(), lumped(bar()), ground="invar", datum=(0.01, 0.0, 0.0)))
     assert shown.texts()[1][:2] == ["platform.x [nm]", "1090"]  # per K, without the 10 mm of invar
-    assert "its point (10, 0, 0) mm is fixed" in shown.notes[0]
+    assert "Fixed point of the ground: (10, 0, 0) mm." in shown.notes[0]
 
 
 def test_a_still_ground():
@@ -132,7 +132,7 @@ def mixed(order):
 def test_the_ground_is_of_the_one_material_on_it():
     assert ground_of(bar()) == Ground("steel", "material of all links on it")
     assert not ground_of(bar()).stated
-    assert "Ground taken as steel: material of all links" in " ".join(drift_table(drift(bar(), lumped(bar()))).notes)
+    assert "Ground assumed to be steel: material of all links" in " ".join(drift_table(drift(bar(), lumped(bar()))).notes)
 
 
 @pytest.mark.parametrize("order", [1, -1])

@@ -261,4 +261,4 @@ def test_the_report_shows_the_reach():
     assert shown is not None
     assert shown.title == "Force workspace"
     compared = ["Drive force per displacement, compared with the ideal guide", "Drive force by flexure"]
-    assert [each.title for each in shown.blocks] == ["Reach", "Coil inputs at the travel", *compared]
+    assert [each.title for each in shown.blocks] == ["Reach", "Coil inputs at the continuous travel", *compared]

@@ -300,7 +300,7 @@ BAD: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (("--bandwidth", "6 kHz"), ("half the sampling rate",)),
     (("--amplitude", "x=1mm"), ("trajectory x", "beyond the strokes from", "Multiply the trajectory")),
     (("--amplitude", "z=1um"), ("trajectory z: the stage has no motion z", "x")),
-    (("--amplitude", "q=1um"), ("--amplitude q=1um: must be a motion and a value", "Use x, y, z, rx, ry or rz, e.g. z=150um.")),
+    (("--amplitude", "q=1um"), ("--amplitude q=1um: must be an axis and a value", "Use x, y, z, rx, ry or rz, e.g. z=150um.")),
     (("--trajectory", "raster"), ("the stage has no motion y",)),
     (("--trajectory", "sinus"), ("sinus", "sine")),
     (("--trajectory", "nowhere.csv"), ("nowhere.csv", "file not found")),

@@ -98,7 +98,7 @@ def test_assignments_move_what_depends_on_a_number_and_say_what_formula_they_tak
     by_values = flexstage("modes", "stage.toml", "--set", "leaf.thickness=1.1 mm", "--set", "neck.thickness=+10%", "--json", "-")
     assert by_name["modes"][0]["frequency_hz"] == pytest.approx(by_values.document["modes"][0]["frequency_hz"], rel=1e-12)
     assert (
-        'the value of parts.leaf.thickness replaces its formula "thin"; to change all dependent values, set numbers.thin' in by_values.err
+        'the value of parts.leaf.thickness replaces its formula "thin". To change all dependent values, set numbers.thin' in by_values.err
     )
     ended = flexstage("modes", "stage.toml", "--set", "numbers.thin=1.1 N")
     assert ended.code == 2

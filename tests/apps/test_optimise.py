@@ -61,15 +61,15 @@ def test_a_front_is_shown(study_file, tmp_path, flexstage):
     assert (done.code, "Front" in done.out) == (0, True), done.err
     assert (tmp_path / "r.html").read_text().startswith("<!doctype html>")
     refused = flexstage("optimise", "study.toml", "-o", "better.toml")
-    assert (refused.code, "a front has many designs" in refused.err) == (2, True)
+    assert (refused.code, "a Pareto front has many designs" in refused.err) == (2, True)
 
 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
         ('maximise = "f1"', 'maximise = "f11"', "Use f1"),
-        ('maximise = "f1"', "", "no objective is named"),
-        ('maximise = "f1"', 'maximise = ["f1", "f1"]', "is an objective already"),
+        ('maximise = "f1"', "", "objective missing"),
+        ('maximise = "f1"', 'maximise = ["f1", "f1"]', "is listed twice"),
         ('maximise = "f1"', "maximise = 3", "must be one or several strings (got 3)"),
         ("starts = 2", "starts = 0", "optimise.starts: must be 1 or more (got 0). Use e.g. 1."),
         ("starts = 2", "start = 2", "Use starts"),

@@ -128,7 +128,7 @@ def test_two_outputs_need_two_files(flexstage: Command) -> None:
 def test_stdout_holds_one_output_only(flexstage: Command) -> None:
     ended = flexstage("analyse", "stage.toml", "--json", "-", "--report", "-")
     assert ended.code == 2
-    assert "stdout is the output of --json too" in ended.err
+    assert "stdout is also the output of --json" in ended.err
     page = flexstage("analyse", "stage.toml", "--model", "ideal", "--report", "-")
     assert page.out.startswith("<!doctype html>")
     assert page.out.rstrip().endswith("</html>")

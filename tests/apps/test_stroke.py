@@ -33,7 +33,7 @@ def two(tmp_path: Path) -> Path:
 
 def test_the_first_path_is_played_and_the_others_are_told(flexstage: Command, two: Path) -> None:
     ended = flexstage("stroke", "stage.toml", "--json", "first.json")
-    assert "Path out; of the others: --path back" in ended.err
+    assert "Load path: out. To choose another: --path back" in ended.err
     flexstage("stroke", "stage.toml", "--path", "back", "--steps", "2", "--load", "platform.fx=1 N", "--json", "back.json")
     first, back = (json.loads((two / name).read_text())["along"] for name in ("first.json", "back.json"))
     assert [row[0] for row in first["values"]] == pytest.approx([0.0, 0.5e-4, 1e-4])
@@ -52,11 +52,11 @@ def test_a_constant_load_takes_its_part_of_the_critical_load(flexstage: Command,
 @pytest.mark.usefixtures("two")
 def test_what_contradicts_a_path_is_refused(flexstage: Command) -> None:
     ended = flexstage("stroke", "stage.toml", "--path", "out", "--to", "1 mm")
-    assert (ended.code, "a path states its drive and its ends" in ended.err) == (2, True)
+    assert (ended.code, "the path already defines the drive and its ends" in ended.err) == (2, True)
     ended = flexstage("stroke", "stage.toml", "--path", "up")
     assert (ended.code, "unknown path" in ended.err) == (2, True)
     ended = flexstage("stroke", "stage.toml", "--from", "1 mm", "--to", "1 mm")
-    assert (ended.code, "platform.x goes from 1 mm to 1 mm: a drive that does nothing" in ended.err) == (2, True)
+    assert (ended.code, "first and last value of platform.x are equal (got 1 mm and 1 mm)" in ended.err) == (2, True)
 
 
 def test_where_a_drive_ends_that_is_not_told(flexstage: Command, two: Path) -> None:

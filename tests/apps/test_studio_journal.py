@@ -146,7 +146,7 @@ def test_a_discarded_draft_is_gone_and_one_that_the_file_has_is_not_offered(path
 def test_a_cache_that_cannot_be_written_is_shown_and_the_edit_is_taken(path, tmp_path, monkeypatch):
     (tmp_path / "none").write_text("a file")
     monkeypatch.setenv("FLEXSTAGE_CACHE", str(tmp_path / "none" / "cache"))
-    with pytest.raises(DesignError, match="it cannot be made"):
+    with pytest.raises(DesignError, match="cannot be created"):
         Journal(path).keep(edited(1), {}, "")
 
     async def edit(studio):
@@ -154,7 +154,7 @@ def test_a_cache_that_cannot_be_written_is_shown_and_the_edit_is_taken(path, tmp
         await page.until(lambda page: say.State in page.told)
         await page.ask(say.Edit, text=edited(1), revision=page.state.revision)
         await page.until(lambda page: page.state.text == edited(1))
-        assert "it cannot be made" in page.state.unprotected
+        assert "cannot be created" in page.state.unprotected
         await page.close()
 
     with served(path) as (studio, do):

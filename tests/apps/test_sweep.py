@@ -102,18 +102,18 @@ def test_sweep_shows_and_writes(study_file, tmp_path, flexstage):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('"-10 %"', '"10 %"', "its range is empty"),
+        ('"-10 %"', '"10 %"', "the range is empty"),
         ("materials.aluminium.young", "materials.aluminum.young", "aluminium"),
         ('"frequency.1"', '"frequncy.1"', 'unknown measure "frequncy.1"'),
         ('"frequency.1"', '"safety.B"', "unknown measure"),
         ("latin hypercube", "latin", "latin hypercube"),
         ("seed = 3", "sed = 3", "unknown key"),
-        ('"10 %"', '"80 GPa"', "one end is relative"),
+        ('"10 %"', '"80 GPa"', "only one end of the range is relative"),
         ('case = "parallelogram"', 'design = "none.toml"', "file not found"),
         ("responses.f", "responses.young", 'responses.young: column "young" exists already, from variables.young'),
         ("young = {", "design = {", 'variables.design: column "design" exists already, from the number of a design'),
-        ("young = {", '"a\\u0000b" = {', "variables.a\\x00b: its name is empty, or contains control characters"),
-        ("young = {", '"a\\u202eb" = {', "variables.a\\u202eb: its name is empty, or contains control characters"),
+        ("young = {", '"a\\u0000b" = {', "variables.a\\x00b: the name is empty, or contains control characters"),
+        ("young = {", '"a\\u202eb" = {', "variables.a\\u202eb: the name is empty, or contains control characters"),
         (
             "flexstage study 1",
             "flexstage 1",
@@ -144,7 +144,7 @@ def test_columns_of_all_studies_have_names_of_their_own():
     with pytest.raises(DesignError, match=f'responses.{copy}: column "{copy}" exists already'):
         loads_tolerance(SCATTERED.replace("NAME", copy))
     text = f'{STUDY}\n[optimise]\nmaximise = ["f"]\nminimise = ["g"]'.replace("responses.f", 'responses.g = "frequency.1"\nresponses.f')
-    with pytest.raises(DesignError, match='"g" is the same measure as "f", an objective already'):
+    with pytest.raises(DesignError, match='"g" is the same measure as the objective "f"'):
         load_optimisation(loads_study(text))
     study = loads_study(STUDY)
     with pytest.raises(DesignError, match=r'responses\.young: column "young" exists already, from variables\.young'):

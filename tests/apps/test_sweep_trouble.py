@@ -61,7 +61,7 @@ def test_room_is_asked_for_before_anything_is_computed(tmp_path, monkeypatch):
     study = loads_study(STUDY)
     usage = type("Usage", (), {"free": 2 * file_size(study) - 1})
     monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
-    with pytest.raises(DesignError, match=r"results need .* MB more .* MB are free"):
+    with pytest.raises(DesignError, match=r"MB more are needed to combine the results, but .* MB are free"):
         sweep(study, tmp_path / "r.h5", Run(workers=1))
     assert not list(tmp_path.iterdir())
 

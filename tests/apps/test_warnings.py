@@ -247,7 +247,7 @@ def test_the_warnings_of_designed_stages_are_counted_and_those_of_their_check(fl
     assert any("platform: modelled as rigid" in each for each in answer["warnings"])
     (line,) = (each.split() for each in ended.out.splitlines() if each.startswith(" 1 "))
     assert line[-1] == str(len(answer["warnings"]))
-    assert "Warnings: number of those that flexstage check prints." in (tmp_path / "out.html").read_text(encoding="utf-8")
+    assert "Warnings: number of warnings that flexstage check prints." in (tmp_path / "out.html").read_text(encoding="utf-8")
     (design,) = (each for each in (tmp_path / "answers").iterdir() if each.suffix == ".toml" and each.suffixes == [".toml"])
     checked = [each.removeprefix("warning: ") for each in flexstage("check", str(design)).out.splitlines() if each.startswith("warning: ")]
     assert checked == answer["warnings"]

@@ -523,7 +523,7 @@ def test_a_design_is_begun_from_a_shipped_case_saved_under_another_name_and_open
     made.locator("#open").click()
     made.get_by_label("file to open").select_option("stage.toml")
     made.locator("dialog").get_by_role("button", name="open").click()
-    made.get_by_text("copy.toml: it has unsaved changes. Save or discard them first.").wait_for()
+    made.get_by_text("copy.toml: has unsaved changes. Save or discard them first.").wait_for()
     made.get_by_label("discard the unsaved changes").check()
     with made.expect_navigation():
         made.locator("dialog").get_by_role("button", name="open").click()
@@ -568,7 +568,7 @@ def test_a_specification_shows_errors_at_fields_rows_as_pairs_finish_and_an_answ
     until(made, "!studio.state.value.saved")
     pane.get_by_role("button", name="open 1").click()
     made.locator("dialog").get_by_role("button", name="open").click()
-    made.get_by_text("stage.toml: it has unsaved changes. Save or discard them first.").wait_for()
+    made.get_by_text("stage.toml: has unsaved changes. Save or discard them first.").wait_for()
     made.get_by_label("discard the unsaved changes").check()
     with made.expect_navigation():
         made.locator("dialog").get_by_role("button", name="open").click()

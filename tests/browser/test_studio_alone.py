@@ -180,7 +180,7 @@ def test_frequencies_of_the_drawn_stage_do_not_stand_in_rows_of_the_loaded_one(p
     server.say(moved)
     until(page, lambda: "11.5, 21.5, 31.5 Hz" in page.inner_text("#pane-figures"))
     assert page.evaluate(shown) == ["10", "20", "30", "40"]
-    assert "Without its load" in page.inner_text("#pane-figures")
+    assert "Without permanent load" in page.inner_text("#pane-figures")
 
 
 def test_of_many_moves_the_server_gets_the_first_and_the_newest(page: Page, server: Server) -> None:
@@ -224,7 +224,7 @@ def test_no_status_is_green_next_to_results_of_another_text(page: Page, server: 
     until(page, lambda: page.evaluate(chips) == [False, False])
     assert page.locator("#amounts.aged").count() == 1
     assert "of an earlier text" in page.inner_text("#numbers .foot")
-    assert "1 error: results are of the last text without errors" in page.inner_text("#text .bar")
+    assert "1 error: results belong to the last text without errors" in page.inner_text("#text .bar")
     assert not set(green) & set(page.evaluate(colours))
     server.say(state(3))
     until(page, lambda: "error" not in page.inner_text("#text .bar"))

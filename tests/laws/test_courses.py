@@ -114,7 +114,7 @@ def test_reports_are_small_and_the_same_again(course: LoadPath) -> None:
     told = stroke_report(STAGE, course, found)
     assert len(told) < 2e6
     assert told == stroke_report(STAGE, course, found)
-    assert "MPa of " in told
+    assert "MPa, limit " in told
 
 
 def test_points_stand_in_columns_of_one_unit(course: LoadPath) -> None:

@@ -370,10 +370,10 @@ BAD = {
     'w = { address = ["leaf.thickness", "materials.steel.young"], normal = "1 %" }': "different quantities",
     'w = { address = "leaf.thickness", normal = "1 um", evry = true }': "unknown key",
     'w = { address = "stacks.stroke", normal = "1 %" }': "the design has no such part",
-    'w = { address = "leaf.thickness", interval = ["5 um", "-1 um"] }': "the lower limit is not below the upper one",
-    'w = { address = "leaf.thickness", uniform = "5 um", interval = ["-1 um", "5 um"] }': "limits given twice",
-    'w = { address = "leaf.thickness", interval = ["-1 um", "5 %"] }': "one is relative (%), the other not",
-    'w = { address = "links.l0.at.z", normal = "1 um", within = "3 %" }': "one is relative (%), the other not",
+    'w = { address = "leaf.thickness", interval = ["5 um", "-1 um"] }': "the lower limit must be below the upper limit",
+    'w = { address = "leaf.thickness", uniform = "5 um", interval = ["-1 um", "5 um"] }': "limits specified twice",
+    'w = { address = "leaf.thickness", interval = ["-1 um", "5 %"] }': "some amounts are relative (%), others are not",
+    'w = { address = "links.l0.at.z", normal = "1 um", within = "3 %" }': "some amounts are relative (%), others are not",
 }
 
 
@@ -386,7 +386,7 @@ def test_entries_that_cannot_be(guide, line):
 
 def test_sections_that_cannot_be(guide):
     for text, said in {
-        "": "nothing scatters",
+        "": "no scatter",
         'scatter.w = { address = "leaf.thickness", normal = "1 um" }\nlimits."stifness.x" = "at least 1 N/m"': "stiffness.x",
     }.items():
         with pytest.raises(DesignError) as caught:

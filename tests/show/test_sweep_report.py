@@ -79,9 +79,9 @@ def test_limits_that_contradict_are_named():
     )
     assert "no design meets both mass at most 0.2 kg and stiffness.x at least 20 N/um" in told(*heavy)
     never = swept(mass_and_stiffness(lambda _: 0.3, lambda _: 3e7))
-    assert "No design meets mass at most 0.2 kg: widen" in told(*never)
+    assert "No design meets mass at most 0.2 kg. Widen" in told(*never)
     some = swept(mass_and_stiffness(lambda _: 0.1, lambda values: np.where(values[:, 0] > 1e-3, 3e7, 1e7)))
-    assert "All limits together are met by 50 % of the designs" in told(*some)
+    assert "50 % of the designs meet all limits." in told(*some)
 
 
 def test_a_pair_that_interacts_is_drawn():

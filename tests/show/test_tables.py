@@ -46,7 +46,7 @@ TITLES = {
     "kinematics": "Actuator mapping R_a",
     "statics": "Stiffness at platform",
     "mass": "Mass at platform, whole stage",
-    "deflection": "Permanent load, platform",
+    "deflection": "Deflection of platform under permanent load",
     "units": "Isolated units",
     "lost_motion": "Lost motion",
     "modes": "Modes",
@@ -56,14 +56,14 @@ TITLES = {
     "buckling": "Buckling",
     "stress": "Stress in the hinges",
     "drift": "Thermal drift",
-    "error_budget": "Error budget, ideal mapping commanded",
+    "error_budget": "Error budget, command by ideal mapping",
     "verdicts": "Requirements",
 }
 REACH = {
-    "command": "all at once",
+    "command": "All combinations of",
     "limits": "limited by",
     "single_axis": "Single-axis strokes",
-    "corrected": "lost motion corrected by command",
+    "corrected": "Single-axis strokes with corrected lost motion",
     "worst_case": "Simultaneous strokes",
     "polytope": "Reachable extents",
     "drive": "Drive",
@@ -154,7 +154,7 @@ def test_tables_too_wide_go_on_below_with_their_rows_named_anew(width: int) -> N
         "Errors",
         ["along", *(Column(head, "nm") for head in ("lost motion", "quantisation", "crosstalk", "root sum square"))],
         [(axis, *("-0.00012345",) * 4) for axis in "xyz"],
-        notes=["Largest errors over x +-50 um, y +-50 um, all at once."],
+        notes=["Largest errors over all combinations of x +-50 um, y +-50 um."],
     )
     lines = printed(table, width)
     assert broken(table, width) == []

@@ -4,13 +4,13 @@
  * All messages between the studio's page and its server, one class each; `python -m tools.protocol` writes them for TypeScript.
  *
  * A message is a JSON object whose `kind` is the class's name in small letters. The page sends requests, each with a unique `id`; the
- * answer contains it as `to`. Every request has an answer (`Done` without a result, `Refusal` if it is refused), in the order of
- * the requests except for `Drag` and `Pose`. Of these the newest is answered, and older ones are `Done`. Everything else is pushed to all
- * pages when it changes. Numbers are in SI units, null if unknown.
+ * answer contains it as `to`. Every request is answered: by `Done` if it has no result, and by `Refusal` if it is refused. Answers have the
+ * sequence of the requests, except for `Drag` and `Pose`: there only the newest request gets a result, and older ones get `Done`. All other
+ * messages are pushed to all pages when their contents change. Numbers are in SI units, null if unknown.
  */
 export const VERSION = 6;
 
-/** A finding: its object or address, problem, advice; line and column from 1 if the text shows them. */
+/** A finding: its object or address, the problem and the advice; line and column count from 1, null if unknown. */
 export interface Problem {
   where: string;
   what: string;
@@ -20,10 +20,10 @@ export interface Problem {
 }
 
 /**
- * A number of the stage: `value` in `si`, `text` as in the file, `factor` the value of one `unit` in SI.
+ * A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. One display `unit` equals `factor` in SI.
  *
- * `low` and `high` bound its slider, within the bounds of the number. `formula` is its definition. `old` is its value in the file on
- * disk. `group` is its table in the file, and `line` its line, or that of the table.
+ * `low` and `high` are the ends of its slider, within the bounds of the number. `formula` is its definition. `old` is its value in the
+ * file on disk. `group` is its table in the file; `line` is its line, or the line of the table.
  */
 export interface Amount {
   address: string;
@@ -42,7 +42,7 @@ export interface Amount {
   tag: string;
 }
 
-/** An actuator, an axis of the platform or a gauge: its SI unit, its display unit (`factor` SI each), and its ends if known. */
+/** An actuator, an axis of the platform or a gauge, with the ends of its range if known. One display `unit` equals `factor` in `si`. */
 export interface Channel {
   name: string;
   si: string;
@@ -52,7 +52,7 @@ export interface Channel {
   high: number | null;
 }
 
-/** A result: its `name` as in requirements, its group, its value in `si`, and the `old` one of the file on disk. */
+/** A result: its `name` as in requirements, its group, its value in `si`, and the `old` value of the file on disk. */
 export interface Figure {
   name: string;
   group: string;
@@ -63,7 +63,7 @@ export interface Figure {
   old: number | null;
 }
 
-/** A matrix with names on both axes, one unit for all or one for each entry. */
+/** A matrix with names of rows and columns. `unit` is one unit for all entries, or one for each entry. */
 export interface Matrix {
   rows: string[];
   columns: string[];
@@ -78,9 +78,10 @@ export interface Floats {
 }
 
 /**
- * A mode: the platform's `twist` (x y z rx ry rz, m and rad) of the mass-normalised shape, `share` of kinetic energy in the platform.
+ * A mode: the platform's `twist` (x y z rx ry rz, m and rad) in the mass-normalised shape, and its `share` of the kinetic energy.
  *
- * `kinetic` shares by body and `strain` shares by link, at least one per cent, largest first. `local`: a mode of other bodies.
+ * `kinetic` contains the energy fraction of each body, `strain` that of each link, from one per cent, the largest first. A `local` mode
+ * moves mainly other bodies.
  */
 export interface ModeShape {
   number: number;
@@ -95,10 +96,10 @@ export interface ModeShape {
 }
 
 /**
- * A mode of the platform by finite elements, `error` the relative one estimated of its frequency, `motion` its name in a viewer.
+ * A platform mode by finite elements: `error` is the estimated relative error of its frequency, `motion` the data for a viewer.
  *
- * `theory` is the number of the paired mode of theory, absent without one. Further fields are its `theory_frequency` [Hz],
- * its relative difference from that of finite elements, and the modal assurance of the two.
+ * `theory` is the number of the paired mode of theory, null without one. `theory_frequency` [Hz] is the frequency of this mode,
+ * `difference` its relative difference from finite elements, and `assurance` the modal assurance criterion of the pair.
  */
 export interface SolidMode {
   number: number;
@@ -121,7 +122,7 @@ export interface Curve {
   phase: Floats;
 }
 
-/** Lost motion of an actuator: its gain (1 is ideal), its loss, and the shares by link, which add up to the loss. */
+/** Lost motion of an actuator: its transmission ratio `gain` (1 is ideal), its `loss`, and the contribution of each link to the loss. */
 export interface Loss {
   actuator: string;
   gain: number;
@@ -129,7 +130,7 @@ export interface Loss {
   budget: Record<string, number>;
 }
 
-/** A requirement: its key and text, limit and value in `si`, margin (0.1 is 10 % to spare), or the reason why it is unknown. */
+/** A requirement: its key and text, its limit and value in `si`, its margin (0.1: 10 %), and the `reason` if the value is unknown. */
 export interface Judgement {
   key: string;
   text: string;
@@ -154,7 +155,7 @@ export interface Stroke {
   limiting: string;
 }
 
-/** Sensitivity to a number: change of each figure per unit of the number, and of the worst requirement's margin by one per cent. */
+/** Sensitivity to a number: derivatives of figures, and the change of the lowest margin (`worst`) if the number increases by 1 %. */
 export interface Slope {
   address: string;
   si: string;
@@ -163,7 +164,7 @@ export interface Slope {
   worst: number | null;
 }
 
-/** Two separate bodies that touch, or a gap between them: the `distance` [m] is negative for an overlap. */
+/** Two separate bodies, and the `distance` [m] between them, which is negative for an overlap. */
 export interface Clash {
   first: string;
   second: string;
@@ -172,9 +173,10 @@ export interface Clash {
 }
 
 /**
- * A motion: the platform's twist (unit length), its axis through `point`, pitch [m/rad], null for a pure translation.
+ * A motion of the platform as a screw: its twist, and its axis in a unit `direction` through `point`.
  *
- * `links` are those that deform in a free motion, or that constrain a locked one: by strain energy, largest share first, if known.
+ * `pitch` [m/rad] is null for a pure translation. `links` deform in a free motion; in a locked motion, they are the links that constrain
+ * it, the one with the most strain energy first.
  */
 export interface Screw {
   name: string;
@@ -185,7 +187,7 @@ export interface Screw {
   links: string[];
 }
 
-/** A snippet of the palette: `text` is TOML with `{name}` for a field's text; fields by name with their initial texts. */
+/** A snippet of the palette: `text` is TOML with `{name}` in place of each field; `fields` contains their initial values by name. */
 export interface Snippet {
   name: string;
   group: string;
@@ -194,7 +196,7 @@ export interface Snippet {
   fields: Record<string, string>;
 }
 
-/** A pair of a design job: its goal, or the reason of its failure; `file` is a name for its design, empty without an answer. */
+/** A pair of a design job: its goal, or the reason for its failure. `file` is a name for its design, empty without an answer. */
 export interface PairRow {
   architecture: string;
   actuator: string;
@@ -203,7 +205,7 @@ export interface PairRow {
   file: string;
 }
 
-/** A table of a result as text: its heads are the first row. */
+/** A table of a result as text: the first row contains the column heads. */
 export interface ResultTable {
   title: string;
   rows: string[][];
@@ -211,9 +213,10 @@ export interface ResultTable {
 }
 
 /**
- * A job: its state, fraction done and estimated seconds left, its output, its report's address if any, its key figures.
+ * A job: its state, the completed `fraction`, the estimated time `left` [s], the last output lines `said`, and its results.
  *
- * A design job has its finished `pairs`, and at its end the `tables` of its command.
+ * `report` is the address of its report, null without one. A design job has its finished `pairs`, and at its end the `tables` of its
+ * command.
  */
 export interface JobState {
   job: number;
@@ -229,27 +232,27 @@ export interface JobState {
   tables: ResultTable[];
 }
 
-/** The unsaved text of an ended studio: its last change [s since 1970], and whether the file was changed since. */
+/** The unsaved text of an ended studio: the `time` of its last change [s since 1970]. `stale`: the file has changed since then. */
 export interface Draft {
   name: string;
   time: number;
   stale: boolean;
 }
 
-/** A line of a card: its name, and its value as text with units. */
+/** A line of a card: its name, and its value as text with the unit. */
 export interface Fact {
   name: string;
   text: string;
 }
 
-/** The first message of a page: the token out of its address. */
+/** The first message of a page, with the token from its address. */
 export interface Hello {
   kind: "hello";
   token: string;
   version: number;
 }
 
-/** The text as typed. Refused if another page changed it after `revision`, the last one that this page knows. */
+/** The text as typed. Refused if another page changed the text after `revision`, the last revision that this page knows. */
 export interface Edit {
   kind: "edit";
   id: number;
@@ -257,7 +260,7 @@ export interface Edit {
   revision: number;
 }
 
-/** A number, in any unit of its quantity, as a formula or as a change (`+10 %`). */
+/** Set a number: a value in any unit of its quantity, a formula, or a relative change (`+10 %`). */
 export interface Set {
   kind: "set";
   id: number;
@@ -265,7 +268,7 @@ export interface Set {
   text: string;
 }
 
-/** A moving slider: answered by `Frequencies`, the text is unchanged. */
+/** Report the value of a moving slider. The answer is `Frequencies`; the text does not change. */
 export interface Drag {
   kind: "drag";
   id: number;
@@ -273,7 +276,7 @@ export interface Drag {
   value: number;
 }
 
-/** A released slider: the number is written into the text. */
+/** Report the value of a released slider, which is written into the text. */
 export interface Rest {
   kind: "rest";
   id: number;
@@ -281,7 +284,7 @@ export interface Rest {
   value: number;
 }
 
-/** The card of a link (`B1/front`). */
+/** Request for the card of a link (`B1/front`). */
 export interface Part {
   kind: "part";
   id: number;
@@ -295,7 +298,7 @@ export interface Line {
   line: number;
 }
 
-/** Choice of the frequency responses; without frequencies, those that show every resonance. */
+/** Choose the frequency responses. Without a band, the frequencies are chosen so that every resonance is visible. */
 export interface Respond {
   kind: "respond";
   id: number;
@@ -305,13 +308,13 @@ export interface Respond {
   high: number | null;
 }
 
-/** The matrices between strokes, platform and gauges. */
+/** Request for the matrices between strokes, platform and gauges. */
 export interface Jog {
   kind: "jog";
   id: number;
 }
 
-/** Request for the exact displacement at those strokes (or forces) of the actuators: readings, stress, and exceeded limits. */
+/** Request for the displacement at given strokes or forces of the actuators, with readings, stress, and exceeded limits. */
 export interface Pose {
   kind: "pose";
   id: number;
@@ -325,9 +328,9 @@ export interface Derive {
 }
 
 /**
- * Move the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE.
+ * Move the stage along a load path at large displacements: `drive` from `start` to `end` (with units) under `loads` (NAME=VALUE).
  *
- * `path` names a path of the design, whose drive, ends, points and loads then apply.
+ * If `path` names a load path of the design, its drive, ends, points and loads are used instead.
  */
 export interface Travel {
   kind: "travel";
@@ -340,7 +343,7 @@ export interface Travel {
   path: string;
 }
 
-/** Abort the running path. */
+/** Abort the computation of the load path. */
 export interface Halt {
   kind: "halt";
   id: number;
@@ -352,7 +355,7 @@ export interface Free {
   id: number;
 }
 
-/** Request for clashes and gaps. */
+/** Request for overlaps and gaps between bodies. */
 export interface Gaps {
   kind: "gaps";
   id: number;
@@ -364,7 +367,7 @@ export interface Solid {
   id: number;
 }
 
-/** Store the present design under a name (A, B, C); with `keep` false, remove it. */
+/** Store the present design under a name (A, B, C). If `keep` is false, remove the design of that name. */
 export interface Pin {
   kind: "pin";
   id: number;
@@ -378,7 +381,7 @@ export interface Compare {
   id: number;
 }
 
-/** Make the text of a pinned design the present one; the empty name is the file's own. */
+/** Make the text of a pinned design the present text. The empty name is the text of the file. */
 export interface Recall {
   kind: "recall";
   id: number;
@@ -416,9 +419,9 @@ export interface Browse {
 }
 
 /**
- * Open a file of the folder, written first from a shipped `case` or from the answer for a `pair` of a `job` if named.
+ * Open a file of the folder. If a shipped `case`, or a `pair` of a design `job`, is named, the file is first written from it.
  *
- * Refused with unsaved changes, unless `discard`.
+ * Refused if there are unsaved changes, unless `discard`.
  */
 export interface Open {
   kind: "open";
@@ -430,13 +433,13 @@ export interface Open {
   pair: string;
 }
 
-/** Read the text from disk; the present one remains in undo. */
+/** Read the text from disk. The present text remains in undo. */
 export interface Reload {
   kind: "reload";
   id: number;
 }
 
-/** Read the unsaved text of an ended studio in `State.drafts`; without `keep` it is discarded. */
+/** Restore an unsaved text of an ended studio from `State.drafts`. If `keep` is false, discard the text. */
 export interface Recover {
   kind: "recover";
   id: number;
@@ -459,9 +462,9 @@ export interface Insert {
 }
 
 /**
- * Panes of a page: only these are computed after a change, the others when they are shown.
+ * Report the panes that a page shows. Only these are computed after a change; the others are computed when they are shown.
  *
- * `stage`: the picture; `motions`: its motions; `reach`: strokes and strength.
+ * `stage` is the picture, `motions` are its motions, `reach` contains strokes and strength.
  */
 export interface Look {
   kind: "look";
@@ -477,9 +480,9 @@ export interface JobForm {
 }
 
 /**
- * Check a specification: a `text`, with the `values` of its form if there are any, as TOML.
+ * Check a specification: a `text`, in which the `values` of the form (TOML) replace values, if there are any.
  *
- * An empty text is that of a `file` of the folder if named, or else the last one, at first an example.
+ * An empty text is replaced by the text of `file`, a file of the folder; without a file, by the last text, or at first by an example.
  */
 export interface Specify {
   kind: "specify";
@@ -498,7 +501,7 @@ export interface SaveSpecification {
   over: boolean;
 }
 
-/** Start a command as a job; `study` is the text of its study, set-up or specification if it needs one, `record` a file's path. */
+/** Start a command as a job. `study` is the text of its study, set-up or specification; `record` is the path of a record file. */
 export interface Run {
   kind: "run";
   id: number;
@@ -515,7 +518,7 @@ export interface Cancel {
   job: number;
 }
 
-/** The page is admitted. */
+/** The page was admitted. */
 export interface Welcome {
   kind: "welcome";
   version: number;
@@ -525,12 +528,12 @@ export interface Welcome {
 }
 
 /**
- * The text and its contents; pushed at every change. `digest` belongs to the file on disk.
+ * The text and its contents, pushed at every change. `digest` is the digest of the file on disk.
  *
- * `sound`: the design has no error, otherwise `problems` lists the errors. If the text has errors, numbers and figures belong to the
- * last text without errors. `changed` counts numbers that differ from the file's, `warnings` are the last reported ones, `page` is the
- * one whose request made the change (0: the server), `pins` the pinned designs. `links` belong to the expanded stage, with the line of
- * each. `unprotected` is the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
+ * `sound`: the design has no error; otherwise, `problems` lists the errors, and numbers belong to the last text without errors. `changed`
+ * is the number of values that differ from the file. `page` made the change (0: the server). `pins` are the names of the pinned designs.
+ * `links` contains the line of each link of the expanded stage. `unprotected` is the reason why unsaved changes would be lost if the
+ * server ended. `drafts` lists unsaved changes of earlier servers.
  */
 export interface State {
   kind: "state";
@@ -560,7 +563,7 @@ export interface State {
   drafts: Draft[];
 }
 
-/** Task of the computing process, and its expected duration [s]; `ended` after a crash and restart. */
+/** State of the computing process, its task `text`, and the expected duration [s]. `ended`: the process crashed and was restarted. */
 export interface Engine {
   kind: "engine";
   state: "starts" | "ready" | "computes" | "ended";
@@ -568,14 +571,14 @@ export interface Engine {
   seconds: number | null;
 }
 
-/** The geometry of a revision for the viewer; without motions if no page shows them. */
+/** The geometry of a revision for the viewer. It has no motions if no page shows them. */
 export interface Scene {
   kind: "scene";
   revision: number;
   data: unknown;
 }
 
-/** The platform's frequencies [Hz] for a moving slider. Null: none. */
+/** The platform frequencies [Hz] for a moving slider, null where unknown. */
 export interface Frequencies {
   kind: "frequencies";
   to: number;
@@ -586,9 +589,9 @@ export interface Frequencies {
 }
 
 /**
- * Results of a revision: missing ones have a reason by name. `frequency` (f,) is the common axis of all curves.
+ * Results of a revision. `missing` contains the reason for each missing result. `frequency` (f,) is the frequency axis of all curves.
  *
- * `loading` describes a significant effect of the permanent load: stiffness, modes and curves are then those of the loaded stage.
+ * `loading` describes the effect of a significant permanent load; stiffness, modes and curves then belong to the loaded stage.
  */
 export interface Figures {
   kind: "figures";
@@ -613,7 +616,7 @@ export interface Verdicts {
   milliseconds: number;
 }
 
-/** Strokes, safety and use of actuators and gauges of a revision. */
+/** Platform strokes of a revision, and safety factors of its flexures against stress and buckling. */
 export interface Reach {
   kind: "reach";
   revision: number;
@@ -623,7 +626,7 @@ export interface Reach {
   milliseconds: number;
 }
 
-/** Warnings and default values of a revision; the last message about it. */
+/** Warnings and default values of a revision. This is the last message about the revision. */
 export interface Warnings {
   kind: "warnings";
   revision: number;
@@ -631,11 +634,11 @@ export interface Warnings {
 }
 
 /**
- * A link: its part, its lines of the text, 6x6 about its centre in its own frame, its stress and lost motion.
+ * A link: its part, its lines in the text, its 6x6 matrices about its centre in its own frame, its stress and its lost motion.
  *
- * `stress` [Pa] is the peak over all strokes, `limit` the allowable one, `share` its share of every actuator's lost motion. `facts` are
- * further properties as text; `problems` are missing comparisons of beam theory with elasticity. `verified` compares with stored finite
- * elements.
+ * `stress` [Pa] is the peak over all strokes, `limit` the allowable stress. `shares` contains its contribution to the lost motion of each
+ * actuator. `facts` are further properties as text. `problems` are warnings about the part, e.g. outside the validated range of beam
+ * theory. `verified` compares the link with stored results of finite elements.
  */
 export interface Card {
   kind: "card";
@@ -659,7 +662,7 @@ export interface Card {
   missing: Record<string, string>;
 }
 
-/** Entries at a line: links (one or several), and the addresses of the numbers there. */
+/** Entries at a line: its links and bodies, and the addresses of its numbers. */
 export interface Place {
   kind: "place";
   to: number;
@@ -670,10 +673,11 @@ export interface Place {
 }
 
 /**
- * Linear maps of a revision, elastic: `platform` is the platform's twist per unit input, `inputs` its (pseudo-)inverse.
+ * Linear maps of a revision, with elasticity: `platform` is the platform twist per unit input, `inputs` the inputs per unit twist.
  *
- * `gauges` are readings per input, `ideal` the twist without elasticity. `stress` (links x inputs) [Pa per unit input]: the sum of
- * magnitudes over all inputs bounds a link's stress from above, with `rest` at no stroke; `allowed` its limit.
+ * `gauges` contains the readings per input, `ideal` the twist per input without elasticity. `stress` (links x inputs) is in Pa per unit
+ * input: `rest`, the stress without strokes, plus the sum of magnitudes over all inputs is an upper bound of the stress of a link.
+ * `allowed` contains the allowable stresses.
  */
 export interface Motion {
   kind: "motion";
@@ -689,7 +693,7 @@ export interface Motion {
   missing: Record<string, string>;
 }
 
-/** The stage at some strokes: twist, readings, stress of each link, and exceeded limits, as text by the name of their cause. */
+/** The stage at given strokes: platform twist, readings, and stress of each link. `beyond` describes exceeded limits by name. */
 export interface Posed {
   kind: "posed";
   to: number;
@@ -699,7 +703,7 @@ export interface Posed {
   beyond: Record<string, string>;
 }
 
-/** Sensitivities, sorted by their effect on the worst requirement, `worst`. */
+/** Sensitivities, sorted by their effect on `worst`, the requirement with the lowest margin. */
 export interface Slopes {
   kind: "slopes";
   to: number;
@@ -709,7 +713,7 @@ export interface Slopes {
   missing: Record<string, string>;
 }
 
-/** Progress of a path from a `request` of a page: the completed fraction, and a text. */
+/** Progress of a load path that a page requested by `request`: the completed fraction, and a text. */
 export interface Underway {
   kind: "underway";
   request: number;
@@ -717,7 +721,7 @@ export interface Underway {
   text: string;
 }
 
-/** A path of a revision: `motions` are the viewer's, the path itself first, then modes at its last stable point. */
+/** A load path of a revision. `motions` for the viewer are the path itself, then the modes at its last stable point. */
 export interface Travelled {
   kind: "travelled";
   to: number;
@@ -726,7 +730,7 @@ export interface Travelled {
   warnings: Problem[];
 }
 
-/** Free motions, constraints with the redundant ones, free internal modes, and locked motions. */
+/** Free motions, redundant constraints, free internal modes, locked motions, and locked strokes (`blocked`). */
 export interface Freedoms {
   kind: "freedoms";
   to: number;
@@ -739,7 +743,7 @@ export interface Freedoms {
   blocked: Fact[];
 }
 
-/** Clashes first, then gaps, smallest first; `problems` are violations of aperture and envelope. */
+/** Overlaps and gaps between bodies, the largest overlap first. `problems` are violations of aperture and envelope. */
 export interface Clearances {
   kind: "clearances";
   to: number;
@@ -748,7 +752,7 @@ export interface Clearances {
   problems: Problem[];
 }
 
-/** The platform's modes by finite elements; without any, `missing` is the reason. */
+/** Platform modes by finite elements. Without modes, `missing` is the reason. */
 export interface SolidModes {
   kind: "solidmodes";
   to: number;
@@ -757,7 +761,7 @@ export interface SolidModes {
   missing: string;
 }
 
-/** Figures of designs: one row for each figure, one column for each design; null for a missing one. */
+/** Figures of designs: one row for each figure, one column for each design, null for a missing figure. */
 export interface Comparison {
   kind: "comparison";
   to: number;
@@ -773,7 +777,7 @@ export interface Snippets {
   snippets: Snippet[];
 }
 
-/** The files of the folder, those of them that are specifications, and the shipped cases with their summaries. */
+/** The design files and specifications of the folder, and the shipped cases with their summaries. */
 export interface Folder {
   kind: "folder";
   to: number;
@@ -782,7 +786,7 @@ export interface Folder {
   cases: Record<string, string>;
 }
 
-/** The form of a command: the JSON Schema of its study or set-up, or of its options. */
+/** The form of a command, as the JSON Schema of its study, set-up or options. */
 export interface Blank {
   kind: "blank";
   to: number;
@@ -790,7 +794,7 @@ export interface Blank {
   schema: unknown;
 }
 
-/** A specification: its text and values, null if it cannot be read, and its errors by address. */
+/** A specification: its text, its values (null if the text cannot be read), and its errors by address. */
 export interface Specified {
   kind: "specified";
   to: number;
@@ -799,13 +803,13 @@ export interface Specified {
   problems: Problem[];
 }
 
-/** All jobs; pushed at each progress. */
+/** All jobs, pushed after each progress report. */
 export interface Jobs {
   kind: "jobs";
   jobs: JobState[];
 }
 
-/** A completed request without another answer: the new revision of the text; a new job's number. */
+/** A completed request without a result: the revision of the text, and the number of a new job. */
 export interface Done {
   kind: "done";
   to: number;
@@ -813,7 +817,7 @@ export interface Done {
   job: number | null;
 }
 
-/** A refused request. `stale`: another page or program changed the text or file first. */
+/** A refused request. `stale`: another page or program has changed the text or the file. */
 export interface Refusal {
   kind: "refusal";
   to: number;

@@ -1,1 +1,1 @@
-"""Applications: translate requests; no physics."""
+"""User interfaces: the command line and the studio. They contain no physics."""

@@ -1,4 +1,4 @@
-"""The doctor: check of the installation, with remedies. Returns rows, prints nothing, and runs even if packages are missing."""
+"""The doctor: checks of the installation, each with a remedy. They print nothing, return rows, and run even if packages are missing."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _THREADS = "import json, numpy.linalg, scipy.linalg, threadpoolctl as t; print(j
 
 
 class Verdict(Enum):
-    """Verdict on a row: good, bad, or a note, with which flexstage works too."""
+    """Verdict on a row: good, bad, or a note on an item that flexstage can do without."""
 
     GOOD = "good"
     NOTE = "note"
@@ -75,9 +75,9 @@ def _examine_installed() -> Iterator[Row]:
 
 
 def examine_package(need: Any) -> Row | None:
-    """Check whether a required package is installed, in its range of versions, and importable. None if it is not needed here.
+    """Check whether a required package is installed, in its range of versions, and importable. Returns None if it is not needed here.
 
-    It is imported in a separate process, because a broken library may crash it. Packages of extras may be missing.
+    The package is imported in a separate process, because a broken library may crash that process. Packages of extras may be missing.
 
     >>> from packaging.requirements import Requirement
     >>> examine_package(Requirement("no-such-package>=1")).found
@@ -98,7 +98,7 @@ def examine_package(need: Any) -> Row | None:
         return Row(need.name, present, wanted, Verdict.GOOD)
     if need.name == "ngsolve" and quadmath.missing_place(sys.path):
         remedy = f"{quadmath.COMMAND}; or on Debian: apt-get install libquadmath0"
-    return Row(need.name, f"{present}, does not import: {said}", wanted, Verdict.BAD, remedy)
+    return Row(need.name, f"{present}, cannot be imported: {said}", wanted, Verdict.BAD, remedy)
 
 
 def _run(code: str) -> subprocess.CompletedProcess[str]:
@@ -119,7 +119,7 @@ def _import_error(module: str) -> str:
     try:
         done = _run(f"import {module}")
     except subprocess.TimeoutExpired:
-        return f"took more than {_TIME_LIMIT:.0f} s"
+        return f"the import took more than {_TIME_LIMIT:.0f} s"
     if done.returncode < 0:
         return f"the process was ended by signal {-done.returncode}"
     return (done.stderr.strip().splitlines() or ["no message"])[-1] if done.returncode else ""
@@ -137,7 +137,7 @@ def _threads() -> Row:
 
 
 def examine_folder(what: str, folder: Path) -> Row:
-    """Check whether a file can be written in a folder: writes a trial file instead of reading the permissions.
+    """Check whether a file can be written in a folder, by a trial file and not by the permissions.
 
     >>> examine_folder("folder", Path("no such folder")).verdict
     <Verdict.BAD: 'bad'>
@@ -165,7 +165,7 @@ def native_code() -> Iterator[Row]:
     >>> [row.verdict is Verdict.BAD for row in native_code()]
     [False]
     """
-    what, wanted = "kernels", f"built at installation, of {len(KERNELS)} sources"
+    what, wanted = "kernels", f"compiled at installation, from {len(KERNELS)} source files"
     try:
         loaded = [source for source in KERNELS if kernel_library(source)]
         found = f"{len(loaded)} for {kernel_lanes().name}" if os.environ.get(SWITCH) != "off" else f"off ({SWITCH})"

@@ -1,4 +1,4 @@
-"""The doctor's examination, in plain Python: it runs when typer itself is missing."""
+"""The examination of the installation. It uses plain Python, so that it runs even if typer is missing."""
 
 from __future__ import annotations
 
@@ -42,4 +42,4 @@ def self_test() -> Row:
     worst = max(abs(have / want - 1.0) for have, want in zip(found, FREQUENCIES, strict=True))
     verdict = Verdict.GOOD if worst < _TOLERANCE else Verdict.BAD
     remedy = "" if verdict is Verdict.GOOD else "reinstall numpy and scipy; else report this as a bug"
-    return Row("self-test", f"frequencies within {worst:.1e}", f"{_TOLERANCE:.0e}", verdict, remedy)
+    return Row("self-test", f"largest relative error of the frequencies {worst:.1e}", f"{_TOLERANCE:.0e}", verdict, remedy)

@@ -1,7 +1,7 @@
 """The library missing in NGSolve's wheels: their OpenBLAS needs `libquadmath.so.0`, which a minimal system does not have.
 
-numpy's wheels contain it under another name. The loader prefers a copy next to the library that needs it, on any machine. `python -m
-flexstage.apps.quadmath` copies it. Uses the standard library only: `tools/setup.py` calls it too.
+numpy's wheels contain it under another name. `python -m flexstage.apps.quadmath` copies it next to the library that needs it; the loader
+prefers this copy on every machine. The module uses the standard library only, because `tools/setup.py` calls it too.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _CARRIERS = ("numpy.libs", "scipy.libs")
 
 
 def missing_place(folders: Iterable[Path | str]) -> Path | None:
-    """Find the folder for the library within these `site-packages` folders; None if no library needs it or it exists.
+    """Find the folder for the library within these `site-packages` folders. Returns None if no library needs it or if it exists.
 
     >>> missing_place([]) is None
     True
@@ -29,7 +29,7 @@ def missing_place(folders: Iterable[Path | str]) -> Path | None:
 
 
 def provide(folders: Iterable[Path | str]) -> str:
-    """Copy the library into its folder; returns the reason of a failure, else an empty text. A second call has no effect.
+    """Copy the library into its folder. Returns the reason for a failure, else an empty string. A second call has no effect.
 
     >>> provide([])
     ''
@@ -41,7 +41,7 @@ def provide(folders: Iterable[Path | str]) -> str:
     copies = (found for folder in known for carrier in _CARRIERS for found in sorted((folder / carrier).glob("libquadmath-*.so*")))
     copy = next(copies, None)
     if copy is None:
-        return f"no package carries a copy of {_NAME}; install the system's (Debian: apt-get install libquadmath0)"
+        return f"no package contains a copy of {_NAME}; install the one of the system (Debian: apt-get install libquadmath0)"
     try:
         _copy(copy, place)
     except OSError as error:

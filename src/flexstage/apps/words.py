@@ -4,7 +4,7 @@ from enum import Enum
 
 
 class File(Enum):
-    """Files that have a schema."""
+    """Kinds of files that have a schema."""
 
     DESIGN = "design"
     STUDY = "study"

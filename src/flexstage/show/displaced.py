@@ -29,7 +29,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 
 def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
-    """Write a stroke along a load path as an HTML page: an animated stage with curves and a cursor; static in print."""
+    """Write a stroke along a load path as an HTML page: an animated stage with curves and a cursor. The printed page is static."""
     data, words_beyond = stroke_data(mechanism, path, found), limits(found)
     beyond = [each for each in words_beyond if each]
     words = f"{len(found.along.values)} points, {path.drive} {data.motions[0].label.partition('  ')[2]}"
@@ -39,18 +39,19 @@ def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
         caveat_section(mechanism, found.warnings),
         section("Point by point", stroke_tables(found)),
     ]
-    text = f"{words}; {len(beyond)} of them beyond a limit: {beyond[0]}" if beyond else words
+    text = f"{words}; {len(beyond)} of the points exceed a limit: {beyond[0]}" if beyond else words
     headline = Headline(to_typography(text), not beyond)
-    caption = "Bodies and flexures are shown at large displacements. Red: beyond a limit."
+    caption = "Bodies and flexures are shown at large displacements. Red: a limit is exceeded."
     return _page(mechanism, "A stroke at large displacements", found.provenance, headline, data, sections=sections, said=caption)
 
 
 def stroke_tables(found: Stroke) -> list[Table]:
     """Tabulate the results at every point of a stroke, and the static deflection at its start, if any."""
     start = "static equilibrium" if found.sag is not None else "the undeformed configuration"
-    free = "f1 to f3 and the number of unstable modes are those of the free stage under the force of the drive."
-    table = along_table(f"Along {found.drive}", found.along, [f"Relative to {start}. {free} Stress: von Mises, the largest of a flexure."])
-    sag = [] if found.sag is None else [matrix_table("Static deflection under weight, loads and heat", found.sag)]
+    free = "f1 to f3 and the number of unstable modes belong to the stage with a free drive coordinate, under the drive force."
+    words = f"Displacements are relative to {start}. {free} The stress is the largest von Mises stress of all flexures."
+    table = along_table(f"Along {found.drive}", found.along, [words])
+    sag = [] if found.sag is None else [matrix_table("Static deflection under weight, loads and temperature change", found.sag)]
     return [table, *sag]
 
 
@@ -87,26 +88,26 @@ def _buckling_text(found: CaseFactors) -> str:
     if open_ is not None and not (least is not None and least.factor <= open_.bound):
         return f"{open_.load}, {open_.place}: stable up to {format_value(open_.bound, '1', 4)} times the load, not followed beyond"
     if least is None:
-        return f"{len(found.cases)} load cases and stroke ends: no buckling"
+        return f"no buckling in {len(found.cases)} load cases and stroke ends"
     where = "" if least.place == REST else f", {least.place}"
     text = f"{least.load}{where}: buckles at {format_value(least.factor, '1', 4)} times the load"
     return text if len(found.cases) == 1 else f"{text}, the lowest of {len(found.cases)} load cases and stroke ends"
 
 
 def buckling_tables(found: CaseFactors, after: PostBuckling | None = None) -> list[Table | None]:
-    """Tabulate the buckling factors by load case and stroke end, the mode of the lowest factor, and equilibria `after` buckling."""
+    """Tabulate the buckling factor of each load case and stroke end, the mode of the lowest factor, and equilibria `after` buckling."""
     table = result_table(found.cases)
     least = found.least
     if least is None:
         return [table]
-    beyond = [] if after is None else [along_table("Beyond", after.stroke.along)]
-    shape, size = shape_of(least), "Arbitrary amplitude, scaled to a largest number of 1 mm, or 1 mrad."
+    beyond = [] if after is None else [along_table("Post-buckling path", after.stroke.along)]
+    shape, size = shape_of(least), "The amplitude is arbitrary; the largest entry is scaled to 1 mm or 1 mrad."
     scaled = replace(shape, values=1e-3 * shape.values)
     return [table, matrix_table(f"Buckling mode: {least.load}, {least.place}", scaled, notes=[size]), *beyond]
 
 
 def shape_of(case: CaseFactor) -> Matrix:
-    """Return the buckling mode, scaled to a largest entry of 1; without rows if the case does not buckle."""
+    """Return the buckling mode, scaled to a largest entry of 1. The matrix has no rows if the case does not buckle."""
     if case.found is None:
         return Matrix(np.zeros((0, 6)), (), COMPONENTS, ())
     shape = case.found.shape / (np.max(np.abs(case.found.shape), initial=0.0) or 1.0)
@@ -115,16 +116,16 @@ def shape_of(case: CaseFactor) -> Matrix:
 
 def _beyond_section(found: Stroke) -> Section | None:
     figure = stroke_figure(curves_of(found.along), np.array([each != "" for each in limits(found)]))
-    caption = "Equilibria after the lowest critical load, by the factor on the load."
+    caption = "Equilibria beyond the lowest critical load, as a function of the load factor."
     shown = Picture(to_svg(figure, "beyond", "Post-buckling path"), caption)
-    return section("Post-buckling path", [shown, along_table("Along the factor", found.along)])
+    return section("Post-buckling path", [shown, along_table("Results along the path", found.along)])
 
 
-_BENT = "Flexures are shown as bent by the misalignment. Red: beyond a limit."
+_BENT = "Flexures are shown as bent by the misalignment. Red: a limit is exceeded."
 
 
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
-    """Write the effect of one misaligned instance as an HTML page: deformed stage, loads, frequencies, stress over the misalignment."""
+    """Write the effect of one misaligned instance as an HTML page: deformed stage; loads, frequencies and stress over the misalignment."""
     sections = [
         _misaligned_curves(found),
         caveat_section(mechanism, found.warnings),
@@ -149,12 +150,12 @@ def _misaligned_text(found: Misaligned) -> str:
 
 
 def misaligned_tables(found: Misaligned) -> list[Table]:
-    """Tabulate the critical misalignment, results up to the largest misalignment, and the loads in all flexures at the largest."""
+    """Tabulate the critical misalignment, results over the misalignment, and the loads in all flexures at the largest misalignment."""
     last = format_value(float(found.along.values[-1, 0]), MOTION.unit(found.axis), 4)
     return [
-        make_table("Misaligned", ["instance", "axis", "stability"], [[found.copy, found.axis, critical_text(found)]]),
+        make_table("Misaligned instance", ["instance", "axis", "stability"], [[found.copy, found.axis, critical_text(found)]]),
         along_table(f"Along {found.axis}", found.along),
-        matrix_table(f"Loads in flexures at {last}, on each end in the frame of its start", found.loads),
+        matrix_table(f"Loads in flexures at a misalignment of {last}, on each end in the frame of the flexure's start", found.loads),
     ]
 
 
@@ -162,10 +163,10 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
     """Write the effect of misaligning each instance as an HTML page; the animation shows the most critical instance."""
     worst = found.worst
     sections = [
-        section("Copy by copy", misalignment_tables(found)),
+        section("Instance by instance", misalignment_tables(found)),
         None if worst is None else _misaligned_curves(worst),
         caveat_section(mechanism, found.warnings),
-        None if worst is None else section("The worst, point by point", misaligned_tables(worst)),
+        None if worst is None else section("The most critical instance, point by point", misaligned_tables(worst)),
     ]
     data, said = (still_data(mechanism), "") if worst is None else (misalign_data(mechanism, worst), _BENT)
     provenance = f"the nonlinear model of {digest(mechanism, physics=True)[:16]}"
@@ -178,12 +179,12 @@ def misalignments_text(found: Misalignments) -> str:
     """Format the number of instances, and the instance that buckles first, as text."""
     count, worst = len(found.critical.rows), found.worst
     if worst is None:
-        return "no instance and no link joins the ground"
-    summary = f"{_misaligned_text(worst)}, the first"
+        return "no instance and no link is connected to the ground"
+    where = f"{worst.copy} {'about' if worst.axis.startswith('r') else 'along'} {worst.axis[-1]}"
+    summary = f"the most critical is {where}, {critical_text(worst)}"
     if np.isnan(worst.critical) and not np.ptp(found.followed.values):
-        where = f"{worst.copy} {'about' if worst.axis.startswith('r') else 'along'} {worst.axis[-1]}"
-        summary = f"all are stable up to there; highest stress: {where}"
-    return f"{count} misaligned one by one: {summary}"
+        summary = f"all are {critical_text(worst)}; the highest stress is at {where}"
+    return f"{count} instances and links misaligned one by one: {summary}"
 
 
 def critical_text(found: Misaligned) -> str:
@@ -193,16 +194,21 @@ def critical_text(found: Misaligned) -> str:
 
 
 def misalignment_tables(found: Misalignments) -> list[Table]:
-    """Tabulate the results by instance and axis: critical misalignment, and load and stress at a given misalignment."""
+    """Tabulate the results of each instance and axis: critical misalignment, and load and stress at a given misalignment."""
     size = format_value(found.size, MOTION.unit(found.critical.columns[0]), 4)
-    alone = "One misaligned instance, in its own frame"
+    alone = "Each instance is misaligned individually, in its own frame"
     return [
         column_table("Critical misalignment", found.critical, head="instance", notes=[f"{alone}. -: stable up to the largest amount."]),
-        column_table("Largest stable misalignment followed", found.followed, head="instance"),
+        column_table("Largest computed stable misalignment", found.followed, head="instance"),
         column_table(
-            f"Load at a misalignment of {size}", found.load, head="instance", notes=[f"{alone}, about its origin, or the middle of a link."]
+            f"Load at a misalignment of {size}", found.load, head="instance", notes=[f"{alone}, about its origin or the middle of a link."]
         ),
-        column_table(f"Largest stress of a flexure at {size}", found.stress, head="instance", notes=["Von Mises; weight included."]),
+        column_table(
+            f"Largest von Mises stress of a flexure at a misalignment of {size}",
+            found.stress,
+            head="instance",
+            notes=["Stress due to weight is included."],
+        ),
     ]
 
 

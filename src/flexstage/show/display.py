@@ -1,6 +1,6 @@
-"""Display units and numbers: how reports show SI values. JSON documents keep SI units.
+"""Units and format of numbers in tables and reports. JSON documents keep SI units.
 
-The preferred display unit changes only if the numbers would be unreadable (all below 0.1, or above 100 000).
+The preferred display unit is replaced only if the numbers would be unreadable (all below 0.1, or above 100 000).
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def _factor(name: str, unit: str) -> float:
 
 
 def display_unit_of(unit: str, largest: float = 1.0, *shown: str) -> DisplayUnit:
-    """Return the display unit of an SI unit for values up to `largest` [SI]: the first applicable of `shown`, else the best unit.
+    """Return the display unit of an SI unit for values up to `largest` [SI]: the first of `shown` that fits, else the best unit.
 
     >>> display_unit_of("N/m", 15e6).unit, display_unit_of("m", 5e-9).unit, display_unit_of("rad/m").unit
     ('N/um', 'nm', 'urad/um')
@@ -130,7 +130,7 @@ def display_unit(quantity: Quantity | None, unit: str = "") -> DisplayUnit:
 
 
 def number(value: float, digits: int = DIGITS) -> str:
-    """Format a number to `digits` significant digits, without trailing zeros; with an exponent only outside 1e-4 ... 1e6.
+    """Format a number to `digits` significant digits, without trailing zeros. Only numbers outside 1e-4 ... 1e6 have an exponent.
 
     >>> number(15.4499), number(-0.0000123456), number(2e9), number(float("nan"))
     ('15.45', '-1.2346e-5', '2e9', '-')
@@ -150,8 +150,8 @@ def number(value: float, digits: int = DIGITS) -> str:
 def align_numbers(values: Iterable[float], digits: int = DIGITS) -> list[str]:
     """Format the numbers of a column with equal decimals: `digits` significant digits for the largest number.
 
-    One more decimal is used if the smallest number needs it. In a column that spans more than four decades, each number has the same
-    significant digits instead.
+    One more decimal is used if the smallest number needs it. In a column that spans more than four decades, all numbers have the same
+    number of significant digits instead.
 
     >>> align_numbers([110.9101, 1690.27]), align_numbers([0.0, 0.5]), align_numbers([1.0, 2.0])
     (['110.91', '1690.27'], ['0', '0.5'], ['1', '2'])

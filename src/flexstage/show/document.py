@@ -22,15 +22,15 @@ from flexstage.models.theory import Model
 
 FORMAT = "flexstage result 3"
 _UNLUMPED = "deflection under permanent load needs the lumped model"
-_UNSORTED = "requires a platform with fewer than six ideal motions, loaded at its output point"
+_UNSORTED = "requires a platform with fewer than six ideal motions, and a load at its output point"
 _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "budget"}
 """Fields of an analysis whose document is named after their command."""
 
 
 def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: Any, more: Iterable[Finding] = ()) -> Document:
-    """Build a JSON document: kind, description (`None`: a record only), model, version, warnings, defaults, then the `body`.
+    """Build a JSON document: kind, description, model, version, warnings, default values, then the `body`.
 
-    `body` is a result, or a mapping with results. `more` are further warnings about the result.
+    `mechanism` is `None` if a record is the only input. `body` is a result, or a mapping of results. `more` are warnings about the result.
 
     >>> envelope("mapping", Mechanism("stage"), None, {"mobility": 6})["name"]
     'stage'
@@ -115,7 +115,7 @@ def stiffness_body(
     mass: MassMatrix | None = None,
     missing: Mapping[str, str] | None = None,
 ) -> SideBySide:
-    """Combine the platform's statics, stiffness by DOF (if fewer than six are free), mass, and deflection under permanent load."""
+    """Combine the platform's statics, mass, deflection under permanent load, and stiffness by DOF if fewer than six DOFs are free."""
     reasons = {} if freedoms is not None else {"freedoms": (missing or {}).get("freedoms", _UNSORTED)}
     reasons |= {} if deflection is not None else {"dead_load": _UNLUMPED}
     return SideBySide((statics, {"freedoms": freedoms, "mass": mass, "dead_load": deflection, "reasons": reasons}))

@@ -31,7 +31,7 @@ def parameter_table(name: str) -> Table | None:
     ['spacing', 'length', '50 mm']
     """
     rows = {each.name: (each.quantity.name, each.text) for each in parameters(case(name)).values()}
-    notes = ["The named numbers of its file.", f"flexstage new stage.toml --case {name} --case-parameter NAME=VALUE"]
+    notes = ["Named numbers of the design file.", f"flexstage new stage.toml --case {name} --case-parameter NAME=VALUE"]
     return text_table(f"Parameters of {name}", ["name", "quantity", "value"], rows, notes=notes)
 
 

@@ -92,8 +92,8 @@ def _words(value: Any) -> str:
 def mat_variables(analysis: Analysis) -> dict[str, Any]:
     """Return the variables of the MATLAB file: R_a, R_s, and for elastic models K, M, B, C, D, frequencies and state space.
 
-    The model is M q'' + K q = B u, y = C q + D u, in SI units. Variables that a model or a stage does not have are left out, with the
-    reason in `notes`. Names and units of rows and columns are in cell arrays.
+    The model is M q'' + K q = B u, y = C q + D u, in SI units. Variables that do not exist for the model or the stage are left out, with
+    the reason in `notes`. Names and units of rows and columns are in cell arrays.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -1,4 +1,4 @@
-"""Values in notebooks: a stage as its picture, results and matrices as the tables of a report."""
+"""Values in notebooks: a stage is shown as a picture, results and matrices as the tables of a report."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ _TABLES: Mapping[type, Callable[[Any], Iterable[Table | None]]] = {
 def to_html(value: Any) -> str:
     """Convert a stage to its picture, or a result to its tables, as HTML for notebooks.
 
-    A result without tables of its own has one table for each part. A stage that cannot be drawn is replaced by its errors.
+    A result without tables of its own gets one table for each of its parts. A stage that cannot be drawn is replaced by its errors.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")

@@ -27,7 +27,7 @@ class Prose:
 
 @dataclass(frozen=True)
 class Picture:
-    """An SVG element with a caption (plain text); `plays` names the motion of the page's viewer that the picture shows ("mode 1").
+    """An SVG element with a caption (plain text). `plays` names the motion that it shows, as in the page's viewer ("mode 1").
 
     `reading` is the data for the cursor over the picture, from `show.figures.reading`.
     """
@@ -78,7 +78,7 @@ class Facts:
 
 @dataclass(frozen=True)
 class BlockRow:
-    """Blocks side by side if the width allows: `narrow` in columns of a third, else of a half."""
+    """Blocks side by side if the page is wide enough, in three columns if `narrow`, else in two."""
 
     blocks: tuple[Block, ...]
     narrow: bool = False
@@ -112,7 +112,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Headline:
-    """The summary of a page in one line; `good` states whether requirements are met, `None` without requirements."""
+    """The summary of a page in one line. `good`: whether requirements are met, or `None` without requirements."""
 
     text: str
     good: bool | None = None
@@ -120,7 +120,7 @@ class Headline:
 
 @dataclass(frozen=True)
 class Head:
-    """The head of a page: title, kind of page and headline; `origin` are the sources listed at its end, pairs of name and value."""
+    """The head of a page: title, kind of page and headline. `origin` contains name and value of the sources listed at the page's end."""
 
     title: str
     kind: str
@@ -129,7 +129,7 @@ class Head:
 
 
 def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
-    """Make a section of the blocks that are not `None`; returns `None` if there are none.
+    """Make a section of the blocks that are not `None`. Returns `None` without blocks.
 
     >>> section("Empty", [None]) is None
     True
@@ -139,7 +139,7 @@ def section(title: str, blocks: Iterable[Block | None]) -> Section | None:
 
 
 def fold(title: str, *blocks: Block | None) -> Folded | None:
-    """Make a folded part of the blocks that are not `None`, shown on demand; returns `None` if there are none.
+    """Make a folded part of the blocks that are not `None`; a reader opens it. Returns `None` without blocks.
 
     >>> fold("Empty", None) is None
     True
@@ -149,9 +149,10 @@ def fold(title: str, *blocks: Block | None) -> Folded | None:
 
 
 def page(head: Head, sections: Iterable[Section | None], stages: Mapping[str, StageData] = MappingProxyType({})) -> str:
-    """Write the HTML page with the sections that are not `None`; texts are escaped, SVG is inserted unchanged.
+    """Write the HTML page with the sections that are not `None`. Texts are escaped; SVG is inserted unchanged.
 
-    `stages` are the data of the page's viewers by key. The content security policy allows only scripts in the page, and no loading.
+    `stages` contains the data of the page's viewers by key. The content security policy permits only scripts in the page, and no loading of
+    other files.
 
     >>> "<h1>a &lt; b</h1>" in page(Head("a < b", "report", ()), [Section("One", (Prose("x"),))])
     True

@@ -30,7 +30,7 @@ _PLATE = {"boxstyle": "round,pad=0.15", "facecolor": PAPER, "edgecolor": "none",
 
 @dataclass(frozen=True)
 class Ring:
-    """Instances on a circle: their names, radius [mm], position angle of the first [deg] and angular step [deg]."""
+    """Instances on a circle: names, radius [mm], position angle of the first instance [deg] and angular step [deg]."""
 
     names: tuple[str, ...]
     radius: float

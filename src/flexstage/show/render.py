@@ -33,7 +33,7 @@ _STYLES = {
 
 
 def to_html(table: Table) -> str:
-    """Render a table as HTML without style; CSS classes state the meaning of cells, all texts are escaped.
+    """Render a table as HTML without style. CSS classes give the meaning of cells; all texts are escaped.
 
     >>> from flexstage.show.table import make_table
     >>> to_html(make_table("a < b", ["x"], [("1",)]))
@@ -60,9 +60,9 @@ def _anchor(title: str) -> str:
 
 
 _WORDY = 28
-"""Smallest length of a cell next to a name [characters] for which a table is stacked on narrow screens."""
+"""Length of a cell next to a name [characters] from which a table is stacked on narrow screens."""
 _LONG = 12
-"""Smallest length of a name [characters] for which it may be broken on narrow screens."""
+"""Length of a name [characters] from which it may be broken on narrow screens."""
 
 
 def _has_long_names(table: Table) -> bool:
@@ -116,7 +116,7 @@ class _Span:
 def to_rich(table: Table, width: int) -> Iterator[Any]:
     """Render a table for a terminal that is `width` characters wide: title, table, notes.
 
-    Lines are broken only between words, and numbers stay with their units. Columns that do not fit are printed in further tables below,
+    Lines are broken only between words, not between a number and its unit. Columns that do not fit are printed in further tables below,
     with the row names repeated.
 
     >>> from flexstage.show.table import make_table
@@ -211,7 +211,7 @@ def _fill(text: str, width: int) -> str:
 
 
 def fold(text: str, width: int) -> list[str]:
-    """Break a line into lines of at most `width` characters, between words; numbers stay with their units.
+    """Break a line into lines of at most `width` characters, between words, but not between a number and its unit.
 
     Names longer than a line are broken after a dot or a slash.
 

@@ -26,8 +26,8 @@ from flexstage.show.viewer.motions import Group
 def report(analysis: Analysis, compared: Comparison | None = None) -> str:
     """Write the analysis of a stage as a self-contained HTML page: verdict and stage first, no date.
 
-    With `compared`, the changed values and their effects follow the requirements, with columns old, new and change. Results that the model
-    or the stage does not have are left out, with the reasons under "Limits". Of a batch the first design is shown.
+    With `compared`, the changed values and their effects follow the requirements, in columns old, new and change. Results that the model
+    or the stage does not have are left out, with the reasons under "Limits". For a batch, the first design is shown.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

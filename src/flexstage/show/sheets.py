@@ -1,4 +1,4 @@
-"""Results for other programs as CSV, pandas or xarray, in full precision and SI units. `base.sheet` defines the parts of a result."""
+"""Results as CSV, pandas or xarray, in full precision and SI units. `base.storage.sheet` defines the parts of a result."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _FORMULA = ("=", "+", "-", "@")
 
 @check_arguments
 def to_csv(result: Any) -> dict[str, str]:
-    r"""Convert every part of a result to CSV (RFC 4180), by its path: names first, unformatted numbers, SI units in the heads.
+    r"""Convert every part of a result to CSV (RFC 4180), by the path of the part, with SI units in the column heads.
 
-    Texts that a spreadsheet would run as formulas (`=`, `+`, `-`, `@` first) begin with an apostrophe. An unknown number is an empty cell.
-    If a column of a matrix has no common unit, the units are in a column `unit`. If a row has no common unit either, each entry of the
-    matrix is a row with its unit.
+    The first columns are names. Numbers are not rounded; an unknown number is an empty cell. Texts that a spreadsheet would execute as
+    formulas (they start with `=`, `+`, `-` or `@`) begin with an apostrophe. If a column of a matrix has no common unit, the units are in
+    a column `unit`. If a row has no common unit either, each entry of the matrix is a row with its unit.
 
     >>> to_csv({"gain": 2.0, "loss": {"B1": 0.1}})
     {'': 'gain\r\n2.0\r\n', 'loss': 'name,loss\r\nB1,0.1\r\n'}
@@ -40,7 +40,7 @@ def _lines(part: Sheet | Matrix) -> Iterator[Sequence[Any]]:
 
 @dataclass(frozen=True)
 class Grid:
-    """A part of a result as a spreadsheet: heads, SI units of the columns, and rows. The first `named` cells of a row are names."""
+    """A part of a result as a spreadsheet: column heads, SI units, and rows. The first `named` cells of a row are names."""
 
     heads: tuple[str, ...]
     units: tuple[str, ...]
@@ -49,7 +49,7 @@ class Grid:
 
 
 def grid_of(part: Sheet | Matrix) -> Grid:
-    """Convert a part of a result to a grid. The units of a matrix are in the heads, else in a column, else each entry is a row.
+    """Convert a part of a result to a grid. Units of a matrix are in the heads, else in a column, else each entry becomes a row.
 
     >>> import numpy as np
     >>> grid_of(Matrix(np.array([[2.0, 3.0]]), ("x",), ("a", "b"), (("m", "N"),)))
@@ -90,9 +90,9 @@ def _cell(value: Any) -> Any:
 
 @check_arguments
 def to_pandas(result: Any) -> dict[str, Any]:
-    """Convert every part of a result to a pandas frame, by its path; row names are the index (extra `tables`).
+    """Convert every part of a result to a pandas frame, by the path of the part. Needs the extra `tables`.
 
-    Units are in the names of columns; units of matrices are in `attrs["unit"]`.
+    Row names are the index. Units are in the names of columns; units of matrices are in `attrs["unit"]`.
     """
     return {path: part.to_pandas() if isinstance(part, Matrix) else _frame(part) for path, part in parts(result)}
 
@@ -106,8 +106,8 @@ def _frame(sheet: Sheet) -> Any:
 
 @check_arguments
 def to_xarray(result: Any) -> dict[str, Any]:
-    """Convert every part of a result to xarray, by its path: a matrix to an array, another part to a dataset (extra `tables`).
+    """Convert every part of a result to xarray, by the path of the part. Needs the extra `tables`.
 
-    Names of rows are coordinates of a dimension.
+    A matrix becomes an array, another part a dataset. Names of rows are coordinates of a dimension.
     """
     return {path: part.to_xarray() if isinstance(part, Matrix) else _frame(part).to_xarray() for path, part in parts(result)}

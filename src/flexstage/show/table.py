@@ -31,7 +31,7 @@ from flexstage.show.display import (
 
 @dataclass(frozen=True)
 class Cell:
-    """A table's cell: its text, its mark, and optionally the length of a bar behind it (a share between 0 and 1)."""
+    """A cell of a table: its text, its mark, and optionally the length of a bar behind the text (0 to 1)."""
 
     text: str
     mark: Mark = Mark.PLAIN
@@ -45,7 +45,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Column:
-    """A table's column: head and unit; `numeric` columns are aligned right."""
+    """A column of a table: its head and unit. `numeric` columns are aligned right."""
 
     head: str
     unit: str = ""
@@ -66,7 +66,7 @@ _ColumnCells: TypeAlias = tuple[Column, list[Cell]]
 
 @dataclass(frozen=True)
 class Table(InNotebook):
-    """A table for readers: title, columns, rows, notes below it and the source of its numbers."""
+    """A table for readers: title, columns, rows, notes below the table, and the source of its numbers."""
 
     title: str
     columns: tuple[Column, ...]
@@ -88,7 +88,7 @@ def make_table(
     notes: Iterable[str] = (),
     provenance: str = "",
 ) -> Table:
-    """Make a table from columns (a text is the head of a text column) and rows of cells (a text is a plain cell).
+    """Make a table from columns and rows of cells. A string is the head of a text column, or the text of a plain cell.
 
     >>> make_table("Masses", ["body", Column("mass", "kg")], [("platform", "14")]).texts()
     [['body', 'mass [kg]'], ['platform', '14']]
@@ -106,7 +106,7 @@ def text_table(
     notes: Iterable[str] = (),
     provenance: str = "",
 ) -> Table | None:
-    """Make a table of names, each with one or several texts; `None` without rows.
+    """Make a table of names, each with one or several texts. Returns `None` without rows.
 
     >>> text_table("Sources", ["", "source"], {"steel": "data sheet"}).texts()
     [['', 'source'], ['steel', 'data sheet']]
@@ -116,9 +116,9 @@ def text_table(
 
 
 def number_cells(values: Iterable[float], form: DisplayUnit, digits: int | None = None) -> list[Cell]:
-    """Format a column of SI values in a display unit, with aligned decimals, or with this number of significant `digits` each.
+    """Format a column of SI values in a display unit, with aligned decimals. With `digits`, each number has as many significant digits.
 
-    Values at the level of rounding noise, relative to the column's largest value, are shown as 0.
+    Values that are rounding noise, relative to the largest value of the column, are shown as 0.
 
     >>> [cell.text for cell in number_cells([15e6, 1e-6], DisplayUnit("N/um", 1e-6))]
     ['15', '0']
@@ -139,9 +139,9 @@ def row_table(
     """Make a table with one row for each record or name, and one column for each field.
 
     `source` is a mapping or sequence of records of one class, or a record. In a record, arrays with `Along` names and labelled matrices
-    have one row for each name. `fields` are the fields to show, in order (default: all that fit into cells). The head of a column is the
-    field's `Heading`, else its name and unit. `head` is the head of the names, `path, axis` for two columns of names. Values outside a
-    field's `Bound` are marked.
+    have one row for each name. `fields` are the shown fields in sequence, by default all that fit into cells. The head of a column is the
+    field's `Heading`, else its name and unit. `head` is the head of the column of names, or `path, axis` for two such columns. Values
+    outside a field's `Bound` are marked.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
@@ -206,7 +206,7 @@ def _columns_at(records: Sequence[Any], path: str, counts: Sequence[int], names:
 
 
 def merge_rows(table: Table) -> Table:
-    """Merge rows with equal cells into one row that lists their names; links of instances are merged only if their link names are equal.
+    """Merge rows with equal cells into one row with all names. Links of several instances are merged only if their own names are equal.
 
     >>> merge_rows(make_table("", ["link", "free"], [("B1/tip", "rz"), ("B1/foot", "rz"), ("B2/tip", "rz")])).texts()[1:]
     [['tip (B1, B2)', 'rz'], ['B1/foot', 'rz']]
@@ -225,7 +225,7 @@ def _join_names(names: Sequence[str]) -> str:
 
 
 def sheet_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance: str = "") -> Table:
-    """Make a table of the rows and columns of a sheet, names first."""
+    """Make a table of the rows and columns of a sheet; the first columns are names."""
     names = [_name_column(*each) for each in sheet.names.items()]
     return _columns_table(title, [*names, *(field_column(*each) for each in sheet.columns.items())], notes, provenance)
 
@@ -254,22 +254,22 @@ def _columns_table(title: str, columns: Sequence[_ColumnCells], notes: Iterable[
 def array_table(
     title: str, record: Any, *fields: str, names: Mapping[str, Iterable[Any]] = MappingProxyType({}), notes: Iterable[str] = ()
 ) -> Table:
-    """Make a table with arrays of a record as columns; `names` are columns of row names by their head."""
+    """Make a table with arrays of a record as columns. `names` contains the columns of row names, by their head."""
     columns = (field_column(field, list(values)) for field, values in (field_at(record, name) for name in fields))
     return _columns_table(title, [*(_name_column(*each) for each in names.items()), *columns], notes)
 
 
 def record_table(title: str, record: Any, *fields: str, notes: Iterable[str] = (), provenance: str = "") -> Table:
-    """Make a table of a record with rows of name, value and unit; see `row_table` for `fields`."""
+    """Make a table of a record, with a row of name, value and unit for each field. For `fields`, see `row_table`."""
     told = values_of(record)[0].items()
     chosen = [field_at(record, path) for path in fields] or [each for each in told if not each[0].axes and is_cell(each[1])]
     return _vertical_table(title, Sheet({}, {each: (value,) for each, value in chosen}), notes, provenance)
 
 
 def result_table(source: Any, fields: str = "", *, title: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table | None:
-    """Make the table of a result, or of results in a sequence or by name, with the layout `TABLE` of its class; `None` without rows.
+    """Make the table of a result, or of results in a sequence or by name, with the layout `TABLE` of its class.
 
-    `fields` and `title` replace the fields and title of `TABLE`.
+    `fields` and `title` replace the fields and title of `TABLE`. Returns `None` without rows.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
@@ -309,7 +309,7 @@ def _vertical_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provena
 
 
 def result_tables(result: Any) -> Iterator[Table]:
-    """Make a table for every part of a result, with the part's path in the document as title; long tables show their first rows.
+    """Make a table for every part of a result, with the part's path in the document as title. Long tables show their first rows.
 
     >>> [table.title for table in result_tables({"gain": 2.0, "loss": {"B1": 0.1, "B2": 0.2}})]
     ['', 'loss']
@@ -325,7 +325,7 @@ def result_tables(result: Any) -> Iterator[Table]:
 
 
 def first_rows(table: Table, most: int) -> Table:
-    """Limit a table to its first `most` rows; a note states the number of further rows.
+    """Limit a table to its first `most` rows. A note contains the number of further rows.
 
     >>> first_rows(make_table("", ["body"], [("b1",), ("b2",), ("b3",)]), 1).notes
     ('2 further rows.',)
@@ -335,7 +335,7 @@ def first_rows(table: Table, most: int) -> Table:
 
 
 def further(rest: int) -> str:
-    """Format the number of rows not shown as a sentence.
+    """Make the sentence with the number of rows that are not shown.
 
     >>> further(12)
     '12 further rows.'
@@ -344,7 +344,7 @@ def further(rest: int) -> str:
 
 
 def field_column(field: Field, values: Sequence[Any], units: Sequence[str] = ()) -> _ColumnCells:
-    """Make the column of a field and its cells, for tables with further columns; `units` are the SI units of the values.
+    """Make the column of a field and its cells, for tables with other columns too. `units` are the SI units of the values.
 
     >>> from flexstage.base.units.quantity import SHARE, STIFFNESS
     >>> from flexstage.base.record import Heading
@@ -397,7 +397,7 @@ def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> 
 
 
 def interval_text(low: float, high: float) -> str:
-    """Format an interval; its ends are rounded to two significant digits of its width.
+    """Format an interval. Its ends are rounded to two significant digits of the width.
 
     >>> interval_text(118.0101, 118.0145), interval_text(1.0, float("inf"))
     ('118.0101 to 118.0145', '-')
@@ -412,8 +412,8 @@ def interval_text(low: float, high: float) -> str:
 def matrix_columns(matrix: Matrix, fields: Mapping[str, Field] = _NO_FIELDS, heading: Heading = _PLAIN) -> Iterator[_ColumnCells]:
     """Make the columns of a labelled matrix (first design of a batch).
 
-    Numbers of a column with a common SI unit have a common display unit, others each their own. A column with the name of one of `fields`
-    has the heading and bound of that field, other columns have `heading`.
+    Numbers of a column with a common SI unit have a common display unit; otherwise each number has its own. A column with the name of one
+    of `fields` gets the heading and bound of that field; other columns get `heading`.
 
     >>> [cells[0].text for _, cells in matrix_columns(Matrix(np.array([[2e-6], [1e-3]]), ("x", "rx"), ("low",), (("m",), ("rad",))))]
     ['2 um']
@@ -456,8 +456,8 @@ def matrix_table(
 ) -> Table:
     """Make a table of a labelled matrix (first design of a batch) in display units.
 
-    Rows and columns have units, and an entry is in row unit per column unit. If the units of the entries are not such ratios, each entry
-    shows its unit. Values at the level of rounding noise are shown as 0; `against` is a further matrix that sets this level. `units`
+    Rows and columns have units, and the unit of an entry is row unit per column unit. If the units of the entries are not such ratios, each
+    entry shows its unit. Rounding noise is shown as 0; a further matrix `against` may define its level. `units`
     replace the preferred display units (with mrad, lever arms are in mm).
 
     >>> table = matrix_table("K", Matrix(np.array([[2e6]]), ("fx",), ("x",), (("N/m",),)))
@@ -560,7 +560,7 @@ def first_design(values: Array, axes: int) -> Array:
 
 
 def batch_note(values: Array, axes: int) -> tuple[str, ...]:
-    """Return the note for a table that shows the first design of a batch; no note for a single design.
+    """Return the note for a table that shows only the first design of a batch. A single design has no note.
 
     >>> batch_note(np.ones((4, 2, 2)), 2)
     ('The first of 4 designs.',)

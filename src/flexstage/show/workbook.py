@@ -1,4 +1,4 @@
-"""Results as an Excel workbook (XLSX): a sheet for each part (see `base.sheet`), numbers in SI units, and the source of the numbers."""
+"""Results as an Excel workbook (XLSX) in SI units: a sheet for each part (see `base.storage.sheet`), and one for the source."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _WRITTEN = datetime(1980, 1, 1)  # noqa: DTZ001 (a workbook's dates have no zone
 
 @check_arguments
 def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
-    """Convert a result to the bytes of an XLSX file, a sheet for each part: heads, SI units below, then names and numbers of 16 digits.
+    """Convert a result to the bytes of an XLSX file, with a sheet for each part: heads, SI units below them, then names and numbers.
 
-    Unknown values are empty cells; infinity and numbers too large for a cell (1e308) are texts. The last sheet lists the source: the
-    version of flexstage and the entries of `about`. Equal results have equal bytes. Raises `DesignError` for tables longer or wider than a
-    sheet.
+    Numbers have 16 digits. Unknown values are empty cells; infinity and numbers too large for a cell (1e308) are texts. The last sheet
+    lists the source: the version of flexstage and the entries of `about`. Equal results give equal bytes. Raises `DesignError` for tables
+    longer or wider than a sheet.
 
     >>> to_xlsx({"gain": 2.0, "loss": {"B1": 0.1}})[:2]
     b'PK'
@@ -53,7 +53,7 @@ def to_xlsx(result: Any, about: Mapping[str, Any] | None = None) -> bytes:
 def _write(sheet: Any, grid: Grid, head: Any, unit: Any) -> None:
     if len(grid.rows) + 2 > _MOST_ROWS or len(grid.heads) > _MOST_COLUMNS:
         size = f"{len(grid.rows)} rows and {len(grid.heads)} columns"
-        raise refuse(sheet.name, f"{size} exceed the limits of a worksheet", "Write CSV files: --csv FOLDER")
+        raise refuse(sheet.name, f"too large for a worksheet (got {size})", "Write CSV files: --csv FOLDER")
     for row, line in enumerate((grid.heads, grid.units)):
         for column, text in enumerate(line):
             if text:
@@ -94,7 +94,7 @@ def _about(result: Any, about: Mapping[str, Any]) -> Grid:
     own = getattr(result, PROVENANCE, None)
     entries = {
         "flexstage": __version__,
-        "units": "SI, below the heads or in their names",
+        "units": "SI units, below the heads or in them",
         **about,
         **({PROVENANCE: own} if own else {}),
     }
@@ -106,7 +106,7 @@ def _about(result: Any, about: Mapping[str, Any]) -> Grid:
 def sheet_names(paths: Sequence[str]) -> list[str]:
     """Return valid names of Excel sheets, one for each path: 31 characters at most, without `[ ] : * ? /` and backslashes.
 
-    Names are unique, also if upper and lower case are not distinguished.
+    Names are unique even if upper and lower case are not distinguished.
 
     >>> sheet_names(["", "modes", "Modes", "a/b", "statics.stiffness.by_direction.principal"])
     ['result', 'modes', 'Modes (2)', 'a_b', 'by_direction.principal']

@@ -1,4 +1,4 @@
-"""The form of a study's file: the fields of each section. The reader and the schema are generated from it."""
+"""The fields of each section of a study's file. The reader and the schema are generated from them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ COPIES_BY = (Sampling.MONTE_CARLO, Sampling.LATIN_HYPERCUBE, Sampling.SOBOL)
 
 Amount = Annotated[str | float, AmountNode()]
 Texts = Annotated[tuple[str, ...], TextsNode()]
-Parameters = Annotated[Mapping[str, Any], OpenNode("Parameters of the case that differ from its own, by name.")]
+Parameters = Annotated[Mapping[str, Any], OpenNode("Parameters of the case with new values, by name.")]
 
 _ONE, _TWO, _THREE = Bound(low=1.0), Bound(low=2.0), Bound(low=3.0)
 _SEED = Bound(low=0.0)
@@ -32,11 +32,11 @@ _YIELD = Bound(low=0.5, high=1.0, open_low=True, open_high=True)
 
 @dataclass(frozen=True)
 class VariedTable:
-    """A variable of a study: numbers of the design at one `address` or several, or one `parameter` of the case or several.
+    """A variable of a study: one or several numbers of the design (`address`), or parameters of the case (`parameter`).
 
-    Several change together. Without both, the variable's name is the address. The range is `from` ... `to`, with units or in percent of the
-    design's value. `logarithmic`: equal steps are equal ratios. `levels`: number of values of a grid. `step`: manufacturing increment,
-    values are its multiples.
+    Several numbers change together. Without `address` and `parameter`, the variable's name is the address. The range is `from` ... `to`,
+    with units or in percent of the design's value. `logarithmic`: equal steps in the range are equal ratios. `levels`: number of values in
+    a grid. `step`: manufacturing increment; rounded values are multiples of it.
     """
 
     low: Amount = field(metadata={KEY: "from"})
@@ -50,9 +50,10 @@ class VariedTable:
 
 @dataclass(frozen=True)
 class SweepTable:
-    """Sampling of designs: `sampling`, number of `designs` (default 1024; a grid's number follows from its levels), random `seed`.
+    """Sampling of designs: kind of `sampling`, number of `designs`, random `seed`.
 
-    `pairs`: Saltelli's plan with indices of second order.
+    The default number of designs is 1024; in a grid, it follows from the levels of the variables. `pairs`: Saltelli's plan also provides
+    second-order indices.
     """
 
     sampling: Sampling = Sampling.SOBOL
@@ -63,9 +64,10 @@ class SweepTable:
 
 @dataclass(frozen=True)
 class OptimiseTable:
-    """Objectives: responses to `maximise` or `minimise`; with two of them a Pareto front of `pareto_points` designs is computed.
+    """Objectives: responses to `maximise` or `minimise`. With two objectives, a Pareto front of `pareto_points` designs is computed.
 
-    `starts` is the number of initial designs, drawn with `seed`. `requirements`: the design's own requirements are limits too.
+    `starts` is the number of initial designs, chosen with the random `seed`. `requirements`: the requirements of the design file are also
+    limits.
     """
 
     maximise: Texts | None = None
@@ -78,12 +80,12 @@ class OptimiseTable:
 
 @dataclass(frozen=True)
 class ScatterTable:
-    """Scatter of the numbers at one `address` or several of the same quantity; without it the entry's name is the address.
+    """Scatter of numbers of the same quantity, at one or several addresses (`address`). By default, the entry's name is the address.
 
     The distribution is normal with the standard deviation `normal`, or uniform with the half width `uniform`. Both have a unit or are in
-    percent of the design's value. `within` truncates a normal distribution. `interval` is an asymmetric tolerance (lower, upper): uniform
-    between them, or with `normal` a normal distribution about their middle, truncated there. `independent`: every instance has its own
-    deviation.
+    percent of the design's value. `within` truncates a normal distribution. `interval` is an asymmetric tolerance (lower, upper). The
+    distribution between both ends is uniform; with `normal`, it is normal about their middle, and truncated at the ends. `independent`:
+    every instance has its own deviation.
     """
 
     address: Texts | None = None
@@ -98,8 +100,8 @@ class ScatterTable:
 class ToleranceTable:
     """Number of `copies` (samples), their `sampling` and `seed`, and the required `yield` of each requirement.
 
-    `requirements`: includes the design's own requirements. `crosstalk`: computes the platform's crosstalk at a `point` (default: if the
-    stage has any).
+    `requirements`: the requirements of the design file are included. `crosstalk`: the platform's crosstalk at a `point` is computed, by
+    default if the strokes determine the platform.
     """
 
     copies: Annotated[int, _TWO] = 1024
@@ -115,8 +117,8 @@ class ToleranceTable:
 class StudyFile:
     """A study: its initial design (`design` file, or shipped `case` with `parameters`), its responses and its limits.
 
-    `responses` are measures by name, `limits` contain "at least" or "at most" by measure. `variables` and `sweep` belong to a sweep,
-    `variables` and `optimise` to an optimisation, `scatter` and `tolerance` to a tolerance analysis.
+    `responses` contains measures by name, `limits` contains an "at least" or "at most" text for a measure. A sweep uses `variables` and
+    `sweep`, an optimisation `variables` and `optimise`, a tolerance analysis `scatter` and `tolerance`.
     """
 
     name: str = "study"
@@ -164,7 +166,7 @@ def is_share(raw: str | float) -> bool:
 
 
 def parse_amount(raw: str | float, quantity: Quantity, where: str) -> float:
-    """Convert an amount to SI; raises `DesignError` at `where` for another quantity.
+    """Convert an amount to SI units. Raises `DesignError` at `where` for another quantity.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> parse_amount("1.5 mm", LENGTH, "variables.neck.from")

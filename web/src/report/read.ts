@@ -148,7 +148,7 @@ class Reading {
 
   private rest(): void {
     for (const each of this.panels) each.cursor.setAttribute("visibility", "hidden");
-    this.told.textContent = "Point at the curves to read them; a click fixes the cursor, also at a peak.";
+    this.told.textContent = "Point at a curve to read its values. Click to fix the cursor, also at a peak.";
   }
 
   private show(panel: Panel, x: number, text = ""): void {

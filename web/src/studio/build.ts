@@ -20,7 +20,7 @@ export class BuildPane {
   private show(snippets: Snippet[]): void {
     const open = new Set([...this.root.querySelectorAll("details[open]")].map((each) => each.getAttribute("data-name")));
     const parts = [...grouped(snippets, (each) => each.group)].flatMap(([name, group]) => [h("h4", {}, name), ...group.map((each) => this.snippet(each, open.has(each.name)))]);
-    fill(this.root, h("p", { className: "quiet" }, "Text is inserted at the entries of its kind in the file, and can be changed there."), ...parts);
+    fill(this.root, h("p", { className: "quiet" }, "The text is inserted after the entries of its kind in the design file, where you can edit it."), ...parts);
   }
 
   private snippet(each: Snippet, isOpen: boolean): HTMLElement {

@@ -167,7 +167,7 @@ export class Editor {
     if (!state.value) return;
     const { sound, problems } = state.value;
     const count = `${problems.length} error${problems.length === 1 ? "" : "s"}`;
-    const results = figures.value === null ? "no results" : this.studio.isPresent(figures.value.revision) ? "results may be incomplete" : "results are of the last text without errors";
+    const results = figures.value === null ? "no results" : this.studio.isPresent(figures.value.revision) ? "results may be incomplete" : "results belong to the last text without errors";
     const badge = byId("sound");
     badge.className = sound ? (this.studio.isCurrent ? "pill good" : "pill") : "pill poor";
     fill(badge, sound ? "sound" : `${count}: ${results}`);

@@ -28,7 +28,7 @@ export class VerdictTable {
     const isAll = met === verdicts.length;
     const head = h("h2", {}, "Verdicts ", h("span", { className: isAll ? "pill good" : "pill poor" }, `${met} of ${verdicts.length} met`));
     const rows = verdicts.map((each) => this.row(each));
-    const none = h("p", { className: "quiet" }, "The file has no [requirements] table: nothing is judged.");
+    const none = h("p", { className: "quiet" }, "There are no verdicts, because the file has no [requirements] table.");
     fill(this.root, head, verdicts.length ? h("table", { className: "verdicts" }, h("tbody", {}, ...rows)) : none);
     this.age();
   }
@@ -206,7 +206,7 @@ export class FigureTable {
 
   private drawn(said: Frequencies): void {
     const known = said.frequencies.filter((each) => each !== null).map((each) => digits(each));
-    fill(this.loading, h("b", {}, "Without its load"), ", at the slider's position, the platform's frequencies are ", h("output", { className: "moving" }, `${known.join(", ")} Hz`), ". The rows below are of the loaded stage, where the slider last rested.");
+    fill(this.loading, h("b", {}, "Without permanent load"), ", the platform frequencies at the slider's position are ", h("output", { className: "moving" }, `${known.join(", ")} Hz`), ". The rows below belong to the loaded stage, at the last position where the slider was released.");
   }
 }
 

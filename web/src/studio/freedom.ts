@@ -43,7 +43,7 @@ export class FreedomPane {
       ...this.list("Constrained", "constrained by", said.locked),
       ...told("Locked actuators", said.blocked),
       ...this.sets(said.redundant),
-      ...told("Free internal modes: move neither platform nor stroke", said.idle),
+      ...told("Free internal modes, which move neither platform nor actuators", said.idle),
       h("button", { type: "button", click: () => this.picture(this.said) }, "show all arrows"),
     );
     this.picture(this.studio.tab.value === "freedom" ? said : null);
@@ -62,7 +62,7 @@ export class FreedomPane {
       const links = [...grouped(each.text.split(", "), (name) => name.slice(0, name.lastIndexOf(".")))].map(([link, names]) => ({ link, text: `${link} (${names.map((name) => name.slice(link.length + 1)).join(", ")})` }));
       return h("li", {}, h("button", { type: "button", ariaPressed: "false", click: (event: Event) => this.mark(event.currentTarget as HTMLElement, links.map(({ link }) => link)) }, `set ${at + 1}`), " ", named(links.map(({ text }) => text)));
     });
-    return [h("h4", {}, "Redundant constraints: one of each set is superfluous and stresses the stage if parts do not fit exactly"), h("ul", { id: "redundant" }, ...items)];
+    return [h("h4", {}, "Redundant constraints: one constraint of each set is superfluous, and stresses the stage if parts do not fit exactly"), h("ul", { id: "redundant" }, ...items)];
   }
 
   /** Colours the links of one set, or of none. */
@@ -114,7 +114,7 @@ function named(links: string[]): HTMLElement {
 function spell(screw: Screw): string {
   if (screw.pitch === null) return `moves along (${screw.direction.map((each) => digits(Math.abs(each) < 1e-9 ? 0 : each, 3)).join(", ")})`;
   const point = screw.point.map((each) => digits(Math.abs(each) < 1e-9 ? 0 : 1000 * each, 4)).join(", ");
-  const pitch = Math.abs(screw.pitch) < 1e-9 ? "" : `, ${digits(1000 * screw.pitch, 4)} mm a radian`;
+  const pitch = Math.abs(screw.pitch) < 1e-9 ? "" : `, pitch ${digits(1000 * screw.pitch, 4)} mm/rad`;
   return `rotates about (${screw.direction.map((each) => digits(Math.abs(each) < 1e-9 ? 0 : each, 3)).join(", ")}) through (${point}) mm${pitch}`;
 }
 

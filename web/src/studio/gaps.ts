@@ -24,7 +24,7 @@ export class GapsPane {
     fill(
       this.root,
       ...said.problems.map((each) => h("p", { className: "poor" }, `${each.where}: ${sentence(each)}`)),
-      said.clashes.length ? table(["bodies", "distance"], rows, "figures") : h("p", { className: "quiet" }, "No clash, and no small gap."),
+      said.clashes.length ? table(["bodies", "distance"], rows, "figures") : h("p", { className: "quiet" }, "No overlap, and no small gap."),
     );
   }
 

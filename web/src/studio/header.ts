@@ -102,7 +102,7 @@ export class Header {
       "Another program changed the file. ",
       h("button", { type: "button", click: hide(() => void this.save(true)) }, "overwrite it"),
       " ",
-      h("button", { type: "button", click: hide(() => void this.studio.ask({ kind: "reload" })) }, "read the file's text (undo restores yours)"),
+      h("button", { type: "button", click: hide(() => void this.studio.ask({ kind: "reload" })) }, "read the text of the file (undo restores your text)"),
     );
   }
 }

@@ -19,12 +19,12 @@ interface Kind {
 }
 
 const KINDS: Record<Command, Kind> = {
-  sweep: { title: "Sweep", about: "Computes many designs, effects and interactions.", file: "flexstage study 1", table: "sweep" },
+  sweep: { title: "Sweep", about: "Analyses many designs, with effects and interactions of the variables.", file: "flexstage study 1", table: "sweep" },
   optimise: { title: "Optimise", about: "Finds the best design within ranges and limits.", file: "flexstage study 1", table: "optimise" },
-  verify: { title: "Verify", about: "Compares theory with finite elements, hinges first." },
-  identify: { title: "Identify", about: "Finds the modes in a record of a test.", record: "needed" },
-  loop: { title: "Loop", about: "Closes the control loop, by default the standard one. With a record of a test, on the measured responses.", file: "flexstage loop 1", record: "possible" },
-  analyse: { title: "Report", about: "Writes the report: all analyses, with the animated model, in one file." },
+  verify: { title: "Verify", about: "Compares theory with finite elements, first for the hinges." },
+  identify: { title: "Identify", about: "Finds the modes in a test record.", record: "needed" },
+  loop: { title: "Loop", about: "Computes the control loop, by default with the standard controller. With a test record, it uses the measured responses.", file: "flexstage loop 1", record: "possible" },
+  analyse: { title: "Report", about: "Writes a report with all analyses and the animated stage in one file." },
 };
 
 /** A starting point of a study: the numbers with the largest effect on the worst requirement, and the measure to improve. */
@@ -120,7 +120,7 @@ export function jobArticle(studio: Studio, each: JobState, hasOptimum = false, r
   const cancel = h("button", { type: "button", click: () => studio.ask({ kind: "cancel", job: each.job }) }, "cancel");
   const address = each.report;
   const show = address && h("button", { type: "button", click: () => showReport(address, `Report of ${each.command}`) }, "show the report");
-  const take = h("button", { type: "button", title: "make it the present design; undo takes it back", click: () => studio.ask({ kind: "recall", name: OPTIMUM }) }, "take the optimum");
+  const take = h("button", { type: "button", title: "make the optimum the present design; undo restores the previous design", click: () => studio.ask({ kind: "recall", name: OPTIMUM }) }, "take the optimum");
   const bar = h("progress", { ariaLabel: each.command, max: 1, ...(each.fraction === null ? {} : { value: each.fraction }) });
   return h(
     "article",
@@ -161,7 +161,7 @@ function showReport(address: string, title: string): void {
   const made = h("dialog", { className: "report", ariaLabel: title, close: () => made.remove() });
   const frame = h("iframe", { title, src: address });
   frame.setAttribute("sandbox", "allow-scripts allow-downloads allow-modals");
-  const away = h("a", { href: address, target: "_blank", rel: "noopener" }, "in a tab of its own");
+  const away = h("a", { href: address, target: "_blank", rel: "noopener" }, "in a separate tab");
   fill(made, h("form", { method: "dialog" }, h("b", {}, title), away, h("button", {}, "close")), frame);
   document.body.append(made);
   made.showModal();

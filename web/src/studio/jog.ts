@@ -175,7 +175,7 @@ export class Jog {
     const told: Record<string, string> = this.isActive() ? { ...this.posed?.beyond } : {};
     for (const [name, row] of this.rows) {
       const isOut = outside(row.channel, Number(row.slider.dataset["value"] ?? 0));
-      if (isOut) told[name] ??= "its stroke ends";
+      if (isOut) told[name] ??= "stroke limit exceeded";
       row.root.classList.toggle("poor", name in told);
     }
     const isAny = Object.keys(told).length > 0;

@@ -82,7 +82,7 @@ const KEYS: Key[] = [
   { keys: ["mod+shift+z", "mod+y"], shown: "Ctrl+Shift+Z", about: "redo", act: () => void header.redo(), always: true },
   { keys: ["mod+s"], shown: "Ctrl+S", about: "save", act: () => void header.save(), always: true },
   { keys: ["/"], shown: "/", about: "find a number", act: () => numbers.find() },
-  { keys: ["1", "2", "3", "4", "5", "6", "7", "8", "9", "0"], shown: "1 … 9, 0", about: "play a mode; at rest", act: (key) => play(Number(key)) },
+  { keys: ["1", "2", "3", "4", "5", "6", "7", "8", "9", "0"], shown: "1 … 9, 0", about: "play a mode; show the stage at rest", act: (key) => play(Number(key)) },
   { keys: ["space"], shown: "space", about: "play or pause", act: () => modes.toggle() },
   { keys: ["[", "]"], shown: "[  ]", about: "smaller, larger amplitude", act: (key) => modes.louder(key === "]" ? 1.25 : 0.8) },
   { keys: ["arrowright", "arrowleft"], shown: "← →", about: "platform along x; with shift about y", act: (key) => nudge("x", key === "arrowright" ? 1 : -1) },
@@ -94,9 +94,9 @@ const KEYS: Key[] = [
   { keys: ["f"], shown: "F", about: "fit the stage, or the selected part", act: () => stage.fit() },
   { keys: ["g"], shown: "G", about: "translucent platform", act: () => stage.press("platform") },
   { keys: ["l"], shown: "L", about: "names of parts", act: () => stage.press("names") },
-  { keys: ["c"], shown: "C", about: "exchange old and new design as solid and ghost", act: () => stage.press("old") },
+  { keys: ["c"], shown: "C", about: "exchange solid and ghost of the old and the new design", act: () => stage.press("old") },
   { keys: ["r"], shown: "R", about: "report", act: () => jobs.offer("analyse") },
-  { keys: ["escape"], shown: "Esc", about: "select nothing", act: () => studio.link.set(null) },
+  { keys: ["escape"], shown: "Esc", about: "clear the selection", act: () => studio.link.set(null) },
   { keys: ["?"], shown: "?", about: "these keys", act: () => help(KEYS) },
 ];
 

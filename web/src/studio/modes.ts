@@ -32,8 +32,8 @@ export class ModeBar {
     private readonly studio: Studio,
     private readonly stage: StageView,
   ) {
-    const energy = this.paints("energy", "strain energy", "links by their share of the mode's strain energy");
-    const stress = this.paints("stress", "stress", "links by their utilisation: under loads, and for jogged strokes");
+    const energy = this.paints("energy", "strain energy", "colour links by their fraction of the strain energy");
+    const stress = this.paints("stress", "stress", "colour links by their stress utilisation, under loads and at jogged strokes");
     const two = h("label", {}, h("input", { type: "checkbox", change: (event: Event) => this.two((event.target as HTMLInputElement).checked) }), "two side by side");
     fill(
       this.root,
@@ -144,17 +144,17 @@ export class ModeBar {
   private tell(): void {
     const mode = this.chosen();
     const parts = mode === null ? [] : Object.entries(mode.strain).slice(0, 4).map(([name, share]) => `${name} ${percent(share, 2).slice(1)}`);
-    const role = mode?.platform ? "platform's mode" : mode?.local ? "local" : "";
+    const role = mode?.platform ? "platform mode" : mode?.local ? "local" : "";
     const other = this.motion(this.studio.other.value);
-    const still = other ? [other.remark, this.most(other)].filter(Boolean).join("; ") : "1 to 9 play a mode, 0 stops; a click at a peak of the response plays its mode.";
-    fill(this.about, mode === null ? still : [role, this.beyond(mode), `platform ${digits(100 * mode.share, 4)} % of kinetic energy`, parts.length ? `strain energy: ${parts.join(", ")}` : ""].filter(Boolean).join("; "));
+    const still = other ? [other.remark, this.most(other)].filter(Boolean).join("; ") : "Keys 1 to 9 play a mode, 0 stops. A click on a peak of the response plays its mode.";
+    fill(this.about, mode === null ? still : [role, this.beyond(mode), `${digits(100 * mode.share, 4)} % of the kinetic energy in the platform`, parts.length ? `strain energy: ${parts.join(", ")}` : ""].filter(Boolean).join("; "));
     this.written();
   }
 
   /** What finite elements say of a mode. */
   private beyond(mode: ModeShape): string {
     const { partner } = this;
-    if (partner) return `finite elements ${digits(partner.frequency)} Hz, theory ${percent(partner.difference, 2) || "0 %"}, assurance ${digits(partner.assurance, 3)}`;
+    if (partner) return `finite elements ${digits(partner.frequency)} Hz, theory ${percent(partner.difference, 2) || "0 %"}, modal assurance ${digits(partner.assurance, 3)}`;
     if (!mode.platform) return "";
     return this.solids.length ? "no paired mode of finite elements" : this.beside.hidden ? "" : this.why;
   }
@@ -165,7 +165,7 @@ export class ModeBar {
     if (!motion.stress || !scene.value) return "";
     const shares = [...singles(motion.stress)].map((share, at) => [share, scene.value!.parts[scene.value!.links[at] ?? -1]?.name ?? ""] as const).filter(([share]) => Number.isFinite(share));
     const [share, name] = shares.reduce((best, each) => (each[0] > best[0] ? each : best), [0, ""] as const);
-    return name ? `stress: most in ${name}, ${digits(100 * share, 3)} % of the limit, ${motion.stressed ?? ""}` : "";
+    return name ? `highest stress in ${name}: ${digits(100 * share, 3)} % of the limit, ${motion.stressed ?? ""}` : "";
   }
 
   private written(): void {

@@ -83,7 +83,7 @@ export class Numbers {
     const [numbers, changed, said] = [state.value?.amounts.length ?? 0, state.value?.changed ?? 0, slopes.value];
     const isOld = said !== null && !this.studio.isPresent(said.revision);
     this.list.classList.toggle("aged", isOld);
-    const meaning = said === null ? "is computed after the results" : said.worst ? `change of the margin of ${said.worst}${isOld ? ", of an earlier text" : ""}` : `unknown: ${said.missing["worst"] ?? ""}`;
+    const meaning = said === null ? "computed after the results" : said.worst ? `change of the margin of ${said.worst}${isOld ? ", of an earlier text" : ""}` : `unknown: ${said.missing["worst"] ?? ""}`;
     this.effect.title = `${EFFECT} of a number: ${meaning}. Click: sort.`;
     this.effect.setAttribute("aria-sort", this.order.value === "worth" ? "descending" : this.order.value === "least" ? "ascending" : "none");
     fill(this.count, `${numbers} numbers${changed ? `, ${changed} changed` : ""}. Effect of 1 %: ${meaning}.`);
@@ -211,7 +211,7 @@ export class Numbers {
     }
     const { low, high } = row.range;
     row.slider.disabled = high <= low || amount.formula !== null;
-    row.slider.title = `${shown(low, amount)} to ${shown(high, amount)}; shift: finer; a click on the name sets this range`;
+    row.slider.title = `${shown(low, amount)} to ${shown(high, amount)}. Shift: finer steps. Click the name to set this range.`;
     for (const [at, each] of row.ends.entries()) if (document.activeElement !== each) each.value = shown(at ? high : low, amount);
     fill(row.formula, amount.formula ? `= ${amount.formula}` : "");
     const isChanged = amount.old !== null && amount.old !== amount.value;
@@ -227,7 +227,7 @@ export class Numbers {
       const slope = worth.get(address);
       const gain = slope?.worst ?? null;
       fill(row.buys, gain === null || Math.abs(gain) < 5e-5 ? "" : percent(gain, 2).replace(" %", ""));
-      row.buys.title = gain === null ? "" : `one per cent more changes the margin of ${said.worst} by ${percent(gain)}`;
+      row.buys.title = gain === null ? "" : `an increase by 1 % changes the margin of ${said.worst} by ${percent(gain)}`;
       row.buys.dataset["gain"] = String(gain ?? 0);
       row.buys.style.setProperty("--share", String(Math.abs(gain ?? 0) < 0.04 * most ? 0 : Math.abs(gain ?? 0) / most));
       row.buys.classList.toggle("minus", (gain ?? 0) < 0);

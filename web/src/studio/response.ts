@@ -151,7 +151,7 @@ export class Responses {
   private name(present: Figures, before: Figures | null): void {
     const names = this.curves.flatMap((each, at) => [h("span", {}, h("i", { className: `curve-${at}` }), `${worded(each)} [${unit(each)}]`)]);
     const absent = present.curves.filter((each) => !this.curves.includes(each));
-    const zero = absent.length ? h("span", { title: "below 1e-8 of the largest curve: rounding noise of the solution" }, `Zero: ${absent.map((each) => spoken(each.output)).join(", ")}`) : null;
+    const zero = absent.length ? h("span", { title: "values below 1e-8 of the largest curve are rounding noise" }, `Zero: ${absent.map((each) => spoken(each.output)).join(", ")}`) : null;
     const old = before && h("span", {}, h("i", { className: "dashed" }), this.studio.against.value || "file");
     fill(this.told, ...names, old, zero);
     this.told.title = this.told.textContent ?? "";

@@ -20,7 +20,7 @@ export class StageView {
   private readonly told = byId("told");
   private readonly units = h("select", { ariaLabel: "Show one unit alone", change: () => this.viewer?.isolate(this.units.value || null) });
   private readonly cut = h("select", { ariaLabel: "Section", change: () => this.section() });
-  private readonly depth = h("input", { type: "range", min: 0, max: 1, step: 0.005, value: "0.5", ariaLabel: "Place of the section", hidden: true, input: () => this.section() });
+  private readonly depth = h("input", { type: "range", min: 0, max: 1, step: 0.005, value: "0.5", ariaLabel: "Position of the section plane", hidden: true, input: () => this.section() });
   private readonly measured = h("output", { id: "measured" });
   private first: Point | null = null;
   private readonly toggles = new Map<string, HTMLButtonElement>();
@@ -90,13 +90,13 @@ export class StageView {
       byId("tools"),
       this.button("fit", "Fit (F)", () => this.fit()),
       ...VIEWS.map((name) => this.button(name, name, () => this.viewer?.look(name))),
-      this.toggle("platform", "see through the platform (G)", (on) => this.viewer?.ghostPlatform(on)),
+      this.toggle("platform", "translucent platform (G)", (on) => this.viewer?.ghostPlatform(on)),
       this.toggle("names", "names (L)", (on) => this.viewer?.showLabels(on), true),
       this.units,
       this.cut,
       this.depth,
-      this.toggle("measure", "distance between two points: click them; corners are caught", (on) => this.measure(on)),
-      this.toggle("old", "the old design solid, the new one as its ghost (C)", (on) => this.swap(on)),
+      this.toggle("measure", "distance between two points: click each point; clicks snap to corners", (on) => this.measure(on)),
+      this.toggle("old", "show the old design as solid, the new design as ghost (C)", (on) => this.swap(on)),
     );
   }
 

@@ -21,8 +21,8 @@ function fact(name: string, value: string): HTMLElement {
 }
 
 const KEYS: readonly [string, string][] = [
-  ["drag, shift drag, wheel", "rotate, move, zoom"], ["1 to 9, 0", "a mode, rest"], ["space", "pause or play"], ["[  ]", "amplitude"], ["F", "all of it"],
-  ["V", "next side"], ["click, again", "pick, next part behind"], ["I", "its unit alone"], ["G", "platform translucent"], ["E, T", "strain energy, stress"],
+  ["drag, shift drag, wheel", "rotate, move, zoom"], ["1 to 9, 0", "play a mode, show at rest"], ["space", "pause or play"], ["[  ]", "amplitude"], ["F", "show all"],
+  ["V", "next side"], ["click, again", "select, select the part behind"], ["I", "only its unit"], ["G", "platform translucent"], ["E, T", "strain energy, stress"],
   ["S", "section"], ["L", "names"],
 ];
 

@@ -4,8 +4,8 @@ import { AMPLITUDES, type Player } from "./player";
 import type { Motion, MotionGroup, StageData } from "./types";
 
 const HEADS: Readonly<Record<MotionGroup, string>> = {
-  mode: "Modes", stroke: "One actuator at a time", axis: "Ideal motions of the platform", deflection: "Under permanent load", drift: "Thermal drift", response: "Over time, in the loop", path: "Along a path",
-  state: "About a state",
+  mode: "Modes", stroke: "One actuator at a time", axis: "Ideal motions of the platform", deflection: "Under permanent load", drift: "Thermal drift", response: "Over time, in the loop", path: "Along a load path",
+  state: "Small motions about a state",
 };
 
 /** What the buttons do; the viewer gives it. */
@@ -22,12 +22,12 @@ export interface Acts {
 
 export type Toggle = "platform" | "names" | "energy" | "stress" | "section" | "unit" | "keys";
 const TOGGLES: readonly [Toggle, string, string][] = [
-  ["platform", "Platform", "Draw the platform translucent, or not (G)"],
+  ["platform", "Platform", "Draw the platform translucent or solid (G)"],
   ["names", "Names", "Names of actuators and gauges (L)"],
-  ["energy", "Energy", "Paint links by their share of the strain energy (E)"],
-  ["stress", "Stress", "Paint links by their utilisation: strokes and loads (T)"],
-  ["section", "Section", "Cut the stage open (S); again: another plane"],
-  ["unit", "Unit", "Show the unit of the picked part alone (I)"],
+  ["energy", "Energy", "Colour links by their fraction of the strain energy (E)"],
+  ["stress", "Stress", "Colour links by their stress utilisation under strokes and loads (T)"],
+  ["section", "Section", "Cut the stage open (S); press again for another plane"],
+  ["unit", "Unit", "Show only the unit of the selected part (I)"],
   ["keys", "?", "List of the keys (?)"],
 ];
 

@@ -165,7 +165,7 @@ export class Player {
     if (this.travels) return this.there;
     if (this.happens) return `exaggerated × ${written(this.exaggeration)}, ideal motions of all bodies`;
     if (this.motion.scaled && !this.route) return `exaggerated × ${written(this.exaggeration)}`;
-    return `shape only: largest motion drawn ${written(1e3 * this.amplitude * this.data.size)} mm`;
+    return `arbitrary amplitude; largest motion drawn as ${written(1e3 * this.amplitude * this.data.size)} mm`;
   }
 }
 

@@ -463,10 +463,10 @@ export class Viewer implements Controller {
   private get meaning(): string {
     const { motion } = this.player;
     if (this.painted !== "stress" || !motion) return "";
-    if (!this.shares) return "stress is known for strokes and loads";
+    if (!this.shares) return "stress is known only for strokes and loads";
     const [most, at] = [...this.shares].reduce<[number, number]>((best, share, link) => (share > best[0] ? [share, link] : best), [0, 0]);
     const name = this.data.parts[this.data.links[at] ?? -1]?.name ?? "";
-    return `stress: from zero to the limit; most in ${name}, ${written(100 * most)} %, ${motion.stressed ?? ""}`;
+    return `colours: stress from zero to the limit; highest in ${name}, ${written(100 * most)} %, ${motion.stressed ?? ""}`;
   }
 
   private opacityOf(kind: Kind, unit: string | undefined, name: string): number {

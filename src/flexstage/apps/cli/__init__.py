@@ -1,7 +1,7 @@
-"""The command line: `flexstage ...`. Translates requests; no physics. Nothing heavy is loaded before a command is called.
+"""The command line `flexstage ...`. It contains no physics, and imports large packages only when a command is called.
 
-`commands` is the table of all commands; their modules are in `apps.commands` and in `commands` of the other packages. A command's module
-imports the common code of commands from `show.command`, and neither another command nor the table.
+The module `commands` lists all commands. They are defined in `apps.commands` and in the modules `commands` of the other packages. A module
+of commands imports common code from `show.command`; it imports neither other commands nor the list.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ def _end(number: int, _frame: object) -> None:
 def run(arguments: Sequence[str]) -> int:
     """Run a command line and return its exit code.
 
-    0 done, 1 requirement missed (`--strict`), 2 bad input or unwritable output, 70 a fault, 128 + n ended by signal n.
+    Exit codes: 0 success, 1 negative result (e.g. a requirement missed with `--strict`), 2 bad input or unwritable output, 70 internal
+    error, 128 + n ended by signal n.
     """
     return run_guarded(lambda: _run(list(arguments)))
 

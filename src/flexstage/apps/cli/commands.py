@@ -1,4 +1,4 @@
-"""The commands by purpose, one line each, and the application that imports the module of a command when it or its help is called."""
+"""The list of commands by purpose, and the application, which imports the module of a command only when it or its help is called."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from flexstage.show.command.models import Models
 class Command(NamedTuple):
     """A command: its `name`, its `group`, one line of `help`, its function or `Typer` as module:name, and an `example`.
 
-    The line of help is the first line of the function's docstring, which is read when the command is called.
+    The line of help equals the first line of the function's docstring, so that the list of commands needs no import of their modules.
     """
 
     name: str
@@ -62,7 +62,7 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage schema > flexstage.schema.json"),
     Command("studio", _DESCRIBE, "Open a stage in the browser, and edit it.", "flexstage.apps.studio.command:studio",
             "flexstage studio stage.toml"),
-    Command("plan", _DESCRIBE, "Draw the dimensioned plan.", f"{_APPS}.describe:plan",
+    Command("plan", _DESCRIBE, "Draw the dimensioned plan of a stage.", f"{_APPS}.describe:plan",
             "flexstage plan stage.toml -o plan.svg"),
     Command("catalogue", _DESCRIBE, "List the shipped materials, actuators and sensors.", f"{_APPS}.describe:catalogue",
             "flexstage catalogue stacks"),
@@ -78,7 +78,7 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage mapping stage.toml --json -"),
     Command("stiffness", _ANALYSE, "Compute compliance and stiffness of the platform.", f"{_APPS}.analyses:stiffness",
             "flexstage stiffness stage.toml --model mapped"),
-    Command("lost-motion", _ANALYSE, "Compute lost motion by part, crosstalk and correction.", f"{_APPS}.analyses:lost_motion",
+    Command("lost-motion", _ANALYSE, "Compute lost motion of each part, crosstalk, correction.", f"{_APPS}.analyses:lost_motion",
             "flexstage lost-motion stage.toml --set vertical/pivot.thickness=0.9mm"),
     Command("modes", _ANALYSE, "Compute natural frequencies, mode names and shapes.", f"{_APPS}.analyses:modes",
             "flexstage modes stage.toml --model mapped --json modes.json"),
@@ -90,7 +90,7 @@ COMMANDS: tuple[Command, ...] = (
             'flexstage buckle stage.toml --scale-load "platform.fz=-100 kN"'),
     Command("misalign", _ANALYSE, "Compute loads of a misaligned, over-constrained stage.", f"{_APPS}.displaced:misalign",
             "flexstage misalign stage.toml --instance B4 --rotation y --steps 3"),
-    Command("workspace", _ANALYSE, "Compute strokes, forces, clearances and safety.", f"{_APPS}.accuracy:workspace",
+    Command("workspace", _ANALYSE, "Compute strokes, forces, clearances and safety factors.", f"{_APPS}.accuracy:workspace",
             "flexstage workspace stage.toml --command x=50um --command rz=244urad"),
     Command("drift", _ANALYSE, "Compute thermal drift of platform, points and gauges.", f"{_APPS}.accuracy:drift",
             "flexstage drift stage.toml --ground none"),
@@ -120,7 +120,7 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage serve stage.toml"),
     Command("design", _IMPROVE, "Design stages for a specification.", f"{_APPS}.design:design",
             "flexstage design spec.toml -o answers"),
-    Command("sweep", _IMPROVE, "Compute many designs of a study.", f"{_STUDIES}.sweep:sweep",
+    Command("sweep", _IMPROVE, "Analyse many designs of a study.", f"{_STUDIES}.sweep:sweep",
             "flexstage sweep study.toml -o results.h5 --report sweep.html"),
     Command("optimise", _IMPROVE, "Find the best design within ranges and limits.", f"{_STUDIES}.optimise:optimise",
             "flexstage optimise study.toml -o better.toml --report optimum.html"),
@@ -186,7 +186,7 @@ class GroupedCommands(TyperGroup):
 
 
 def application(commands: tuple[Command, ...] = COMMANDS) -> TyperGroup:
-    """Build the command line: a group of commands, imported at their first call."""
+    """Build the command line: a group of commands, each imported at its first call."""
     app = typer.Typer(
         cls=GroupedCommands,
         help="Design and proof of flexure-based ultra-precision positioning stages.",

@@ -1,4 +1,4 @@
-"""Help of a command with its options in groups, each option with its default as in all other texts."""
+"""Help of a command with its options in groups; the default value of an option is the last sentence of its help."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from typer.core import TyperCommand
 
 _MOST = 12
-"""Number of options up to which a help has one group."""
+"""Largest number of options in a help without groups."""
 _GROUPS = {
     "Model and operating point": "set model at load fixed temperature fea point load-point order accuracy memory",
     "Controller": "setup controller coordinates bandwidth tune-for quick max-sensitivity force-feedback tracking feedforward compare",
@@ -42,7 +42,7 @@ class GroupedOptionsCommand(TyperCommand):
 
 
 def default_last(text: str) -> str:
-    """Format the help of an option: its default, and the note that it is required, become sentences at the end.
+    """Format the help of an option: the marks of its default and of a required option become sentences at the end.
 
     >>> default_last("Model.  [default: lumped]"), default_last("Design file (TOML).  [required]")
     ('Model. Default: lumped.', 'Design file (TOML). Required.')

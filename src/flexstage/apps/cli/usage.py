@@ -18,7 +18,7 @@ _CONDITIONS = (
     (r"Input should be ((?:greater|less) than .*)", r"must be \1"),
     (r"(?:Value error, )?'.*' is not one of (.*?)\.?", r"must be one of \1"),
 )
-"""Conditions as pydantic and the command line's framework print them, and in the words of messages."""
+"""Conditions in the words of pydantic and of the command-line framework, and in those of flexstage."""
 
 
 def usage_error(error: TyperException, arguments: Sequence[str], examples: Mapping[str, str]) -> DesignError:

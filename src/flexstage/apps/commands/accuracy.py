@@ -47,7 +47,8 @@ Commands: TypeAlias = Annotated[
     text_option(
         "--command",
         "AXIS=VALUE",
-        "Motion of the platform in both directions, e.g. x=50um. Default: the required strokes.",
+        "Platform motion along an axis in both directions, e.g. x=50um for +-50 um. Repeatable. "
+        "Default: the required strokes. Without them, budget uses the single-axis strokes.",
     ),
 ]
 
@@ -59,10 +60,10 @@ def workspace(
     model: ModelName = Model.LUMPED,
     command: Commands = None,
 ) -> CommandResult:
-    """Compute strokes, forces, clearances and safety.
+    """Compute strokes, forces, clearances and safety factors.
 
     Prints strokes, forces, voltages, gauge readings, clearance, kinematic error, stress, buckling and loads. For a force-driven stage:
-    strokes with their limits, current, voltage and heat.
+    strokes and the cause of their limits, current, voltage and heat.
     """
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     if kinematics.thrusts and not kinematics.actuated:
@@ -111,12 +112,17 @@ def drift(
     *,
     ground: Annotated[
         str | None,
-        text_option("--ground", "MATERIAL", "Material of the ground; none: no expansion. Default: the design's, else that of its links."),
+        text_option(
+            "--ground",
+            "MATERIAL",
+            'Material of the ground, or "none" for a ground without expansion. Default: from the design, else the material of its links.',
+        ),
     ] = None,
 ) -> CommandResult:
     """Compute thermal drift of platform, points and gauges.
 
-    Prints drift per kelvin and per kelvin per metre by the lumped model. Significant permanent loads are included.
+    Prints drift per kelvin of uniform temperature and per K/m of temperature gradient, by the lumped model. Significant permanent loads are
+    included.
     """
     stands = command_stage(mechanism, OperatingPointOptions())
     found = drifting.drift(mechanism, stands.links, ground=ground)
@@ -137,7 +143,7 @@ def sensitivities(
 ) -> CommandResult:
     """Compute derivatives with respect to every parameter.
 
-    Prints exact derivatives of frequencies, transmission ratios and lost motion by the lumped model. Force-driven stages have
+    Prints exact derivatives of frequencies, transmission ratios and lost motion by the lumped model; for force-driven stages, of
     frequencies only.
     """
     found = derivatives.sensitivities(mechanism, names(parameters) if parameters else None, modes=count)
@@ -155,20 +161,21 @@ def budget(
     mechanism: Lumped,
     *,
     command: Commands = None,
-    temperature: Annotated[str | None, temperature_option("1 K, if drift is known")] = None,
+    temperature: Annotated[str | None, temperature_option("1 K if the drift is known")] = None,
     point: Point = PLATFORM,
     input_asd: InputDensities = None,
-    band: Annotated[tuple[str, str] | None, band_option("that of response")] = None,
+    band: Annotated[tuple[str, str] | None, band_option("as in flexstage response")] = None,
 ) -> CommandResult:
     """Compute the error budget of each axis in nm and nrad.
 
-    Lost motion, crosstalk, linear map, gauge noise, quantisation and drift, by the lumped model.
+    The contributions are lost motion, crosstalk, error of the linear map, gauge noise, quantisation and drift, by the lumped model.
 
-    Of force-driven stages, in open loop: parasitic motion, gauge noise, quantisation and drift.
+    For force-driven stages in open loop: parasitic motion, gauge noise, quantisation and drift.
 
-    Of a stage without stiffness along its drive: positioning noise in closed loop, as flexstage loop --quick. No option then applies.
+    For a stage without stiffness along its drive: closed-loop positioning noise, as in flexstage loop --quick. Such a stage accepts no
+    option of the budget.
 
-    With --input-asd: noise of the actuators and floor vibration.
+    With --input-asd: also the motion due to actuator noise and floor vibration.
     """
     stands = command_stage(mechanism, OperatingPointOptions())
     if stands.links.floating is not None:
@@ -202,8 +209,9 @@ def _closed_loop(mechanism: Mechanism, options: Any) -> CommandResult:
     from flexstage.control.study.study import loop_study
 
     if options:
-        what = "the drive direction has no stiffness, so the budget is of a closed loop, without options of its own"
-        raise refuse("budget", what, "Omit --command, --temperature, --point, --input-asd and --band, or set up flexstage loop")
+        what = "the drive direction has no stiffness, so the budget is computed for a closed loop, without options"
+        raise refuse("budget", what, "Remove --command, --temperature, --point, --input-asd and --band, or use flexstage loop")
     found = loop_study(mechanism, LoopSetup(controller=ControllerSetup(quick=True)))
-    text = f"No stiffness along the drive: noise in closed loop, with the controller of flexstage loop --quick ({controller_text(found)})."
+    controller = f"the controller of flexstage loop --quick ({controller_text(found)})"
+    text = f"The drive direction has no stiffness. Positioning noise is computed in closed loop, with {controller}."
     return CommandResult(mechanism, lambda: found.noise, lambda: [text, noise_table(found)], model=Model.LUMPED)

@@ -48,14 +48,16 @@ def analyse(  # noqa: PLR0913 (its options)
     json: Json = None,
     csv: Csv = None,
     xlsx: Xlsx = None,
-    mat: Annotated[Path | None, text_option("--mat", "FILE", "MATLAB file: R_a, R_s, K, M, B, C, D, state space.")] = None,
+    mat: Annotated[
+        Path | None, text_option("--mat", "FILE", "MATLAB file with the matrices R_a, R_s, K, M, B, C, D and the state space.")
+    ] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Exit code 1 for a missed requirement.")] = False,
     full: Full = False,
 ) -> None:
     """Analyse a stage: everything at once.
 
-    Prints requirements, strokes, stiffness, modes, lost motion, warnings and the verdict. With --full also kinematics, workspace, drift
-    and error budget. Documents and reports are complete.
+    Prints requirements, strokes, stiffness, modes, lost motion, warnings and the verdict. With --full, also prints kinematics, workspace,
+    drift and error budget. Output files always contain all results.
 
     With --set, also prints key figures before and after the change.
     """

@@ -58,7 +58,7 @@ def mapping(mechanism: Mechanism, *, model: ModelName = Model.IDEAL) -> CommandR
 
     R_a: strokes per platform motion. R_s: gauge readings per platform motion.
 
-    An elastic model adds T, the elastic motion per stroke.
+    With --model mapped or lumped, output files also contain the platform motion per stroke with elasticity included.
     """
     kinematics, linear = ideal(mechanism), read(mechanism, model)
     twist = tuple(f"platform.{name}" for name in COMPONENTS)
@@ -94,7 +94,7 @@ def stiffness(
 
     Prints the 6x6 matrices, stiffness by direction and by DOF, the centre of stiffness, and the mass. Actuators are fixed.
 
-    With --at, --load, --fixed or --temperature: about that operating point, at large displacements and under the stage's weight.
+    With --at, --load, --fixed or --temperature, the model is linearised about that operating point, with large displacements and weight.
     """
     require(
         Finding(f"--at {text}", "the value is missing", f"Use --point {text} for a point") for text in place.at or () if "=" not in text
@@ -136,13 +136,14 @@ def lost_motion(
     model: ElasticModelName = Model.LUMPED,
     place: OperatingPointOptions,
 ) -> CommandResult:
-    """Compute lost motion by part, crosstalk and correction.
+    """Compute lost motion of each part, crosstalk, correction.
 
-    Prints transmission ratio, lost motion by part, parasitic motion, and the gains that correct the lost motion.
+    Prints transmission ratio, lost motion of each part, parasitic motion, and the gains that correct the lost motion.
 
-    With --at, --load, --fixed or --temperature: about that operating point. The ideal motion is that of the undeformed configuration.
+    With --at, --load, --fixed or --temperature, the model is linearised about that operating point. The ideal motion is still computed in
+    the undeformed configuration.
 
-    Of force-driven stages: the force per displacement, compared with the ideal guide.
+    For force-driven stages: force per displacement, compared with the ideal guide.
     """
     there, kinematics = command_stage(mechanism, place, model), ideal(mechanism)
     if kinematics.thrusts and not kinematics.actuated:
@@ -187,13 +188,13 @@ def modes(
 ) -> CommandResult:
     """Compute natural frequencies, mode names and shapes.
 
-    Prints platform modes and local modes, with their shares of kinetic energy and compliance. --view writes an animation.
+    Prints platform modes and local modes, with their fractions of kinetic energy and compliance. --view writes an animation.
 
-    With --at, --load, --fixed or --temperature: about that operating point, at large displacements and under the stage's weight.
+    With --at, --load, --fixed or --temperature, the model is linearised about that operating point, with large displacements and weight.
     """
     ending = None if view is None else _view_ending(view)
     if ending == ".glb" and place:
-        raise refuse("--view", "a GLB file shows the stage as drawn", f"Leave out {place.options}, or write a page (.html)")
+        raise refuse("--view", "a GLB file shows the undeformed stage only", f"Remove {place.options}, or write a page (.html)")
     there = command_stage(mechanism, place, model)
     linear = there.linear
     found = platform_modes(mechanism, linear)
@@ -257,11 +258,11 @@ def response(
 ) -> CommandResult:
     """Compute frequency responses of outputs to inputs.
 
-    Default: from strokes to platform motion and gauges.
+    By default, computes the responses of platform motion and gauge readings to strokes.
 
-    With --input ground: the transmissibility. With --input-asd: also the rms values of the outputs.
+    With --input ground, computes the transmissibility. With --input-asd, also prints the rms values of the outputs.
 
-    With --at, --load, --fixed or --temperature: about that operating point.
+    With --at, --load, --fixed or --temperature, the model is linearised about that operating point.
     """
     there = command_stage(mechanism, place, model)
     linear = there.linear

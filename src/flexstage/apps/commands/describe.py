@@ -90,7 +90,7 @@ def _heading(case: str, summary: str, target: str, stated: Mapping[str, str]) ->
         + "".join(f"Parameter {name} = {value}.\n" for name, value in stated.items())
         + f"flexstage check {target}     flexstage analyse {target} --report report.html\n"
         f"flexstage schema > {Path(target).with_name(SCHEMA_FILE)}     is for editors that check this file during typing.\n"
-        "Every physical value carries a unit. tags say where a value comes from: stated, derived or assumed (untagged), and the source."
+        "Every physical value has a unit. tags mark values as stated or derived, with the source; untagged values are assumed."
     )
 
 
@@ -99,7 +99,7 @@ def check(design: Design, *, changes: Changes = None, json: Json = None) -> None
 
     Prints every error with key, value and hint. Exit code 2 if there is an error.
 
-    Also lists warnings, those of finite elements included, and default values. Neither changes the exit code.
+    Also lists default values, and warnings, including those about finite elements. Neither changes the exit code.
     """
     require_writable([("--json", json)], [design])
     try:
@@ -147,12 +147,12 @@ def schema(
 def plan(
     design: Design,
     *,
-    output: Annotated[Path, output_option("PLAN.SVG", "SVG file to write.")],
+    output: Annotated[Path, output_option("PLAN.SVG", "SVG, PDF or PNG file to write.")],
     changes: Changes = None,
 ) -> None:
-    """Draw the dimensioned plan.
+    """Draw the dimensioned plan of a stage.
 
-    The stage from above with radii, angles, names and sizes in mm, as SVG, PDF or PNG.
+    The plan shows the stage from above, with names, radii, angles, and sizes in mm.
     """
     ending = format_of(str(output))
     mechanism = open_design(design, changes, [("--output", output)])
@@ -170,7 +170,7 @@ def catalogue(
 ) -> None:
     """List the shipped materials, actuators and sensors.
 
-    Each number has its source. In a design file, like = "NAME" starts from an entry.
+    The list contains the source of each number. In a design file, like = "NAME" copies an entry.
     """
     require_writable([("--json", json)])
     known = shipped_catalogue() if section is None else find_section(shipped_catalogue(), section)

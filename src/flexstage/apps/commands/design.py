@@ -43,13 +43,13 @@ def design(
 ) -> CommandResult:
     """Design stages for a specification.
 
-    Bounds exclude impossible pairs of architecture and actuator. The others are optimised within the requirements, corrected for elastic
-    bodies and large displacements. Each answer is a design file with a study.
+    Theoretical bounds exclude impossible pairs of architecture and actuator. The other pairs are optimised within the requirements, with
+    corrections for elastic bodies and large displacements. Each answer is a design file with a study.
 
-    Without an answer the exit code is 1. An interrupted search keeps its results in the folder; --resume continues it.
+    If no answer is found, the exit code is 1. An interrupted search keeps its results in the folder; --resume continues the search.
     """
     if resume and output is None:
-        raise refuse("--resume", "no folder is named", "Name it with --output")
+        raise refuse("--resume", "output folder missing", "Specify the folder of the interrupted search with --output")
     spec = load_specification(specification)
     with progress_bar() as shown:
         found = find_designs(

@@ -53,15 +53,26 @@ from flexstage.spatial.frame import COMPONENTS
 def stroke(
     mechanism: Mechanism,
     *,
-    named: Annotated[str, text_option("--path", "NAME", "Path of the design, [paths.NAME]. Default: the first.")] = "",
-    drive: Annotated[
-        str, text_option("--drive", "NAME", "Driven coordinate, stroke (B1) or force. Default: the first required stroke, or platform.x.")
+    named: Annotated[
+        str,
+        text_option(
+            "--path", "NAME", "Load path [paths.NAME] of the design file. Default: its first one, unless --drive, --from or --to is used."
+        ),
     ] = "",
-    start: Annotated[str, text_option("--from", "VALUE", "First value of the drive. Default: at rest.")] = "",
+    drive: Annotated[
+        str,
+        text_option(
+            "--drive", "NAME", "Driven coordinate, stroke (B1) or force. Default: the axis of the first required stroke, else platform.x."
+        ),
+    ] = "",
+    start: Annotated[str, text_option("--from", "VALUE", "First value of the drive. Default: 0, the static equilibrium.")] = "",
     end: Annotated[
         str,
         text_option(
-            "--to", "VALUE", 'Last value of the drive, e.g. "5 mm". Default: the required stroke, the stroke of a stack, 0.1 mm or 1 mrad.'
+            "--to",
+            "VALUE",
+            'Last value of the drive, e.g. "5 mm". Default: the required stroke. '
+            "Without one, the full stroke of a driven stack, or 0.1 mm (1 mrad) for another coordinate.",
         ),
     ] = "",
     steps: Annotated[int | None, STEPS] = None,
@@ -69,13 +80,14 @@ def stroke(
 ) -> CommandResult:
     """Compute force, stiffness and frequencies over a stroke.
 
-    Includes large displacements, weight and named loads. Every point is an equilibrium with its own frequencies and stiffness.
-    Displacements are relative to the loaded equilibrium position.
+    The model includes large displacements, weight and the loads of --load. Every point is an equilibrium with its own frequencies and
+    stiffness. Displacements are relative to the loaded equilibrium position.
     """
     model = nonlinear(mechanism)
     elsewhere, loads = bool(drive or start or end), loads_of(model, load or ())
     if named and elsewhere:
-        raise refuse(f"--path {named}", "a path states its drive and its ends, and so do --drive, --from or --to", "Leave one of them out")
+        what = "given together with --drive, --from or --to, but the path already defines the drive and its ends"
+        raise refuse(f"--path {named}", what, "Remove --path, or the other options")
     required = {f"{PLATFORM}.{axis}": value for axis, value in bench_of(mechanism).command.items()}
     stated = named or ("" if elsewhere else _first_path(mechanism))
     asked = (
@@ -94,7 +106,7 @@ def _first_path(mechanism: Mechanism) -> str:
     """The first path of a design, "" without one; prints a note about the others."""
     first, *others = mechanism.paths or ("",)
     if others:
-        announce(f"Path {first}; of the others: {', '.join(f'--path {each}' for each in others)}")
+        announce(f"Load path: {first}. To choose another: {', '.join(f'--path {each}' for each in others)}")
     return first
 
 
@@ -115,7 +127,9 @@ def _asked(
     low = parse(start, quantity, where="--from") if start else 0.0
     high = parse(end, quantity, where="--to") if end else required.get(drive) or _end(model, drive, quantity)
     if low == high:
-        raise refuse("--to", f"{drive} goes from {start or '0'} to {end or start}: a drive that does nothing", "Name two places")
+        raise refuse(
+            "--to", f"first and last value of {drive} are equal (got {start or '0'} and {end or start})", "Use two different values"
+        )
     return DrivePath(drive, np.linspace(low, high, steps), loads, (), 1.0)
 
 
@@ -131,9 +145,9 @@ def _end(model: Nonlinear, drive: str, quantity: Quantity) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Buckling:
-    """The buckling `factor` on a `load`: its `kind`, a single buckling flexure (`link`), and its `shape` by body.
+    """The buckling `factor` on a `load` in the first of the `cases`, which are the requested load cases and stroke ends.
 
-    `cases` are all requested load cases and stroke ends, the first of them this one.
+    `kind` is the kind of instability, `link` the name of a flexure that buckles individually, and `shape` the motion of each body.
     """
 
     load: str
@@ -143,7 +157,7 @@ class Buckling:
     shape: Matrix
     cases: tuple[CaseFactor, ...]
     beyond: Matrix | None = None
-    """Equilibria of the post-buckling path, one row for each point, along the factor."""
+    """Equilibria of the post-buckling path, one row each."""
 
 
 @command("report")
@@ -155,22 +169,24 @@ def buckle(
         text_option(
             "--scale-load",
             "NAME=VALUE",
-            'Load that grows, e.g. "platform.fx=-20 N"; several grow in proportion. Repeatable. '
-            "Default: the weight at an operating point, else every load case.",
+            'Load to increase until buckling, e.g. "platform.fx=-20 N". Several loads increase in proportion. Repeatable. '
+            "Default: with an operating point, the weight; otherwise every load case.",
         ),
     ] = None,
     place: OperatingPointOptions,
     post_buckling: Annotated[
         int, typer.Option("--post-buckling", metavar="N", min=0, help="Number of equilibria beyond the lowest critical load.")
     ] = 0,
-    branch: Annotated[BranchSide, typer.Option("--branch", help="Direction of the buckling mode, or the opposite.")] = BranchSide.ALONG,
+    branch: Annotated[
+        BranchSide, typer.Option("--branch", help="Post-buckling branch: along the buckling mode, or against it.")
+    ] = BranchSide.ALONG,
 ) -> CommandResult:
     """Find the load at which the stage buckles.
 
-    Includes large displacements. The result is a limit point, a bifurcation, or an imperfect bifurcation. All other loads are constant,
-    also the weight.
+    The model includes large displacements. The result is a limit point, a bifurcation, or an imperfect bifurcation. All other loads,
+    including the weight, are constant.
 
-    Without --scale-load and operating point: each load case, at rest and at all ends of paths and strokes.
+    Without --scale-load and without an operating point, each load case is computed at rest and at all ends of paths and strokes.
     """
     cases = (_case(mechanism, place, scale_load or ()),) if scale_load or place.at or place.load or place.fixed else load_cases(mechanism)
     found = buckling_factors(mechanism, cases, temperature=place.warmth, demand=asked_factor(mechanism))
@@ -190,10 +206,10 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, p
     """The post-buckling path of the lowest critical case; refused if it requires prescribed coordinates."""
     least = found.least
     if least is None or least.found is None:
-        raise refuse("--post-buckling", "the stage does not buckle", "Leave it out, or name a larger load")
+        raise refuse("--post-buckling", "the stage does not buckle", "Remove --post-buckling, or specify a larger load")
     if least.found.state.held:
-        what = f"the lowest factor is that of {least.load} at {least.place}, with prescribed coordinates"
-        raise refuse("--post-buckling", what, "Leave out --at")
+        what = f"the lowest factor is the one of {least.load} at {least.place}, which has prescribed coordinates"
+        raise refuse("--post-buckling", what, "Remove --at")
     grows = next(case.grows for case, told in zip(cases, found.cases, strict=True) if told is least)
     path = follow(least.found, grows, side=1.0 if branch is BranchSide.ALONG else -1.0, points=points)
     return PostBuckling(path, over_stroke(path))
@@ -215,9 +231,9 @@ def _unanswered(found: CaseFactors) -> Iterator[Finding]:
     """Reasons for a missing result: the stage has no load, or the only requested case has no factor."""
     if not found.cases:
         what = "no weight, no specified forces and no paths with loads"
-        yield Finding("stage", what, 'Name a load: --scale-load "platform.fz=-20 N"')
+        yield Finding("stage", what, 'Specify a load, e.g. --scale-load "platform.fz=-20 N"')
     elif len(found.cases) == 1 and not np.isfinite(found.cases[0].factor) and found.least_bound is None:
-        yield Finding(found.cases[0].load, found.cases[0].why, "Name another load, or another operating point")
+        yield Finding(found.cases[0].load, found.cases[0].why, "Specify another load, or another operating point")
 
 
 @command("report")
@@ -225,16 +241,24 @@ def misalign(
     mechanism: Mechanism,
     *,
     instance: Annotated[
-        str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link to the ground. Default: each.")
+        str, text_option("--instance", "NAME", "Misaligned instance of a unit, or link to the ground. Default: each of them in turn.")
     ] = "",
     rotation: Annotated[
-        str, text_option("--rotation", "AXIS", "Axis of rotation in its own frame: x, y or z. Default: y; without --instance, all.")
+        str,
+        text_option(
+            "--rotation",
+            "AXIS",
+            "Axis of rotation in the frame of the instance or link: x, y or z. Default: y; without --instance, each of the three.",
+        ),
     ] = "",
     translation: Annotated[
         str, text_option("--translation", "AXIS", "Axis of translation, instead of a rotation: x, y or z. Default: none.")
     ] = "",
     amount: Annotated[
-        str, text_option("--amount", "VALUE", 'Amount of misalignment, e.g. "1 mrad" or "10 um". Default: 1 mrad or 0.1 mm.')
+        str,
+        text_option(
+            "--amount", "VALUE", 'Amount of misalignment, e.g. "1 mrad" or "10 um". Default: 1 mrad of rotation, or 0.1 mm of translation.'
+        ),
     ] = "",
     steps: Annotated[int, STEPS] = 11,
 ) -> CommandResult:
@@ -243,17 +267,17 @@ def misalign(
     The fixed end of an instance or link is rotated or translated. Prints loads in all flexures, frequencies over the misalignment,
     and the critical misalignment at which the stage buckles.
 
-    Without --instance: critical misalignment, load and stress of each instance, about all axes or the specified axis.
+    Without --instance, prints critical misalignment, load and stress of each instance, for all axes of rotation or for the specified axis.
     """
     axis = _axis(rotation, translation)
     quantity = ANGLE if axis.startswith("r") else LENGTH
     wanted = parse(amount, quantity, where="--amount") if amount else (1e-3 if quantity is ANGLE else 1e-4)
     if not wanted:
-        raise refuse("--amount", "must not be zero", 'Use for example --amount "1 mrad"')
+        raise refuse("--amount", "must not be zero", 'Use e.g. --amount "1 mrad"')
     if not instance:
         told = misalignments(mechanism, (axis,) if rotation or translation else COMPONENTS[3:], size=wanted)
         if told.worst is None:
-            raise refuse("stage", "no instance of a unit and no link joins the ground", "Add a link to the ground")
+            raise refuse("stage", "no instance of a unit and no link is connected to the ground", "Add a link to the ground")
         return CommandResult(
             mechanism,
             lambda: told,
@@ -268,7 +292,7 @@ def misalign(
 
 def _axis(rotation: str, translation: str) -> str:
     if rotation and translation:
-        raise refuse("--translation", f"given together with --rotation {rotation}", "Leave out --rotation, or --translation")
+        raise refuse("--translation", f"given together with --rotation {rotation}", "Remove --rotation, or --translation")
     option, axis = ("--translation", translation) if translation else ("--rotation", rotation or "y")
     if axis not in COMPONENTS[:3]:
         raise refuse(option, f'must be x, y or z (got "{axis}")', "Use one of them")

@@ -1,1 +1,1 @@
-"""The studio: a stage in a page of this computer's browser. A server on the loopback, the session of a design, computing processes."""
+"""The studio shows a stage in a browser on this computer: a local server, the session of a design, and processes that compute."""

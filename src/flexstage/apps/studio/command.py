@@ -17,13 +17,15 @@ def studio(
     design: Design,
     *,
     port: Port = 0,
-    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Browser window; --no-browser: address only.")] = True,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Opening of a browser window; with --no-browser, only the address is printed.")
+    ] = True,
 ) -> None:
     """Open a stage in the browser, and edit it.
 
     The page is served to this computer only. Its address contains a key. Ctrl+C ends the command.
 
-    A file with errors opens too: the errors are shown at their lines.
+    A file with errors can be opened too; the errors are shown at their lines.
     """
 
     def started(url: str) -> None:

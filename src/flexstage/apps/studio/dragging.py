@@ -10,7 +10,7 @@ from flexstage.models.batch.engine import Plan, plan, platform_modes
 
 
 def drag(text: str, file: str, address: str, value: float) -> tuple[float | None, ...]:
-    """The platform's frequencies [Hz] of the design with a number of that value."""
+    """Return the platform frequencies [Hz] of the design if the number at `address` has this value."""
     found = platform_modes(_plan(text, file, address), np.array([[value]])).frequencies[0]
     return tuple(None if np.isnan(each) else float(each) for each in found)
 

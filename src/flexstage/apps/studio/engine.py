@@ -1,4 +1,4 @@
-"""Tasks of the studio's processes: each is a function of the text, so that a crashed process is restarted."""
+"""Tasks of the studio's processes. Each is a function of the text, so that it can be repeated after a crash of its process."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ TELLING = frozenset({"travelled"})
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of a task: its value, or the problems that refused it; processor time spent [s]."""
+    """Result of a task: its value, or the problems for which it was refused, and the CPU time [s]."""
 
     value: Any
     problems: tuple[Problem, ...]
@@ -64,7 +64,7 @@ def problem(finding: Finding) -> Problem:
 
 def failure(task: str, error: Exception) -> Problem:
     """An error of the program itself."""
-    what = f"flexstage failed, and not because of your design: {type(error).__name__}: {error}"
+    what = f"internal error of flexstage, not caused by your design: {type(error).__name__}: {error}"
     return Problem(task, what, "Save the design, and report it with this message")
 
 

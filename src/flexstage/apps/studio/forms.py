@@ -16,7 +16,7 @@ _OWN = ("--help", "--stage", "--report", "--json", "--csv", "--xlsx")
 
 
 def form(command: str) -> Mapping[str, Any]:
-    """The JSON Schema of a command's file: of its study or set-up; without one, of its options."""
+    """Return the JSON Schema of the study or set-up file of a command, or of its options if the command has no such file."""
     if command == "loop":
         from flexstage.control.study.file import setup_schema  # takes long to import
 
@@ -60,7 +60,7 @@ def _property(option: Any, names: str, meaning: str) -> dict[str, Any]:
 def specify(number: int, text: str, file: str, values: str) -> Specified:
     """Read the text of a specification and return it with its values and errors.
 
-    An empty text is the example. `values` (TOML) replace values in it; `file` is its place.
+    An empty text is replaced by the example. `values` (TOML) replace values in the text; `file` is the path of the specification.
     """
     from flexstage.base.finding import DesignError
     from flexstage.mechanism.store.decode import dotted
@@ -124,8 +124,8 @@ def _verdicts(document: Mapping[str, Any]) -> _Rows:
 
 def _ranges(document: Mapping[str, Any]) -> _Rows:
     for each in document["responses"]:
-        yield f"{each['name']}, least", each["min_value"], each["unit"]
-        yield f"{each['name']}, largest", each["max_value"], each["unit"]
+        yield f"smallest {each['name']}", each["min_value"], each["unit"]
+        yield f"largest {each['name']}", each["max_value"], each["unit"]
 
 
 def _optimum(document: Mapping[str, Any]) -> _Rows:
@@ -143,7 +143,7 @@ def _answers(document: Mapping[str, Any]) -> _Rows:
 
 def _differences(document: Mapping[str, Any]) -> _Rows:
     rows = (each for each in document["rows"] if each["group"] == "stage")
-    return ((f"{each['figure']}, theory over finite elements - 1", each["difference"], "1") for each in rows)
+    return ((f"{each['figure']}: relative difference of theory from finite elements", each["difference"], "1") for each in rows)
 
 
 def _modes(document: Mapping[str, Any]) -> _Rows:

@@ -1,4 +1,4 @@
-"""A process of the studio's server that runs one task after another, the most urgent first, and is restarted after a crash."""
+"""A process of the studio's server. It runs one task after another, the most urgent first, and is restarted after a crash."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flexstage.apps.studio.engine import Outcome, problem, work
 from flexstage.apps.studio.protocol import Problem
 from flexstage.base.processes.jobs import Heard, Word, Worker
 
-_AGAIN = "The computing process is restarted; try again, and report a second failure"
+_AGAIN = "The process is restarted; try again, and report a second failure"
 
 
 class Urgency(IntEnum):
@@ -50,7 +50,7 @@ def nobody(_: Any) -> None:
 
 
 class Helper:
-    """One process. `told` is called when it starts a task (its name), has finished (empty), and has crashed (its last message)."""
+    """One process. After a crash, `died` is called with its last message."""
 
     def __init__(self, died: Callable[[str], None]) -> None:
         self._died = died
@@ -66,11 +66,11 @@ class Helper:
 
     @property
     def process(self) -> int | None:
-        """Number of the process, if it runs."""
+        """Identifier of the process (PID), or None if it does not run."""
         return None if self._worker is None else self._worker.process.pid
 
     def busy(self, urgency: Urgency) -> float:
-        """Duration of its present task of that urgency [s]."""
+        """Return the time since the start of the present task [s]; zero if the task has another urgency."""
         return time.monotonic() - self._since if self._now is not None and self._now[0].urgency == urgency else 0.0
 
     async def ask(
@@ -80,9 +80,9 @@ class Helper:
         wanted: Callable[[], bool] = _always,
         heard: Callable[[Any], None] = nobody,
     ) -> Outcome | None:
-        """The result of a task and its arguments, after more urgent ones; nothing if it is no longer `wanted` at its turn.
+        """Run a task with its arguments, after more urgent tasks, and return its outcome.
 
-        `heard` is called with the reports of the task.
+        Returns None if the task is no longer `wanted` when its turn comes. `heard` is called with the reports of the task.
         """
         if self._runner is None:
             self._runner = asyncio.create_task(self._run())
@@ -91,13 +91,13 @@ class Helper:
         return await answer
 
     def start_anew(self) -> None:
-        """Abort its task: the process ends, and is started again for the next task."""
+        """Abort the present task: the process is killed, and started again for the next task."""
         if self._worker is not None and self._now is not None:
             self._given_up = True
             self._worker.process.kill()
 
     async def close(self) -> None:
-        """End it."""
+        """End the process."""
         if self._runner is not None:
             self._runner.cancel()
             with contextlib.suppress(asyncio.CancelledError):
@@ -132,9 +132,9 @@ class Helper:
                 return None
             if not is_new:
                 return await self._do(task)
-            return Outcome(None, (Problem(str(task.call[0]), f"the process that computes it ended: {error}", _AGAIN),), 0.0)
+            return Outcome(None, (Problem(str(task.call[0]), f"the computing process ended: {error}", _AGAIN),), 0.0)
         except OSError as error:
-            return Outcome(None, (Problem(str(task.call[0]), f"the system starts no process for it: {error}", _AGAIN),), 0.0)
+            return Outcome(None, (Problem(str(task.call[0]), f"the system cannot start a computing process: {error}", _AGAIN),), 0.0)
         finally:
             self._now, self._given_up = None, False
 

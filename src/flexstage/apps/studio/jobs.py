@@ -24,14 +24,14 @@ from flexstage.base.storage.store import make_temporary_folder, write
 
 _WRITING = ("--report", "--json", "--csv", "--mat", "--output", "-o", "--export", "--xlsx", "--hardware", "--example")
 _STUDIES, _DESIGN = ("sweep", "optimise"), "design"
-_ENDS = {"optimise": "done; the optimum is pinned among the figures"}
+_ENDS = {"optimise": "done; the optimum is pinned in the comparison of figures"}
 _LINES = 12
 """Number of stored last output lines of a job."""
 _PATIENCE = 3.0
 """Time limit for the cleanup of an ended job [s]."""
 _MOST = 50
 _LONGEST = 2**20
-"""Stored characters of a line of output: the design of an answer is one."""
+"""Largest number of stored characters of a line of output; the design of an answer is one line."""
 
 
 @dataclass
@@ -59,12 +59,12 @@ class _Job:
 
 
 class Jobs:
-    """All jobs of a session on the design in a file; `tell` receives their states, `optimum` the text of a better design."""
+    """All jobs of a session. `tell` receives their states, `optimum` receives the text of a better design."""
 
     def __init__(self, path: Path, tell: Callable[[say.Said], None], optimum: Callable[[str], None]) -> None:
         self.path, self._tell, self._optimum = path, tell, optimum
         self.program: tuple[str, ...] = ("-P", "-m", "flexstage")
-        """Arguments of Python, before the command and its arguments."""
+        """Arguments of the Python interpreter that precede the command."""
         self._jobs: dict[int, _Job] = {}
         self._folder: Path | None = None
         self._turn = asyncio.Lock()
@@ -73,7 +73,7 @@ class Jobs:
         """Reports by their names."""
 
     def start(self, request: say.Run, text: str) -> int:
-        """Start a job on a text; refused if its command or options are not allowed. Returns its number."""
+        """Start a job on a text and return its number. Refused if the command or an option is not allowed."""
         running = [each for each in self._jobs.values() if each.state.state in ("waits", "runs")]
         if len(running) >= _MOST:
             raise refuse(request.command, f"{_MOST} jobs are waiting", "Cancel some of them")
@@ -85,9 +85,9 @@ class Jobs:
             raise refuse(request.command, "record not found", "Name a file, relative to the folder of the design")
         for option in request.options:
             if "\0" in option:
-                raise refuse(request.command, "an option has a null character", "Leave it out")
+                raise refuse(request.command, "an option has a null character", "Remove the option")
             if option.partition("=")[0] in _WRITING:
-                raise refuse(request.command, f"the studio sets {option}", "Leave it out")
+                raise refuse(request.command, f"the studio sets {option}", "Remove this option")
         number = len(self._jobs) + 1
         job = _Job(
             number, request, self.path, text, say.JobState(number, request.command, "waits", "waits for its turn", None, None, (), None)
@@ -105,17 +105,17 @@ class Jobs:
         return False
 
     def answer(self, number: int | None, pair: str) -> str:
-        """The design of a pair of a job; refused for an unknown one."""
+        """Return the design that a job found for a pair; refused for an unknown job or pair."""
         job = self._jobs.get(number or 0)
         if job is None or pair not in job.designs:
-            raise refuse(pair, "unknown answer", "Choose one of a design job")
+            raise refuse(pair, "unknown answer", "Choose an answer of a design job")
         return job.designs[pair]
 
     def cancel(self, number: int) -> None:
         """End a job; refused for an unknown number."""
         job = self._jobs.get(number)
         if job is None:
-            raise refuse(f"job {number}", "unknown job", "Choose one of the list")
+            raise refuse(f"job {number}", "unknown job", "Choose a job of the list")
         if job.state.state in ("waits", "runs"):
             job.state = replace(job.state, state="cancelled", text="cancelled")
             if job.process is not None:
@@ -146,7 +146,7 @@ class Jobs:
             except DesignError as error:
                 self._set(job, replace(job.state, state="failed", text=str(error)))
             except OSError as error:
-                self._set(job, replace(job.state, state="failed", text=f"the system starts no process for it: {error}"))
+                self._set(job, replace(job.state, state="failed", text=f"the system cannot start a process: {error}"))
             finally:
                 self._remove(job)
 
@@ -271,7 +271,7 @@ def _study(text: str, design: Path, name: str) -> str:
     try:
         document = tomlkit.parse(text)
     except TOMLKitError as error:
-        raise refuse("study", f"this is not TOML: {error}", "Correct that line") from None
+        raise refuse("study", f"not valid TOML: {error}", "Correct that line") from None
     document["design"] = design.name
     document.setdefault("name", name)
     return tomlkit.dumps(document)

@@ -1,9 +1,9 @@
 """All messages between the studio's page and its server, one class each; `python -m tools.protocol` writes them for TypeScript.
 
 A message is a JSON object whose `kind` is the class's name in small letters. The page sends requests, each with a unique `id`; the
-answer contains it as `to`. Every request has an answer (`Done` without a result, `Refusal` if it is refused), in the order of
-the requests except for `Drag` and `Pose`. Of these the newest is answered, and older ones are `Done`. Everything else is pushed to all
-pages when it changes. Numbers are in SI units, null if unknown.
+answer contains it as `to`. Every request is answered: by `Done` if it has no result, and by `Refusal` if it is refused. Answers have the
+sequence of the requests, except for `Drag` and `Pose`: there only the newest request gets a result, and older ones get `Done`. All other
+messages are pushed to all pages when their contents change. Numbers are in SI units, null if unknown.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ VERSION = 6
 
 @dataclass(frozen=True)
 class Problem:
-    """A finding: its object or address, problem, advice; line and column from 1 if the text shows them."""
+    """A finding: its object or address, the problem and the advice; line and column count from 1, null if unknown."""
 
     where: str
     what: str
@@ -30,10 +30,10 @@ class Problem:
 
 @dataclass(frozen=True)
 class Amount:
-    """A number of the stage: `value` in `si`, `text` as in the file, `factor` the value of one `unit` in SI.
+    """A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. One display `unit` equals `factor` in SI.
 
-    `low` and `high` bound its slider, within the bounds of the number. `formula` is its definition. `old` is its value in the file on
-    disk. `group` is its table in the file, and `line` its line, or that of the table.
+    `low` and `high` are the ends of its slider, within the bounds of the number. `formula` is its definition. `old` is its value in the
+    file on disk. `group` is its table in the file; `line` is its line, or the line of the table.
     """
 
     address: str
@@ -54,7 +54,7 @@ class Amount:
 
 @dataclass(frozen=True)
 class Channel:
-    """An actuator, an axis of the platform or a gauge: its SI unit, its display unit (`factor` SI each), and its ends if known."""
+    """An actuator, an axis of the platform or a gauge, with the ends of its range if known. One display `unit` equals `factor` in `si`."""
 
     name: str
     si: str
@@ -66,7 +66,7 @@ class Channel:
 
 @dataclass(frozen=True)
 class Figure:
-    """A result: its `name` as in requirements, its group, its value in `si`, and the `old` one of the file on disk."""
+    """A result: its `name` as in requirements, its group, its value in `si`, and the `old` value of the file on disk."""
 
     name: str
     group: str
@@ -79,7 +79,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Matrix:
-    """A matrix with names on both axes, one unit for all or one for each entry."""
+    """A matrix with names of rows and columns. `unit` is one unit for all entries, or one for each entry."""
 
     rows: tuple[str, ...]
     columns: tuple[str, ...]
@@ -97,9 +97,10 @@ class Floats:
 
 @dataclass(frozen=True)
 class ModeShape:
-    """A mode: the platform's `twist` (x y z rx ry rz, m and rad) of the mass-normalised shape, `share` of kinetic energy in the platform.
+    """A mode: the platform's `twist` (x y z rx ry rz, m and rad) in the mass-normalised shape, and its `share` of the kinetic energy.
 
-    `kinetic` shares by body and `strain` shares by link, at least one per cent, largest first. `local`: a mode of other bodies.
+    `kinetic` contains the energy fraction of each body, `strain` that of each link, from one per cent, the largest first. A `local` mode
+    moves mainly other bodies.
     """
 
     number: int
@@ -115,10 +116,10 @@ class ModeShape:
 
 @dataclass(frozen=True)
 class SolidMode:
-    """A mode of the platform by finite elements, `error` the relative one estimated of its frequency, `motion` its name in a viewer.
+    """A platform mode by finite elements: `error` is the estimated relative error of its frequency, `motion` the data for a viewer.
 
-    `theory` is the number of the paired mode of theory, absent without one. Further fields are its `theory_frequency` [Hz],
-    its relative difference from that of finite elements, and the modal assurance of the two.
+    `theory` is the number of the paired mode of theory, null without one. `theory_frequency` [Hz] is the frequency of this mode,
+    `difference` its relative difference from finite elements, and `assurance` the modal assurance criterion of the pair.
     """
 
     number: int
@@ -145,7 +146,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Loss:
-    """Lost motion of an actuator: its gain (1 is ideal), its loss, and the shares by link, which add up to the loss."""
+    """Lost motion of an actuator: its transmission ratio `gain` (1 is ideal), its `loss`, and the contribution of each link to the loss."""
 
     actuator: str
     gain: float
@@ -155,7 +156,7 @@ class Loss:
 
 @dataclass(frozen=True)
 class Judgement:
-    """A requirement: its key and text, limit and value in `si`, margin (0.1 is 10 % to spare), or the reason why it is unknown."""
+    """A requirement: its key and text, its limit and value in `si`, its margin (0.1: 10 %), and the `reason` if the value is unknown."""
 
     key: str
     text: str
@@ -184,7 +185,7 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Slope:
-    """Sensitivity to a number: change of each figure per unit of the number, and of the worst requirement's margin by one per cent."""
+    """Sensitivity to a number: derivatives of figures, and the change of the lowest margin (`worst`) if the number increases by 1 %."""
 
     address: str
     si: str
@@ -195,7 +196,7 @@ class Slope:
 
 @dataclass(frozen=True)
 class Clash:
-    """Two separate bodies that touch, or a gap between them: the `distance` [m] is negative for an overlap."""
+    """Two separate bodies, and the `distance` [m] between them, which is negative for an overlap."""
 
     first: str
     second: str
@@ -205,9 +206,10 @@ class Clash:
 
 @dataclass(frozen=True)
 class Screw:
-    """A motion: the platform's twist (unit length), its axis through `point`, pitch [m/rad], null for a pure translation.
+    """A motion of the platform as a screw: its twist, and its axis in a unit `direction` through `point`.
 
-    `links` are those that deform in a free motion, or that constrain a locked one: by strain energy, largest share first, if known.
+    `pitch` [m/rad] is null for a pure translation. `links` deform in a free motion; in a locked motion, they are the links that constrain
+    it, the one with the most strain energy first.
     """
 
     name: str
@@ -220,7 +222,7 @@ class Screw:
 
 @dataclass(frozen=True)
 class Snippet:
-    """A snippet of the palette: `text` is TOML with `{name}` for a field's text; fields by name with their initial texts."""
+    """A snippet of the palette: `text` is TOML with `{name}` in place of each field; `fields` contains their initial values by name."""
 
     name: str
     group: str
@@ -231,7 +233,7 @@ class Snippet:
 
 @dataclass(frozen=True)
 class PairRow:
-    """A pair of a design job: its goal, or the reason of its failure; `file` is a name for its design, empty without an answer."""
+    """A pair of a design job: its goal, or the reason for its failure. `file` is a name for its design, empty without an answer."""
 
     architecture: str
     actuator: str
@@ -242,7 +244,7 @@ class PairRow:
 
 @dataclass(frozen=True)
 class ResultTable:
-    """A table of a result as text: its heads are the first row."""
+    """A table of a result as text: the first row contains the column heads."""
 
     title: str
     rows: tuple[tuple[str, ...], ...]
@@ -251,9 +253,10 @@ class ResultTable:
 
 @dataclass(frozen=True)
 class JobState:
-    """A job: its state, fraction done and estimated seconds left, its output, its report's address if any, its key figures.
+    """A job: its state, the completed `fraction`, the estimated time `left` [s], the last output lines `said`, and its results.
 
-    A design job has its finished `pairs`, and at its end the `tables` of its command.
+    `report` is the address of its report, null without one. A design job has its finished `pairs`, and at its end the `tables` of its
+    command.
     """
 
     job: int
@@ -271,7 +274,7 @@ class JobState:
 
 @dataclass(frozen=True)
 class Draft:
-    """The unsaved text of an ended studio: its last change [s since 1970], and whether the file was changed since."""
+    """The unsaved text of an ended studio: the `time` of its last change [s since 1970]. `stale`: the file has changed since then."""
 
     name: str
     time: float
@@ -280,7 +283,7 @@ class Draft:
 
 @dataclass(frozen=True)
 class Fact:
-    """A line of a card: its name, and its value as text with units."""
+    """A line of a card: its name, and its value as text with the unit."""
 
     name: str
     text: str
@@ -291,7 +294,7 @@ class Fact:
 
 @dataclass(frozen=True)
 class Hello:
-    """The first message of a page: the token out of its address."""
+    """The first message of a page, with the token from its address."""
 
     token: str
     version: int
@@ -299,7 +302,7 @@ class Hello:
 
 @dataclass(frozen=True)
 class Edit:
-    """The text as typed. Refused if another page changed it after `revision`, the last one that this page knows."""
+    """The text as typed. Refused if another page changed the text after `revision`, the last revision that this page knows."""
 
     id: int
     text: str
@@ -308,7 +311,7 @@ class Edit:
 
 @dataclass(frozen=True)
 class Set:
-    """A number, in any unit of its quantity, as a formula or as a change (`+10 %`)."""
+    """Set a number: a value in any unit of its quantity, a formula, or a relative change (`+10 %`)."""
 
     id: int
     address: str
@@ -317,7 +320,7 @@ class Set:
 
 @dataclass(frozen=True)
 class Drag:
-    """A moving slider: answered by `Frequencies`, the text is unchanged."""
+    """Report the value of a moving slider. The answer is `Frequencies`; the text does not change."""
 
     id: int
     address: str
@@ -326,7 +329,7 @@ class Drag:
 
 @dataclass(frozen=True)
 class Rest:
-    """A released slider: the number is written into the text."""
+    """Report the value of a released slider, which is written into the text."""
 
     id: int
     address: str
@@ -335,7 +338,7 @@ class Rest:
 
 @dataclass(frozen=True)
 class Part:
-    """The card of a link (`B1/front`)."""
+    """Request for the card of a link (`B1/front`)."""
 
     id: int
     link: str
@@ -351,7 +354,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Respond:
-    """Choice of the frequency responses; without frequencies, those that show every resonance."""
+    """Choose the frequency responses. Without a band, the frequencies are chosen so that every resonance is visible."""
 
     id: int
     inputs: tuple[str, ...]
@@ -362,14 +365,14 @@ class Respond:
 
 @dataclass(frozen=True)
 class Jog:
-    """The matrices between strokes, platform and gauges."""
+    """Request for the matrices between strokes, platform and gauges."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Pose:
-    """Request for the exact displacement at those strokes (or forces) of the actuators: readings, stress, and exceeded limits."""
+    """Request for the displacement at given strokes or forces of the actuators, with readings, stress, and exceeded limits."""
 
     id: int
     inputs: dict[str, float]
@@ -384,9 +387,9 @@ class Derive:
 
 @dataclass(frozen=True)
 class Travel:
-    """Move the stage along a path at large displacements: `drive` from `start` to `end` (texts with units) under `loads`, NAME=VALUE.
+    """Move the stage along a load path at large displacements: `drive` from `start` to `end` (with units) under `loads` (NAME=VALUE).
 
-    `path` names a path of the design, whose drive, ends, points and loads then apply.
+    If `path` names a load path of the design, its drive, ends, points and loads are used instead.
     """
 
     id: int
@@ -400,7 +403,7 @@ class Travel:
 
 @dataclass(frozen=True)
 class Halt:
-    """Abort the running path."""
+    """Abort the computation of the load path."""
 
     id: int
 
@@ -414,7 +417,7 @@ class Free:
 
 @dataclass(frozen=True)
 class Gaps:
-    """Request for clashes and gaps."""
+    """Request for overlaps and gaps between bodies."""
 
     id: int
 
@@ -428,7 +431,7 @@ class Solid:
 
 @dataclass(frozen=True)
 class Pin:
-    """Store the present design under a name (A, B, C); with `keep` false, remove it."""
+    """Store the present design under a name (A, B, C). If `keep` is false, remove the design of that name."""
 
     id: int
     name: str
@@ -444,7 +447,7 @@ class Compare:
 
 @dataclass(frozen=True)
 class Recall:
-    """Make the text of a pinned design the present one; the empty name is the file's own."""
+    """Make the text of a pinned design the present text. The empty name is the text of the file."""
 
     id: int
     name: str
@@ -485,9 +488,9 @@ class Browse:
 
 @dataclass(frozen=True)
 class Open:
-    """Open a file of the folder, written first from a shipped `case` or from the answer for a `pair` of a `job` if named.
+    """Open a file of the folder. If a shipped `case`, or a `pair` of a design `job`, is named, the file is first written from it.
 
-    Refused with unsaved changes, unless `discard`.
+    Refused if there are unsaved changes, unless `discard`.
     """
 
     id: int
@@ -500,14 +503,14 @@ class Open:
 
 @dataclass(frozen=True)
 class Reload:
-    """Read the text from disk; the present one remains in undo."""
+    """Read the text from disk. The present text remains in undo."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Recover:
-    """Read the unsaved text of an ended studio in `State.drafts`; without `keep` it is discarded."""
+    """Restore an unsaved text of an ended studio from `State.drafts`. If `keep` is false, discard the text."""
 
     id: int
     draft: str
@@ -532,9 +535,9 @@ class Insert:
 
 @dataclass(frozen=True)
 class Look:
-    """Panes of a page: only these are computed after a change, the others when they are shown.
+    """Report the panes that a page shows. Only these are computed after a change; the others are computed when they are shown.
 
-    `stage`: the picture; `motions`: its motions; `reach`: strokes and strength.
+    `stage` is the picture, `motions` are its motions, `reach` contains strokes and strength.
     """
 
     id: int
@@ -551,9 +554,9 @@ class JobForm:
 
 @dataclass(frozen=True)
 class Specify:
-    """Check a specification: a `text`, with the `values` of its form if there are any, as TOML.
+    """Check a specification: a `text`, in which the `values` of the form (TOML) replace values, if there are any.
 
-    An empty text is that of a `file` of the folder if named, or else the last one, at first an example.
+    An empty text is replaced by the text of `file`, a file of the folder; without a file, by the last text, or at first by an example.
     """
 
     id: int
@@ -574,7 +577,7 @@ class SaveSpecification:
 
 @dataclass(frozen=True)
 class Run:
-    """Start a command as a job; `study` is the text of its study, set-up or specification if it needs one, `record` a file's path."""
+    """Start a command as a job. `study` is the text of its study, set-up or specification; `record` is the path of a record file."""
 
     id: int
     command: Literal["analyse", "sweep", "optimise", "verify", "identify", "loop", "design"]
@@ -596,7 +599,7 @@ class Cancel:
 
 @dataclass(frozen=True)
 class Welcome:
-    """The page is admitted."""
+    """The page was admitted."""
 
     version: int
     flexstage: str
@@ -606,12 +609,12 @@ class Welcome:
 
 @dataclass(frozen=True)
 class State:
-    """The text and its contents; pushed at every change. `digest` belongs to the file on disk.
+    """The text and its contents, pushed at every change. `digest` is the digest of the file on disk.
 
-    `sound`: the design has no error, otherwise `problems` lists the errors. If the text has errors, numbers and figures belong to the
-    last text without errors. `changed` counts numbers that differ from the file's, `warnings` are the last reported ones, `page` is the
-    one whose request made the change (0: the server), `pins` the pinned designs. `links` belong to the expanded stage, with the line of
-    each. `unprotected` is the reason why unsaved changes would be lost with the server, `drafts` list those of earlier servers.
+    `sound`: the design has no error; otherwise, `problems` lists the errors, and numbers belong to the last text without errors. `changed`
+    is the number of values that differ from the file. `page` made the change (0: the server). `pins` are the names of the pinned designs.
+    `links` contains the line of each link of the expanded stage. `unprotected` is the reason why unsaved changes would be lost if the
+    server ended. `drafts` lists unsaved changes of earlier servers.
     """
 
     revision: int
@@ -642,7 +645,7 @@ class State:
 
 @dataclass(frozen=True)
 class Engine:
-    """Task of the computing process, and its expected duration [s]; `ended` after a crash and restart."""
+    """State of the computing process, its task `text`, and the expected duration [s]. `ended`: the process crashed and was restarted."""
 
     state: Literal["starts", "ready", "computes", "ended"]
     text: str
@@ -651,7 +654,7 @@ class Engine:
 
 @dataclass(frozen=True)
 class Scene:
-    """The geometry of a revision for the viewer; without motions if no page shows them."""
+    """The geometry of a revision for the viewer. It has no motions if no page shows them."""
 
     revision: int
     data: Any
@@ -659,7 +662,7 @@ class Scene:
 
 @dataclass(frozen=True)
 class Frequencies:
-    """The platform's frequencies [Hz] for a moving slider. Null: none."""
+    """The platform frequencies [Hz] for a moving slider, null where unknown."""
 
     to: int
     address: str
@@ -670,9 +673,9 @@ class Frequencies:
 
 @dataclass(frozen=True)
 class Figures:
-    """Results of a revision: missing ones have a reason by name. `frequency` (f,) is the common axis of all curves.
+    """Results of a revision. `missing` contains the reason for each missing result. `frequency` (f,) is the frequency axis of all curves.
 
-    `loading` describes a significant effect of the permanent load: stiffness, modes and curves are then those of the loaded stage.
+    `loading` describes the effect of a significant permanent load; stiffness, modes and curves then belong to the loaded stage.
     """
 
     revision: int
@@ -699,7 +702,7 @@ class Verdicts:
 
 @dataclass(frozen=True)
 class Reach:
-    """Strokes, safety and use of actuators and gauges of a revision."""
+    """Platform strokes of a revision, and safety factors of its flexures against stress and buckling."""
 
     revision: int
     figures: tuple[Figure, ...]
@@ -710,7 +713,7 @@ class Reach:
 
 @dataclass(frozen=True)
 class Warnings:
-    """Warnings and default values of a revision; the last message about it."""
+    """Warnings and default values of a revision. This is the last message about the revision."""
 
     revision: int
     warnings: tuple[Problem, ...]
@@ -718,11 +721,11 @@ class Warnings:
 
 @dataclass(frozen=True)
 class Card:
-    """A link: its part, its lines of the text, 6x6 about its centre in its own frame, its stress and lost motion.
+    """A link: its part, its lines in the text, its 6x6 matrices about its centre in its own frame, its stress and its lost motion.
 
-    `stress` [Pa] is the peak over all strokes, `limit` the allowable one, `share` its share of every actuator's lost motion. `facts` are
-    further properties as text; `problems` are missing comparisons of beam theory with elasticity. `verified` compares with stored finite
-    elements.
+    `stress` [Pa] is the peak over all strokes, `limit` the allowable stress. `shares` contains its contribution to the lost motion of each
+    actuator. `facts` are further properties as text. `problems` are warnings about the part, e.g. outside the validated range of beam
+    theory. `verified` compares the link with stored results of finite elements.
     """
 
     to: int
@@ -747,7 +750,7 @@ class Card:
 
 @dataclass(frozen=True)
 class Place:
-    """Entries at a line: links (one or several), and the addresses of the numbers there."""
+    """Entries at a line: its links and bodies, and the addresses of its numbers."""
 
     to: int
     line: int
@@ -758,10 +761,11 @@ class Place:
 
 @dataclass(frozen=True)
 class Motion:
-    """Linear maps of a revision, elastic: `platform` is the platform's twist per unit input, `inputs` its (pseudo-)inverse.
+    """Linear maps of a revision, with elasticity: `platform` is the platform twist per unit input, `inputs` the inputs per unit twist.
 
-    `gauges` are readings per input, `ideal` the twist without elasticity. `stress` (links x inputs) [Pa per unit input]: the sum of
-    magnitudes over all inputs bounds a link's stress from above, with `rest` at no stroke; `allowed` its limit.
+    `gauges` contains the readings per input, `ideal` the twist per input without elasticity. `stress` (links x inputs) is in Pa per unit
+    input: `rest`, the stress without strokes, plus the sum of magnitudes over all inputs is an upper bound of the stress of a link.
+    `allowed` contains the allowable stresses.
     """
 
     to: int
@@ -778,7 +782,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Posed:
-    """The stage at some strokes: twist, readings, stress of each link, and exceeded limits, as text by the name of their cause."""
+    """The stage at given strokes: platform twist, readings, and stress of each link. `beyond` describes exceeded limits by name."""
 
     to: int
     twist: tuple[float, ...]
@@ -789,7 +793,7 @@ class Posed:
 
 @dataclass(frozen=True)
 class Slopes:
-    """Sensitivities, sorted by their effect on the worst requirement, `worst`."""
+    """Sensitivities, sorted by their effect on `worst`, the requirement with the lowest margin."""
 
     to: int
     revision: int
@@ -800,7 +804,7 @@ class Slopes:
 
 @dataclass(frozen=True)
 class Underway:
-    """Progress of a path from a `request` of a page: the completed fraction, and a text."""
+    """Progress of a load path that a page requested by `request`: the completed fraction, and a text."""
 
     request: int
     fraction: float
@@ -809,7 +813,7 @@ class Underway:
 
 @dataclass(frozen=True)
 class Travelled:
-    """A path of a revision: `motions` are the viewer's, the path itself first, then modes at its last stable point."""
+    """A load path of a revision. `motions` for the viewer are the path itself, then the modes at its last stable point."""
 
     to: int
     revision: int
@@ -819,7 +823,7 @@ class Travelled:
 
 @dataclass(frozen=True)
 class Freedoms:
-    """Free motions, constraints with the redundant ones, free internal modes, and locked motions."""
+    """Free motions, redundant constraints, free internal modes, locked motions, and locked strokes (`blocked`)."""
 
     to: int
     revision: int
@@ -833,7 +837,7 @@ class Freedoms:
 
 @dataclass(frozen=True)
 class Clearances:
-    """Clashes first, then gaps, smallest first; `problems` are violations of aperture and envelope."""
+    """Overlaps and gaps between bodies, the largest overlap first. `problems` are violations of aperture and envelope."""
 
     to: int
     revision: int
@@ -843,7 +847,7 @@ class Clearances:
 
 @dataclass(frozen=True)
 class SolidModes:
-    """The platform's modes by finite elements; without any, `missing` is the reason."""
+    """Platform modes by finite elements. Without modes, `missing` is the reason."""
 
     to: int
     revision: int
@@ -853,7 +857,7 @@ class SolidModes:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Figures of designs: one row for each figure, one column for each design; null for a missing one."""
+    """Figures of designs: one row for each figure, one column for each design, null for a missing figure."""
 
     to: int
     designs: tuple[str, ...]
@@ -871,7 +875,7 @@ class Snippets:
 
 @dataclass(frozen=True)
 class Folder:
-    """The files of the folder, those of them that are specifications, and the shipped cases with their summaries."""
+    """The design files and specifications of the folder, and the shipped cases with their summaries."""
 
     to: int
     files: tuple[str, ...]
@@ -881,7 +885,7 @@ class Folder:
 
 @dataclass(frozen=True)
 class Blank:
-    """The form of a command: the JSON Schema of its study or set-up, or of its options."""
+    """The form of a command, as the JSON Schema of its study, set-up or options."""
 
     to: int
     command: str
@@ -890,7 +894,7 @@ class Blank:
 
 @dataclass(frozen=True)
 class Specified:
-    """A specification: its text and values, null if it cannot be read, and its errors by address."""
+    """A specification: its text, its values (null if the text cannot be read), and its errors by address."""
 
     to: int
     text: str
@@ -900,14 +904,14 @@ class Specified:
 
 @dataclass(frozen=True)
 class Jobs:
-    """All jobs; pushed at each progress."""
+    """All jobs, pushed after each progress report."""
 
     jobs: tuple[JobState, ...]
 
 
 @dataclass(frozen=True)
 class Done:
-    """A completed request without another answer: the new revision of the text; a new job's number."""
+    """A completed request without a result: the revision of the text, and the number of a new job."""
 
     to: int
     revision: int
@@ -916,7 +920,7 @@ class Done:
 
 @dataclass(frozen=True)
 class Refusal:
-    """A refused request. `stale`: another page or program changed the text or file first."""
+    """A refused request. `stale`: another page or program has changed the text or the file."""
 
     to: int
     problems: tuple[Problem, ...]

@@ -60,7 +60,7 @@ _PLATFORM = tuple(f"platform.{name}" for name in COMPONENTS)
 
 
 def card(text: str, file: str, to: int, name: str) -> Card:
-    """Data of a link."""
+    """Return the card of a link."""
     known = bench(text, file)
     links: Mapping[str, PlacedLink | PlacedSuperelement] = {**known.assembly.links, **known.assembly.superelements}
     if name not in links:
@@ -92,7 +92,7 @@ def card(text: str, file: str, to: int, name: str) -> Card:
         tuple(_facts(link)),
         verified,
         problems_of(told, text, file),
-        attempt.missing | ({} if verified else {"verified": "no stored finite elements: verify the design"}),
+        attempt.missing | ({} if verified else {"verified": "no stored results of finite elements: verify the design"}),
     )
 
 
@@ -103,7 +103,7 @@ def _verified(mechanism: Mechanism, link: PlacedLink) -> tuple[Fact, ...]:
 
 
 def place(text: str, file: str, to: int, line: int) -> Place:
-    """The links, bodies and numbers that a line draws."""
+    """Return the links, bodies and numbers that belong to a line."""
     found, lines = design(text, file), line_numbers(text)
     near = max((row for row in lines.values() if row <= line), default=0)
     heads = [address for address, row in lines.items() if row == near]
@@ -116,14 +116,14 @@ def place(text: str, file: str, to: int, line: int) -> Place:
 
 
 def _drawn_body(mechanism: Mechanism, name: str) -> str:
-    """Address of a body's drawing in the description (`units.vertical.bodies.lever`)."""
+    """Address at which the description defines a body, e.g. `units.vertical.bodies.lever`."""
     copy, _, own = name.rpartition("/")
     copies = unit_of_copy(mechanism)
     return f"units.{copies[copy]}.bodies.{own}" if copy in copies else f"bodies.{name}"
 
 
 def motion(text: str, file: str, to: int, revision: int) -> Motion:
-    """The linear maps between inputs, platform and gauges, with bounds of the stress of every link."""
+    """Compute the linear maps between inputs, platform and gauges, with bounds of the stress of every link."""
     known, attempt = bench(text, file), Attempts()
     model = known.model
     inputs = model.actuators
@@ -144,7 +144,7 @@ def motion(text: str, file: str, to: int, revision: int) -> Motion:
 
 
 def posed(text: str, file: str, to: int, inputs: Mapping[str, float]) -> Posed:
-    """The stage at some strokes and forces, relative to the bias, with exceeded limits."""
+    """Compute the stage at given strokes and forces, which are relative to the bias, with exceeded limits."""
     known = bench(text, file)
     names, gauges = known.model.actuators, tuple(known.assembly.gauges)
     strange = [name for name in inputs if name not in names]
@@ -160,12 +160,12 @@ def posed(text: str, file: str, to: int, inputs: Mapping[str, float]) -> Posed:
     limits = {} if bearing is None else dict(zip(bearing.links, bearing.limits, strict=True))
     for name, value in found.items():
         if value > limits[name]:
-            beyond[name] = f"stress is {format_value(value, 'Pa')}, allowed are {format_value(limits[name], 'Pa')}"
+            beyond[name] = f"stress {format_value(value, 'Pa')} exceeds the allowable {format_value(limits[name], 'Pa')}"
     return Posed(to, tuple(twist.tolist()), dict(zip(gauges, readings.tolist(), strict=True)), found, beyond)
 
 
 def slopes(text: str, file: str, to: int, revision: int) -> Slopes:
-    """Sensitivities: exact derivatives of frequencies and losses, and the effect of one per cent on the worst requirement."""
+    """Compute exact derivatives of frequencies and losses, and the effect of one per cent of each number on the lowest margin."""
     known = bench(text, file)
     found = sensitivities(known.mechanism, modes=12)
     platform = known.modes.platform
@@ -183,7 +183,7 @@ def slopes(text: str, file: str, to: int, revision: int) -> Slopes:
 
 
 def freedoms(text: str, file: str, to: int, revision: int) -> Freedoms:
-    """The platform's free motions as screws, redundant constraints, free internal modes, locked strokes."""
+    """Compute the platform's free and locked motions as screws, redundant constraints, free internal modes and locked strokes."""
     known = bench(text, file)
     found = known.kinematics
     reference = known.assembly.bodies["platform"].reference
@@ -202,7 +202,7 @@ def freedoms(text: str, file: str, to: int, revision: int) -> Freedoms:
 
 
 def clearances(text: str, file: str, to: int, revision: int) -> Clearances:
-    """Clashes and gaps between separate outlines, and violations of aperture and envelope."""
+    """Compute overlaps and gaps between separate outlines, and violations of aperture and envelope."""
     found = design(text, file)
     rows = sorted(gaps(found, _WITHIN), key=lambda each: each.distance)[:_MOST_GAPS]
     told = tuple(Clash(each.first, each.second, each.distance, _gap_text(each.distance)) for each in rows)
@@ -215,7 +215,7 @@ def _gap_text(distance: float) -> str:
 
 def _six(link: PlacedLink | None, what: str) -> Matrix:
     if link is None or not isinstance(link.part, Elastic):
-        raise refuse("link", "no 6x6", "Use the matrices of the stage")
+        raise refuse("link", "has no 6x6 matrix of its own", "Use the matrices of the stage")
     twist, wrench = tuple(COMPONENTS), tuple(FORCES)
     if what == "compliance":
         return matrix(
@@ -228,7 +228,7 @@ def _stress(known: StageResults, name: str) -> tuple[float | None, float | None,
     """Peak stress over all strokes, its limit, and the safety."""
     found = known.stress
     if name not in found.links:
-        raise refuse(name, "stress unknown without a section", "For stacks, use the load limits")
+        raise refuse(name, "stress unknown, because the link has no cross-section", "For stacks, use the load limits")
     index = found.links.index(name)
     return tuple(finite(np.ravel(each)[index]) for each in (found.peak, found.allowed, found.safety))  # type: ignore[return-value]
 
@@ -250,13 +250,13 @@ def _facts(link: PlacedLink | PlacedSuperelement) -> Iterator[Fact]:
 
 
 class Bearing:
-    """Stress of links by the strokes and forces of all inputs, from the bias: wrenches are linear in them, stress is a norm of wrenches."""
+    """Stress of links as a function of all strokes and forces, relative to the bias. Link wrenches are linear in these inputs."""
 
     def __init__(self, known: StageResults) -> None:
         model = known.model
         self._known = sized_links(known.assembly)
         if not self._known:
-            raise refuse("stress", "no link has a section", "Use notches, necks, leaves or rods")
+            raise refuse("stress", "no link has a cross-section", "Use notches, necks, leaves or rods")
         self.links = tuple(self._known)
         self.inputs = model.actuators
         outputs = tuple(f"{link}.{force}" for link in self.links for force in FORCES)
@@ -265,12 +265,12 @@ class Bearing:
         self.limits = tuple(self._limit(name) for name in self.links)
 
     def at(self, values: Array) -> Array:
-        """Peak stress (L,) [Pa] at inputs (m,)."""
+        """Return the peak stress (L,) [Pa] of each link at inputs (m,)."""
         return self._peaks(self._rest + self._gain @ values)
 
     @property
     def per_input(self) -> Labelled:
-        """Peak stress by unit input alone."""
+        """Peak stress under each unit input individually, without bias and permanent loads."""
         values = np.array([self._peaks(column) for column in self._gain.T]).T.reshape(len(self.links), len(self.inputs))
         units = tuple("Pa/m" for _ in self.inputs)
         return Labelled(values, self.links, self.inputs, (units,) * len(self.links))
@@ -324,7 +324,7 @@ def _beyond_strokes(known: StageResults, values: Mapping[str, float]) -> Iterato
     limits = stroke_limits(known.mechanism)
     for name, low, high in zip(limits.actuators, limits.low, limits.high, strict=True):
         if not low <= values[name] <= high:
-            yield name, f"its stroke ends at {format_value(float(low if values[name] < low else high), 'm')}"
+            yield name, f"stroke exceeds its limit {format_value(float(low if values[name] < low else high), 'm')}"
 
 
 def _beyond_gauges(known: StageResults, readings: Mapping[str, float]) -> Iterator[tuple[str, str]]:
@@ -332,7 +332,7 @@ def _beyond_gauges(known: StageResults, readings: Mapping[str, float]) -> Iterat
         gauge = known.assembly.gauges[name]
         half = finite(0.5 * np.asarray(gauge.gauge.range)) or np.inf
         if abs(reading) > half:
-            yield name, f"it reads {format_value(reading, gauge.unit)}, its range ends at {format_value(half, gauge.unit)}"
+            yield name, f"reading {format_value(reading, gauge.unit)} exceeds the range of ±{format_value(half, gauge.unit)}"
 
 
 def _margin_slopes(known: StageResults, worst: Verdict | None, found: Sensitivities) -> dict[str, float | None]:

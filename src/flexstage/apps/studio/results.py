@@ -1,4 +1,4 @@
-"""Results of a design for the studio's panes, one stage at a time: figures, verdicts, workspace, geometry."""
+"""Results of a design for the panes of the studio, one at a time: figures, verdicts, workspace, geometry."""
 
 from __future__ import annotations
 
@@ -73,25 +73,28 @@ Choice = tuple[tuple[str, ...], tuple[str, ...], float | None, float | None]
 
 
 class Timer:
-    """Processor time since its creation [ms]."""
+    """Timer of the CPU time since its creation [ms]."""
 
     def __init__(self) -> None:
         self._start = time.process_time()
 
     @property
     def spent(self) -> float:
-        """Time spent."""
+        """CPU time so far [ms]."""
         return 1e3 * (time.process_time() - self._start)
 
 
 @SESSION.keep(8)
 def bench(text: str, file: str) -> StageResults:
-    """Analysis of a design."""
+    """Return the analysis of a design."""
     return bench_of(design(text, file))
 
 
 def figures(text: str, file: str, stored: str, revision: int, choice: Choice) -> Figures:
-    """Stiffness, modes, responses, lost motion (of the loaded stage if its load is significant); `old` values are of the stored text."""
+    """Compute stiffness, modes, responses and lost motion, of the loaded stage if its permanent load is significant.
+
+    Old values are those of the text `stored` on disk.
+    """
     timer, known, attempt = Timer(), bench(text, file), Attempts()
     stiff = attempt.of("stiffness", lambda: statics(known.felt.model))
     lost = attempt.of("loss", lambda: known.felt.lost)
@@ -114,7 +117,7 @@ def figures(text: str, file: str, stored: str, revision: int, choice: Choice) ->
 
 
 def verdicts(text: str, file: str, stored: str, revision: int) -> Verdicts:
-    """The requirements."""
+    """Compute the verdicts on all requirements."""
     timer, lines = Timer(), line_numbers(text)
     old = {each.requirement.text: each for each in _stored_verdicts(stored, file)} if stored != text else {}
     found = tuple(_judgement(each, old.get(each.requirement.text, each), lines) for each in judged(text, file))
@@ -122,7 +125,7 @@ def verdicts(text: str, file: str, stored: str, revision: int) -> Verdicts:
 
 
 def reach(text: str, file: str, stored: str, revision: int) -> Reach:
-    """Strokes of the platform, and utilisation of hinges and columns."""
+    """Compute the platform strokes, and the safety factors of hinges and columns."""
     timer, (found, missing) = Timer(), _reached(text, file)
     known = bench(text, file)
     strokes = tuple(_held(known) if known.forced else () if found[0] is None else _strokes(found[0]))
@@ -130,14 +133,14 @@ def reach(text: str, file: str, stored: str, revision: int) -> Reach:
 
 
 def errors(text: str, file: str) -> tuple[Problem, ...]:
-    """Findings of a readable description without a model: those of `flexstage check`."""
+    """Return the errors of a readable design for which no model can be built, as `flexstage check` prints them."""
     from flexstage.analysis.caveats import model_findings
 
     return problems_of(model_findings(design(text, file)), text, file)
 
 
 def warnings(text: str, file: str, revision: int) -> Warnings:
-    """Warnings and default values."""
+    """Return the warnings about a design and its default values."""
     return Warnings(revision, _doubts(text, file))
 
 
@@ -150,12 +153,12 @@ def _doubts(text: str, file: str) -> tuple[Problem, ...]:
 
 
 def scene(text: str, file: str) -> Mapping[str, Any]:
-    """Data of a viewer for a design, with its motions."""
+    """Return a design and its motions as data for the viewer."""
     return drawn(text, file).document()
 
 
 def still(text: str, file: str) -> Mapping[str, Any]:
-    """The same without motions."""
+    """Return a design without motions as data for the viewer."""
     return _still(text, file).document()
 
 
@@ -168,7 +171,7 @@ def _still(text: str, file: str) -> StageData:
 
 @SESSION.keep(4)
 def drawn(text: str, file: str) -> StageData:
-    """The stage of a design for a viewer."""
+    """Return the stage of a design, with its motions, for a viewer."""
     from flexstage.show.viewer.data import stage_data
 
     known = bench(text, file)
@@ -179,7 +182,7 @@ def drawn(text: str, file: str) -> StageData:
 
 
 def matrix(found: Labelled) -> Matrix:
-    """A labelled matrix as a message, without rounding noise."""
+    """Convert a labelled matrix to a message, without rounding noise."""
     document = replace(found, values=quiet(found.values)).to_json()
     unit = document["unit"] if isinstance(document["unit"], str) else tuple(map(tuple, document["unit"]))
     return Matrix(tuple(document["rows"]), tuple(document["columns"]), unit, tuple(map(tuple, document["values"])))
@@ -192,7 +195,7 @@ def _loading(known: StageResults) -> str:
 
 @SESSION.keep(8)
 def judged(text: str, file: str) -> tuple[Verdict, ...]:
-    """The verdicts on a design. Raises `DesignError` for a text with errors."""
+    """Return the verdicts on a design. Raises `DesignError` for a text with errors."""
     known = bench(text, file)
     return judge(known.mechanism, known)
 
@@ -235,7 +238,7 @@ def _response(known: StageResults, choice: Choice) -> Response:
     inputs, outputs, low, high = choice
     model = known.felt.model
     if low is not None and high is not None and not 0.0 < low < high < np.sqrt(np.finfo(float).max):
-        raise refuse("response", f"{low:g} Hz to {high:g} Hz is no band", "Use a low frequency above zero and a higher one")
+        raise refuse("response", f"{low:g} Hz to {high:g} Hz is not a band", "Use a low frequency above zero and a higher one")
     grid = None if low is None or high is None else np.geomspace(low, high, _POINTS)
     return response(model, outputs or ("platform",), inputs or (model.actuators or ("ground.z",))[:1], grid)
 
@@ -275,7 +278,7 @@ def _modes(model: LinearModel, found: Modes) -> Iterator[ModeShape]:
 
 
 def strain_shares(model: LinearModel, shapes: Array) -> dict[str, Array]:
-    """Share of the strain energy (k,) of shapes (n, k) in every link."""
+    """Return the fraction (k,) of the strain energy of shapes (n, k) in every link."""
     parts = {
         name: np.einsum("ik,ij,jk->k", each, model.stiffness[name].law, each) for name, each in part_deformation(model, shapes).items()
     }
@@ -284,7 +287,7 @@ def strain_shares(model: LinearModel, shapes: Array) -> dict[str, Array]:
 
 
 def largest(shares: Iterable[tuple[str, float]]) -> dict[str, float]:
-    """Shares of at least one per cent, the largest first."""
+    """Return the fractions of at least one per cent, the largest first."""
     return dict(sorted(((name, share) for name, share in shares if share >= _SHOWN), key=lambda each: -round(each[1], 6)))
 
 
@@ -319,7 +322,7 @@ def _key_results(known: StageResults) -> tuple[tuple[str, Any], ...]:
 
 
 def all_figures(text: str, file: str) -> tuple[KeyFigure, ...]:
-    """All figures for the comparison of designs, requirements first; nothing for a text with errors."""
+    """Return all figures for the comparison of designs, requirements first. Returns none for a text with errors."""
     rows = (
         *requirement_figures(_stored_verdicts(text, file)),
         *_stored_figures("figures", text, file),

@@ -1,4 +1,4 @@
-"""The studio's server: pages and their socket on the loopback, for clients with the token."""
+"""The studio's server of pages and their socket on the loopback address, for clients with the token."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ _REPORT_POLICY = (
 
 
 class Studio:
-    """A server of one design. `url` is the address to open; the token follows #, which browsers do not send."""
+    """A server of one design. `url` is the address to open. Browsers do not send its part after #, which is the token."""
 
     def __init__(self, path: Path, port: int = 0) -> None:
         self.session = Session(Stored.read(path.resolve()), self._tell_all)
@@ -74,18 +74,18 @@ class Studio:
 
     @property
     def url(self) -> str:
-        """Its address with the token."""
+        """Address of the page with the token."""
         return f"http://{HOST}:{self._port}/#{self.token}"
 
     async def start(self) -> None:
-        """Listen, and begin to compute. Raises `DesignError` if the port is in use."""
+        """Listen on the port, and begin to compute. Raises `DesignError` if the port is in use."""
         try:
             with contextlib.suppress(OSError):  # pages of a killed studio use this port
                 self._server = await self._listen(self._last_port) if self._last_port and not self._port else None
             self._server = self._server or await self._listen(self._port)
         except OSError as error:
             what = f"cannot listen on this port: {os.strerror(error.errno) if error.errno else error}"
-            raise refuse(f"--port {self._port}", what, "Choose another one, or leave it out") from None
+            raise refuse(f"--port {self._port}", what, "Choose another port, or remove --port") from None
         self._port = next(iter(self._server.sockets)).getsockname()[1]
         self.session.journal = Journal(self.session.stored.path, self._port, self.token)
         self._start(self.session.open())
@@ -104,7 +104,7 @@ class Studio:
         )
 
     async def stop(self) -> None:
-        """End everything."""
+        """End the server, its pages and the session."""
         for each in tuple(self._work):
             each.cancel()
         if self._server is not None:
@@ -119,11 +119,11 @@ class Studio:
         """The answer to a GET: a file of the table, a report, the socket (none), or a refusal."""
         hosts = {f"{HOST}:{self._port}", f"localhost:{self._port}"}
         if request.headers.get_all("Host") not in [[host] for host in hosts]:
-            return _answer(http.HTTPStatus.FORBIDDEN, "This server accepts its own computer only.\n")
+            return _answer(http.HTTPStatus.FORBIDDEN, "This server accepts requests of its own computer only.\n")
         path = request.path.partition("?")[0]
         if path == "/socket":
             if request.headers.get_all("Origin") not in [[f"http://{host}"] for host in hosts]:
-                return _answer(http.HTTPStatus.FORBIDDEN, "This socket accepts the page of the studio only.\n")
+                return _answer(http.HTTPStatus.FORBIDDEN, "This socket accepts connections of the studio's page only.\n")
             if len(self._pages) >= _PAGES:
                 return _answer(http.HTTPStatus.SERVICE_UNAVAILABLE, f"{_PAGES} windows are open; close one.\n")
             return None
@@ -175,11 +175,11 @@ class Studio:
             first = decode(await asyncio.wait_for(connection.recv(), _PATIENCE))
             if isinstance(first, say.Hello) and secrets.compare_digest(first.token.encode(), self.token.encode()):
                 return True
-            await connection.close(1008, "the token is not the one of this studio")
+            await connection.close(1008, "wrong token")
         except DesignError:
-            await connection.close(1008, "the first message is to be hello with the token")
+            await connection.close(1008, "the first message must be hello with the token")
         except (ConnectionClosed, TimeoutError):
-            await connection.close(1008, "no token came")
+            await connection.close(1008, "no token received")
         return False
 
     def _hear(self, text: str | bytes, page: int, outbox: Outbox) -> None:
@@ -204,7 +204,7 @@ class Studio:
 
 
 class Outbox:
-    """Messages to a page: answers in order, of pushed ones the newest of each kind. A slow page delays no other."""
+    """Messages to a page: answers in sequence, and of pushed messages the newest of each kind. A slow page does not delay other pages."""
 
     def __init__(self) -> None:
         self._waiting: deque[say.Said] = deque()
@@ -254,7 +254,7 @@ def _answer(
 
 
 async def run(path: Path, port: int, started: Any) -> None:
-    """Serve a design until an interruption; `started` is called with the address."""
+    """Serve a design until an interruption. `started` is called with the address."""
     studio = Studio(path, port)
     await studio.start()
     try:

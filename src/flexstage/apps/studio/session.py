@@ -49,11 +49,11 @@ Tell = Callable[[say.Said], None]
 
 
 class RefusedError(Exception):
-    """A refusal by a process, with its problems."""
+    """A task was refused by its process; the argument is the problems."""
 
 
 class Session:
-    """One design for all pages. `tell` sends a message to all of them."""
+    """One open design for all pages. `tell` sends a message to all pages."""
 
     def __init__(self, stored: Stored, tell: Tell) -> None:
         self.stored = stored
@@ -107,12 +107,12 @@ class Session:
 
     @property
     def spent(self) -> float:
-        """Processor time of the computations [s]."""
+        """CPU time of the computations [s]."""
         return sum(each.spent for each in self._helpers)
 
     @property
     def processes(self) -> tuple[int, ...]:
-        """Numbers of the computing processes."""
+        """Identifiers (PID) of the computing processes."""
         return tuple(each.process for each in self._helpers if each.process is not None)
 
     @property
@@ -122,7 +122,7 @@ class Session:
     # --- requests ---
 
     async def answer(self, request: Any, page: int, tell: Tell) -> None:
-        """Answer a request of a page, or refuse it, with `tell`; without a result, report that it is done."""
+        """Answer a request of a page with `tell`: by its result, by a refusal, or by `Done` without a result."""
         try:
             told = await self._answers[type(request)](self, request, page, tell)
         except RefusedError as error:
@@ -146,7 +146,7 @@ class Session:
             text, revision = self.history.text, self.history.revision
             written = await self._task_value(self._quick, "write", text, self._file, request.address, value)
             if self.history.revision != revision:
-                raise refuse(request.address, "the text was changed meanwhile", "Set it again")
+                raise refuse(request.address, "the text was changed in the meantime", "Set the value again")
             self._take(self.history.change(written, page))
 
     async def _insert(self, request: say.Insert, page: int, _: Tell) -> None:
@@ -176,14 +176,14 @@ class Session:
     async def _open(self, request: say.Open, *_: Any) -> None:
         path = self._in_folder(request.file)
         if self.history.text != self.stored.text and not request.discard:
-            raise refuse(self.stored.path.name, "it has unsaved changes", "Save or discard them first")
+            raise refuse(self.stored.path.name, "has unsaved changes", "Save or discard them first")
         if request.case or request.pair:
             text = self.jobs.answer(request.job, request.pair) if request.pair else None
             if path.exists():
                 raise refuse(path.name, "file exists", "Choose another name")
             write(path, text or await self._task_value(self._quick, "shipped", request.case))
         elif not path.is_file():
-            raise refuse(path.name, "file not found", "Choose one of this folder")
+            raise refuse(path.name, "file not found", "Choose a file of this folder")
         self._turn_to(Stored.read(path))
         self.history = History(self.stored.text, revision=self.history.revision + 1)
         self.reading, self.sound, self._warnings = None, "", ()
@@ -231,7 +231,7 @@ class Session:
 
     async def _pin(self, request: say.Pin, *_: Any) -> None:
         if request.keep and request.name not in self.history.pins and len(self.history.pins) >= 12:
-            raise refuse(request.name, "twelve designs are pinned already", "Remove one first")
+            raise refuse(request.name, "twelve designs are pinned already", "Remove a pinned design first")
         self.history = self.history.pin(request.name, keep=request.keep)
         self._protect()
         self._push_state()
@@ -556,7 +556,7 @@ _FIRST: Mapping[str, float] = {"figures": 0.1, "verdicts": 0.05, "reach": 0.1, "
 
 
 def expected(stage: str, links: int, took: Mapping[str, tuple[float, int]]) -> float:
-    """Expected duration of a stage [s]: from the last time, or a small design, with the square of the number of links.
+    """Estimate the duration of a stage [s] from its last duration or that of a small design, scaled with the square of the link count.
 
     >>> expected("figures", 300, {}), expected("figures", 10, {"figures": (2.0, 20)})
     (10.0, 0.5)

@@ -1,4 +1,4 @@
-"""Finite elements compared with theory in the studio, from the cache of a verification: nothing is computed."""
+"""Comparison of theory with finite elements in the studio. Finite-element results are read from the cache of a verification."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from flexstage.solid.results.modes import fea_modes_from_cache
 from flexstage.solid.show.sections import fea_motions
 from flexstage.spatial.frame import COMPONENTS
 
-_ABSENT = "The cache contains no finite elements of this stage: Verify computes them"
+_ABSENT = "The cache contains no finite-element results of this stage: start Verify to compute them"
 _VERIFIED = 0.01
 """Default accuracy of `verify`."""
 
 
 def solid_modes(text: str, file: str, to: int, revision: int) -> SolidModes:
-    """The platform's modes by finite elements with the paired ones of theory."""
+    """Return the platform modes by finite elements, each with the paired mode of theory."""
     known = bench(text, file)
     found = fea_modes_from_cache(known.mechanism, Cache())
     if found is None:
@@ -60,7 +60,7 @@ def _modes(text: str, file: str, found: FeaModes, pairs: dict[int, Pair]) -> Ite
 
 
 def hinge_facts(mechanism: Mechanism, link: PlacedLink) -> tuple[Fact, ...]:
-    """The direct compliances of a link by beam theory over those by finite elements, if `verify` has stored these; else nothing."""
+    """Compare the direct compliances of a link by beam theory with those by finite elements, if `verify` has stored them."""
     try:
         known = {name: each for name, each in distinct_hinges(mechanism).items() if link.drawn in each.links}
         jobs = hinge_jobs(turned_forms(known), accuracy_of(_VERIFIED, None))

@@ -1,4 +1,4 @@
-"""Paths at large displacements of a design in the studio."""
+"""Load paths at large displacements in the studio."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _FOUND = 0.1
 
 
 def travelled(text: str, file: str, revision: int, request: Travel, tell: Callable[[Underway], None]) -> Travelled:
-    """A path of the design in a text, relative to static equilibrium, for the viewer; `tell` receives its progress."""
+    """Compute a load path of a design for the viewer, relative to the static equilibrium. `tell` receives its progress."""
     mechanism = design(text, file)
     model = nonlinear(mechanism)
     wanted = _stated(mechanism, request.path) if request.path else _own(model, request)
@@ -51,7 +51,7 @@ def _stated(mechanism: Mechanism, name: str) -> DrivePath:
 def _own(model: Nonlinear, request: Travel) -> DrivePath:
     """A path defined by the page."""
     if not 2 <= request.points <= _MOST:
-        raise refuse("points", f"must be 2 to {_MOST} points (got {request.points})", "Change the number of points")
+        raise refuse("points", f"number of points must be 2 to {_MOST} (got {request.points})", "Change the number")
     quantity = quantity_of(model, request.drive)
     low, high = (parse(value, quantity, where=where) if value else 0.0 for value, where in ((request.start, "from"), (request.end, "to")))
     return DrivePath(request.drive, np.linspace(low, high, request.points), loads_of(model, request.loads), (), 1.0)

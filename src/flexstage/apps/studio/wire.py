@@ -15,7 +15,7 @@ from typing import Any, Literal, TypeAlias, Union, get_args, get_origin, get_typ
 from flexstage.apps.studio.protocol import Floats, Request, Said
 from flexstage.base.finding import refuse
 
-_ADVICE = "Reload the page: it is of another version than its server"
+_ADVICE = "Reload the page: its version differs from the version of the server"
 _Kinds: TypeAlias = Mapping[str, type]
 _LARGEST = 2**53 - 1
 """The largest integer that is exact in a page and in this server."""
@@ -23,17 +23,17 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 def encode(message: Said | Request) -> str:
-    """The text of a message; numbers that are not finite become null."""
+    """Convert a message to JSON text. Numbers that are not finite become null."""
     return json.dumps({"kind": type(message).__name__.lower(), **_plain(message)}, ensure_ascii=False, allow_nan=False)
 
 
 def decode(text: str | bytes, union: Any = Request) -> Any:
-    """The request in a text, or the server's message (`union`); raises `DesignError` for another text."""
+    """Read a message from a text: a request, or another kind of message in `union`. Raises `DesignError` for any other text."""
     return _read(text, _kinds(union))
 
 
 def floats(values: Any) -> Floats:
-    """An array as a message."""
+    """Convert an array to a message."""
     import numpy as np  # the server does not load numpy
 
     found = np.ascontiguousarray(values, dtype="<f8")
@@ -66,14 +66,14 @@ def _read(text: str | bytes, kinds: _Kinds) -> Any:
     try:
         found = json.loads(text)
     except (ValueError, RecursionError):
-        raise refuse("message", "this is no JSON", _ADVICE) from None
+        raise refuse("message", "not valid JSON", _ADVICE) from None
     return _message(found, kinds)
 
 
 def _message(found: Any, kinds: _Kinds) -> Any:
     kind = kinds.get(str(found.get("kind"))) if isinstance(found, dict) else None
     if kind is None:
-        raise refuse("message", "its kind is not known here", _ADVICE)
+        raise refuse("message", "unknown kind", _ADVICE)
     return _value(kind, {key: item for key, item in found.items() if key != "kind"}, kind.__name__.lower())
 
 
@@ -118,12 +118,12 @@ def _of(kind: type, found: Any, where: str) -> Any:
 def _record(kind: Any, found: Any, where: str) -> Any:
     hints = _hints(kind)
     if not isinstance(found, dict) or found.keys() != hints.keys():
-        raise refuse(where, f"its fields are not {', '.join(hints)}", _ADVICE)
+        raise refuse(where, f"fields must be {', '.join(hints)}", _ADVICE)
     return kind(**{name: _value(hint, found[name], f"{where}.{name}") for name, hint in hints.items()})
 
 
 def _wrong(where: str, found: Any) -> Any:
-    raise refuse(where, f"must be something else (got {_shown(found)})", _ADVICE)
+    raise refuse(where, f"wrong type or value (got {_shown(found)})", _ADVICE)
 
 
 def _shown(found: Any) -> str:

@@ -43,8 +43,8 @@ _MAPPING = "mapping: 0 strokes"
 class CommandResult:
     """The result of a command: `body` of its JSON document, `tables`, and `report` as HTML, each computed on request.
 
-    `mechanism` is the description (`None`: a record only), `model` the theory. `warnings` are about the result. They are listed after the
-    warnings about the description.
+    `mechanism` is the description, or `None` if the command read a record only; `model` is the theory. `warnings` are warnings about the
+    result, listed after those about the description.
     """
 
     mechanism: Mechanism | None
@@ -68,9 +68,9 @@ def command(*files: str) -> Callable[[Callable[_Given, CommandResult | None]], C
     """Make a command from a function that returns a `CommandResult`.
 
     The command writes the requested documents, or prints the tables. A parameter of a dataclass type is replaced by the options among
-    its fields; a `Mechanism` is read from its file. `files` names further options for output files: files that the function writes, and
-    `report`. All outputs are checked before the function is called. If an output is stdout, no tables are printed. A function that
-    returns `None` must write its outputs.
+    its fields; a `Mechanism` is read from its file. `files` names further options for output files, such as `report` and files that the
+    function writes. All outputs are checked before the function is called. If an output is stdout, no tables are printed. A function that
+    returns `None` must write its outputs itself.
     """
 
     def decorate(function: Callable[_Given, CommandResult | None]) -> Callable[_Given, None]:
@@ -164,9 +164,9 @@ def write_workbook(target: Path | None, body: Callable[[], Any], about: Callable
 
 
 def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
-    """List as text the warnings about a description (`None`: a record only), `more` about the result, and default values it depends on.
+    """List as text the warnings about a description, `more` warnings about the result, and the default values that affect the result.
 
-    `kind` is the kind of the result.
+    `kind` is the kind of the result. Without a description (`None`), only the warnings about the result are listed.
     """
     found = Caveats() if mechanism is None else caveats(mechanism)
     for title, findings in (("warning", combine_warnings((*found.warnings, *more))), ("default", found.defaults_of(kind))):
@@ -175,7 +175,7 @@ def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ..
 
 
 def print_missing(missing: Mapping[str, str], *, forced: bool = False) -> None:
-    """Print the missing results and the reasons to stderr, one line for each reason; `forced` for stages driven by forces."""
+    """Print the missing results and the reasons to stderr, one line for each reason. `forced`: the stage is force-driven."""
     for reason in dict.fromkeys(missing.values()):
         names = ", ".join(name.replace("_", " ") for name, each in missing.items() if each == reason)
         text = reason.partition(". ")[0].rstrip(".")
@@ -183,7 +183,7 @@ def print_missing(missing: Mapping[str, str], *, forced: bool = False) -> None:
 
 
 def show(shown: Iterable[Table | str | None]) -> None:
-    """Print tables and lines of text to stdout, separated by empty lines; `None` is left out.
+    """Print tables and lines of text to stdout, separated by empty lines. `None` is ignored.
 
     Tables have the width of the terminal. If the output is not a terminal, they are not folded and have no escape codes.
     """

@@ -1,4 +1,4 @@
-"""Design of a command: check of outputs, reading of the design file, changes by `--set`, model and named points."""
+"""The design file of a command: check of outputs, reading of the file, changes by `--set`, model and named points."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from flexstage.spatial.frame import COMPONENTS
 
 @dataclass(frozen=True)
 class DesignOptions:
-    """Options of a command for its design file and for changed values."""
+    """Design file of a command, and options for changed values."""
 
     design: Design
     changes: Changes = None
@@ -40,7 +40,7 @@ Lumped: TypeAlias = Annotated[Mechanism, "a lumped model may include the flexibi
 
 @dataclass(frozen=True)
 class LumpedOptions(DesignOptions):
-    """Options of a command of the lumped model for its design file."""
+    """Design-file options of a command that uses the lumped model."""
 
     elastic_bodies: ElasticBodies = False
 
@@ -79,7 +79,7 @@ def change(mechanism: Mechanism, changes: Sequence[str]) -> Mechanism:
     for address, text in mechanism.formulas.items():
         if address not in result.formulas:
             numbers = " or ".join(f"numbers.{name}" for name in sorted(parse_expression(text).names))
-            advice = f"; to change all dependent values, set {numbers}" if numbers else ""
+            advice = f". To change all dependent values, set {numbers}" if numbers else ""
             print_note(f'note: the value of {address} replaces its formula "{text}"{advice}')
     return _valid(result, changes) if changes else mechanism
 
@@ -113,7 +113,7 @@ def elastic_model(mechanism: Mechanism, model: Model, *, loaded: bool = False) -
 
 
 def known_point(model: LinearModel, name: str, option: str) -> str:
-    """Return the name if it is a body or point whose twist the model computes; else raise `DesignError` with the nearest names."""
+    """Return the name of a body or point whose twist the model computes. Raises `DesignError` with similar names for any other name."""
     outputs = {channel.name for channel in model.outputs}
     places = {each.rpartition(".")[0] for each in outputs if each.rpartition(".")[2] in COMPONENTS}
     if name not in places:

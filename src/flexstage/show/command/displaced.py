@@ -50,7 +50,7 @@ Temperature: TypeAlias = Annotated[str | None, temperature_option("0 K")]
 
 @dataclass(frozen=True)
 class OperatingPointOptions:
-    """Options of a command for an operating point; true if at least one is in use, else the stage is undeformed."""
+    """Options of a command for an operating point. True if at least one is used; otherwise the stage is in its undeformed configuration."""
 
     at: At = None
     load: Load = None
@@ -70,7 +70,7 @@ class OperatingPointOptions:
         """Names of the fixed coordinates. Raises `DesignError` for a coordinate with a value, and for repeated coordinates."""
         fixed = tuple(name.strip() for name in self.fixed or ())
         require(
-            Finding(f"--fixed {name}", "a fixed coordinate has no value here", f'Use --at "{name}" --fixed {name.partition("=")[0]}')
+            Finding(f"--fixed {name}", "--fixed accepts no value", f'Use --at "{name}" --fixed {name.partition("=")[0]}')
             for name in fixed
             if "=" in name
         )
@@ -103,12 +103,12 @@ class CommandStage:
 
     @property
     def linear(self) -> LinearModel:
-        """Linear model about the operating point, else of the undeformed stage, with the effect of a significant permanent load."""
+        """Linear model about the operating point; without one, of the undeformed stage with the effect of a significant permanent load."""
         return elastic_model(self.mechanism, self.model, loaded=True) if self.operating_point is None else self.operating_point.linear
 
     @property
     def links(self) -> LinearModel:
-        """The linear model with separate links."""
+        """The linear model in which links are separate."""
         if self.operating_point is not None:
             return self.operating_point.links
         loaded = None if self.effect is None else self.effect.links
@@ -138,7 +138,7 @@ def command_stage(mechanism: Mechanism, place: OperatingPointOptions, model: Mod
     if not place:
         return CommandStage(mechanism, model, effect=load_effect(mechanism) if model is Model.LUMPED else None)
     if model is not Model.LUMPED:
-        raise refuse(place.options, f"the {model.value} model has no operating points", "Leave out --model, or the operating point")
+        raise refuse(place.options, f"the {model.value} model has no operating points", f"Remove --model, or {place.options}")
     known = displaced.nonlinear(mechanism)
     there = operating_points.operating_point(
         mechanism, place.brought(known), loads=loads_of(known, place.load or ()), fixed=place.locked, temperature=place.warmth
@@ -147,7 +147,7 @@ def command_stage(mechanism: Mechanism, place: OperatingPointOptions, model: Mod
 
 
 def _operating_point_tables(found: OperatingPoint) -> Iterator[Table]:
-    yield matrix_table("Static deflection under weight, loads and heat", found.sag)
+    yield matrix_table("Static deflection under weight, loads and temperature change", found.sag)
     if found.moved is not None:
         yield matrix_table("Displacement from static equilibrium", found.moved)
     if found.held is not None:

@@ -1,4 +1,4 @@
-"""Exit codes and messages of failures: input errors in one line each, faults of flexstage without a traceback."""
+"""Exit codes and messages of failures: one line for each input error, and no traceback for internal errors of flexstage."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ ENDINGS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasat
 _DISKS = {getattr(errno, name, None) for name in ("ENAMETOOLONG", "EACCES", "EPERM", "ENOTDIR", "ELOOP", "EROFS", "EIO", "ENOSPC")}
 _DEBUG = "FLEXSTAGE_DEBUG"
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-_KEPT = "Kept: finished finite elements (cache), designs of a study (results file) and pairs of a specification (folder); see --resume."
+_KEPT = "Finished finite-element results (cache), designs of a study (results file) and pairs of a search (folder) are kept; see --resume."
 
 
 def run_guarded(action: Callable[[], object]) -> int:
-    """Run an action and return its exit code; messages go to stderr."""
+    """Run an action and return its exit code. Messages are printed to stderr."""
     with streams():
         return _exit_code(action)
 
@@ -50,7 +50,7 @@ def _exit_code(action: Callable[[], object]) -> int:
     except KeyboardInterrupt as interruption:
         return _interrupted(interruption)
     except MemoryError as error:
-        return _bad_input(refuse("memory", f"there is not enough for this: {error}", "Request less at once, or free memory"))
+        return _bad_input(refuse("memory", f"not sufficient: {error}", "Use a smaller model or fewer designs, or free memory"))
     except Exception as error:  # noqa: BLE001 (the last resort: a message instead of a traceback)
         return _fault(error)
     return DONE
@@ -92,17 +92,16 @@ def _bad_input(error: DesignError) -> int:
 
 def _fault(error: Exception) -> int:
     if isinstance(error, OSError) and error.filename and error.errno in _DISKS:
-        return _bad_input(refuse(os.fsdecode(error.filename), f"refused by the system: {error.strerror}", "Name another file or folder"))
+        return _bad_input(refuse(os.fsdecode(error.filename), f"refused by the system: {error.strerror}", "Choose another file or folder"))
     if isinstance(error, FileNotFoundError) and _folder_is_gone():
-        what = "it has been removed"
-        return _bad_input(refuse("the folder this runs in", what, "Change to another folder"))
+        return _bad_input(refuse("current folder", "has been removed", "Change to another folder"))
     if os.environ.get(_DEBUG):
         raise error
-    print_note(f"error: flexstage failed, and that is its fault, not your design's: {type(error).__name__}: {error}")
+    print_note(f"error: internal error of flexstage, not caused by your design: {type(error).__name__}: {error}")
     print_note(
         f"Run the same command with {_DEBUG}=1 in the environment and report its output with the design file and `flexstage version`."
     )
-    print_note("`flexstage doctor` says whether the installation is sound.")
+    print_note("`flexstage doctor` checks the installation.")
     return FAULT
 
 
@@ -117,7 +116,7 @@ def _folder_is_gone() -> bool:
 def _missing(error: ModuleNotFoundError) -> int:
     if os.environ.get(_DEBUG) or (error.name or "").partition(".")[0] == "flexstage":
         raise error
-    print_note(f"error: the package {error.name} is missing. `flexstage doctor` says how to install it.")
+    print_note(f"error: the package {error.name} is missing. `flexstage doctor` prints the command to install it.")
     return FAULT
 
 

@@ -13,10 +13,10 @@ if TYPE_CHECKING:  # the table of commands loads no models
 
 
 class ModesModel(Protocol):
-    """Function that returns the modes of a stage: computed if requested, else read from the cache, `None` if not in the cache."""
+    """Function that returns the modes of a stage: if `computing`, computed, else from the cache, or `None` if they are not there."""
 
     def __call__(self, mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
-        """The modes of a stage."""
+        """Return the modes of a stage."""
         ...
 
 

@@ -22,7 +22,7 @@ _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 def text_option(name: str, metavar: str, about: str, default: str = "") -> Any:
-    """Define a text option; the help text `about` is extended by the default, if any."""
+    """Define a text option. Its help is `about`, and a sentence with the default value if there is one."""
     return typer.Option(name, metavar=metavar, help=f"{about} Default: {default}." if default else about, show_default=False)
 
 
@@ -40,7 +40,7 @@ def word_option(
     otherwise: Mapping[str, str] = _NOTHING,
     show_default: bool = True,
 ) -> Any:
-    """Define an option with a choice of `words` (default: all values of the `kind`); `otherwise` maps likely wrong words to hints."""
+    """Define an option with a choice of `words`, by default all values of the `kind`. `otherwise` maps likely wrong words to hints."""
     words = words or [str(each.value) for each in kind]
     return typer.Option(
         name,
@@ -73,7 +73,7 @@ _model_option = partial(
     word_option,
     "--model",
     Model,
-    "Model of the stage, the simplest first.",
+    "Model of the stage; the simplest model is listed first.",
     otherwise={"solid": "For solids, use flexstage solid or flexstage verify"},
 )
 ELASTIC_MODEL = _model_option(words=("mapped", "lumped"))
@@ -90,7 +90,7 @@ Changes: TypeAlias = Annotated[
 ]
 
 ElasticBodies: TypeAlias = Annotated[
-    bool, typer.Option("--elastic-bodies", help="Flexibility of bodies in the lumped model, estimated from their outlines.")
+    bool, typer.Option("--elastic-bodies", help="Elastic bodies in the lumped model; their flexibility is estimated from outlines.")
 ]
 
 Json: TypeAlias = Annotated[str | None, text_option("--json", "-|FILE", "JSON file of the result, or - for stdout.")]
@@ -109,14 +109,15 @@ Csv: TypeAlias = Annotated[
 Xlsx: TypeAlias = Annotated[Path | None, text_option("--xlsx", "FILE", "Excel workbook of all tables, in SI units.")]
 
 
-Port: TypeAlias = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0: a free port.")]
+Port: TypeAlias = Annotated[int, typer.Option("--port", min=0, max=65535, help="Port on this computer; 0 selects a free port.")]
 
 InputDensities: TypeAlias = Annotated[
     list[str] | None,
     text_option(
         "--input-asd",
         "INPUT=DENSITY",
-        'Amplitude spectral density of a white input or its rate, e.g. "ground.z=1 nm/Hz^0.5" or "ground.z=1e-5 m/s^2/Hz^0.5". Repeatable.',
+        'White noise of an input, as the amplitude spectral density of its value, velocity or acceleration, e.g. "ground.z=1 nm/Hz^0.5" '
+        'or "ground.z=1e-5 m/s^2/Hz^0.5". Repeatable.',
     ),
 ]
 
@@ -126,7 +127,7 @@ GaugeNoise: TypeAlias = Annotated[
 ]
 
 GaugeResolution: TypeAlias = Annotated[
-    str | None, text_option("--resolution", "VALUE", "Resolution of the gauges; 0nm for none. Default: the value of the design.")
+    str | None, text_option("--resolution", "VALUE", "Resolution of the gauges; 0nm for no quantisation. Default: the value of the design.")
 ]
 
 AmplifierValues: TypeAlias = Annotated[
@@ -150,15 +151,15 @@ STEPS = typer.Option(
     "--steps",
     metavar="N",
     min=2,
-    help="Number of equilibria, both ends included. Default: the number of the path, else 11.",
+    help="Number of equilibria, both ends included. Default: 11, or as defined by the load path.",
     show_default=False,
 )
 
 Seed: TypeAlias = Annotated[int | None, text_option("--seed", "NUMBER", "Seed of all random numbers. Default: 0.")]
 
-Full: TypeAlias = Annotated[bool, typer.Option("--full", help="All tables and notes, instead of the short form.")]
+Full: TypeAlias = Annotated[bool, typer.Option("--full", help="All tables and notes instead of a summary.")]
 
-FEA = typer.Option("--fea", help="Finite elements, from the cache or computed.")
+FEA = typer.Option("--fea", help="Finite-element results, read from the cache or computed.")
 
 Point: TypeAlias = Annotated[
     str, typer.Option("--point", metavar="POINT", help="Point whose displacement is computed: the platform or a named point.")
@@ -168,6 +169,6 @@ Report: TypeAlias = Annotated[Path | None, text_option("--report", "FILE", "HTML
 
 Study: TypeAlias = Annotated[Path, typer.Argument(help="File of the study (TOML).", metavar="STUDY.TOML", show_default=False)]
 
-Resume: TypeAlias = Annotated[bool, typer.Option("--resume", help="Continuation of an interrupted run from its kept results.")]
+Resume: TypeAlias = Annotated[bool, typer.Option("--resume", help="Continuation of an interrupted computation from its kept results.")]
 
 Workers: TypeAlias = Annotated[int | None, text_option("--workers", "N", "Number of processes. Default: one per core.")]

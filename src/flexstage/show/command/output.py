@@ -46,7 +46,7 @@ _PENDING: ContextVar[_Pending | None] = ContextVar("outputs that wait", default=
 def pending_outputs() -> Generator[None]:
     """Write all output files of the `with` block together at its end, or none of them after a failure.
 
-    An unmet requirement, and a pipe closed by its reader, are not failures.
+    An unmet requirement is not a failure; neither is a pipe closed by its reader.
     """
     pending = _Pending()
     token = _PENDING.set(pending)
@@ -75,7 +75,10 @@ def announce(text: str) -> None:
 
 
 def require_writable(wanted: Sequence[tuple[str, str | Path | None]], read: Iterable[Path] = ()) -> None:
-    """Raise `DesignError` for outputs, pairs of an option and its path, that cannot be written or are among the input files `read`."""
+    """Raise `DesignError` for outputs that cannot be written or that are input files. `wanted` contains pairs of an option and its path.
+
+    `read` are the input files.
+    """
     require(_problems(wanted, read))
 
 
@@ -85,7 +88,7 @@ def _problems(outputs: Iterable[tuple[str, str | Path | None]], read: Iterable[P
     for option, target in outputs:
         if target is not None and str(target) == STDOUT:
             if spoken is not None:
-                yield Finding(option, f"stdout is the output of {spoken} too", "Write one of them to a file")
+                yield Finding(option, f"stdout is also the output of {spoken}", "Write one of them to a file")
             spoken = option
         if target is None or str(target) == STDOUT:
             continue
@@ -95,13 +98,13 @@ def _problems(outputs: Iterable[tuple[str, str | Path | None]], read: Iterable[P
         elif (problem := _problem(path, _file_problem)) is not None:
             yield Finding(option, f"{path} cannot be written: {problem}", "Choose another file or folder")
         else:
-            taken[_real_path(path)] = f"the output of {option} too"
+            taken[_real_path(path)] = f"also the output of {option}"
 
 
 def check_folder(folder: Path | None) -> Path | None:
     """Return the folder of `--csv`, new or existing; raises `DesignError` if it is not writable."""
     if folder is not None and (problem := _problem(folder, _folder_problem)) is not None:
-        raise refuse("--csv", f"{folder} cannot be written into: {problem}", "Choose another folder")
+        raise refuse("--csv", f"cannot write into {folder}: {problem}", "Choose another folder")
     return folder
 
 
@@ -122,7 +125,7 @@ def _file_problem(path: Path) -> str | None:
     if path.is_dir():
         return "it is a folder"
     if path.exists() and not os.access(path, os.W_OK):
-        return "it is write-protected"
+        return "the file is write-protected"
     if _is_device(path):
         return None
     folder = _real_path(path).parent

@@ -32,11 +32,11 @@ class ProgressBar:
         self._show(step.text, step.fraction)
 
     def share(self, text: str, share: float) -> None:
-        """Show the completed share of a computation, and the remaining time estimated from it."""
+        """Show the completed fraction of a computation, and the remaining time estimated from it."""
         self.step(Step(text, share, seconds_left(share, time.monotonic() - self._begun)))
 
     def result(self, name: str, value: Any) -> None:
-        """Accept a part of the result; a bar ignores it."""
+        """Report a partial result. A progress bar ignores it."""
 
     def _show(self, text: str, fraction: float) -> None:
         if self._shown is not None:
@@ -45,16 +45,16 @@ class ProgressBar:
 
 
 class ProgressLines(ProgressBar):
-    """Prints each step as a line on stderr for other programs: `progress`, the fraction, remaining seconds or a dash, the text.
+    """Progress as lines on stderr for other programs: the word `progress`, the fraction, remaining seconds or a dash, and a text.
 
-    Parts of the result are lines of `result` and JSON.
+    A partial result is a line with the word `result` and JSON.
     """
 
     def __init__(self) -> None:
         super().__init__(None)
 
     def result(self, name: str, value: Any) -> None:
-        """Print a part of the result."""
+        """Print a partial result."""
         print(f"{RESULT} {json.dumps({name: value})}", file=sys.stderr, flush=True)  # noqa: T201
 
     def _show(self, text: str, fraction: float) -> None:
@@ -69,7 +69,7 @@ def _clock(seconds: float) -> str:
 
 @contextmanager
 def progress_bar() -> Generator[ProgressBar]:
-    """Provide a progress bar that is removed at the end, or lines if the environment requests lines (`FLEXSTAGE_PROGRESS=lines`)."""
+    """Provide a progress bar that is removed at the end, or `ProgressLines` if the environment contains `FLEXSTAGE_PROGRESS=lines`."""
     if os.environ.get(LINES):
         yield ProgressLines()
         return

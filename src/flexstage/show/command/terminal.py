@@ -34,7 +34,7 @@ def print_warning(text: object) -> None:
 
 
 def print_styled(text: str) -> None:
-    """Print a result with escape sequences of flexstage to stdout; control characters in users' texts must be escaped before."""
+    """Print a result with terminal styles to stdout. Control characters in texts of users must be escaped before the call."""
     encoding = sys.stdout.encoding or "utf-8"
     print_bytes(text.encode(encoding, "backslashreplace"))
 
@@ -106,7 +106,7 @@ class _Raw(io.FileIO):
             if self._told and isinstance(error, BrokenPipeError):
                 raise
             if self._told:
-                raise refuse("stdout", f"it cannot be written to: {error.strerror}", "Free space, or redirect the output") from None
+                raise refuse("stdout", f"cannot be written: {error.strerror}", "Free space, or redirect the output") from None
         return memoryview(data).nbytes
 
 

@@ -16,7 +16,7 @@ from flexstage.spatial.frame import COMPONENTS
 
 _Value = TypeVar("_Value")
 _Name = TypeVar("_Name")
-_ASD_EXAMPLE = 'Use e.g. --input-asd "ground.z=1 nm/Hz^0.5", or an acceleration, "ground.z=1e-5 m/s^2/Hz^0.5"'
+_ASD_EXAMPLE = 'Use e.g. --input-asd "ground.z=1 nm/Hz^0.5", or "ground.z=1e-5 m/s^2/Hz^0.5" for an acceleration'
 
 
 class Values:
@@ -44,7 +44,7 @@ def names(texts: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def first_that_parses(text: str, known: Mapping[_Name, Quantity]) -> tuple[_Name, float] | None:
-    """Find the first known quantity that fits the unit of a text; returns its name and the value in SI units, or `None`."""
+    """Find the first known quantity that fits the unit of a text. Returns its name and the value in SI units, or `None`."""
     for name, quantity in known.items():
         try:
             return name, parse(text, quantity)
@@ -59,7 +59,7 @@ def amplifier_values(values: Values, texts: Sequence[str]) -> dict[str, float]:
     found: dict[str, float] = {}
     for text in texts:
         if (fit := first_that_parses(text, known)) is None:
-            what = f'found "{text}", which is no frequency, resistance or current'
+            what = f'must be a frequency, resistance or current (got "{text}")'
             values.findings.append(Finding("--amplifier", what, 'Use e.g. "500 Hz", "50 ohm" or "0.2 A"'))
         else:
             found[fit[0]] = fit[1]
@@ -88,7 +88,7 @@ def motions(texts: Sequence[str], option: str = "--command") -> dict[str, float]
 
     def read(name: str, value: str, where: str) -> float:
         if name not in COMPONENTS or not value:
-            raise refuse(where, "must be a motion and a value", f"{suggest_nearest(name, COMPONENTS)}, e.g. z=150um")
+            raise refuse(where, "must be an axis and a value", f"{suggest_nearest(name, COMPONENTS)}, e.g. z=150um")
         return abs(parse(value, ANGLE if name.startswith("r") else DISPLACEMENT, where=where))
 
     return read_pairs(texts, option, read)
@@ -104,14 +104,15 @@ def band_limits(band: tuple[str, str] | None) -> tuple[float, float] | None:
         return None
     low, high = (parse(text, FREQUENCY, where="--band") for text in band)
     if not 0.0 < low < high:
-        raise refuse("--band", f"{band[0]} to {band[1]} is no band", "Use a low frequency above zero and a higher one")
+        raise refuse("--band", f"{band[0]} to {band[1]} is not a band", "Use a low frequency above zero and a higher one")
     return low, high
 
 
 def spectra(model: LinearModel, densities: Sequence[str]) -> dict[str, Spectrum]:
-    """Read white spectra by input from texts INPUT=AMPLITUDE DENSITY of `--input-asd`.
+    """Read white spectra by input from texts INPUT=DENSITY of `--input-asd`.
 
-    The unit decides whether the density is of the input, or of its first or second derivative. All errors are reported together.
+    The unit of the amplitude spectral density shows whether it belongs to the input, or to its first or second derivative. All errors are
+    reported together.
     """
     return read_pairs(densities, "--input-asd", partial(_spectrum, model))
 
@@ -123,5 +124,5 @@ def _spectrum(model: LinearModel, name: str, value: str, where: str) -> Spectrum
     known = {rate: Quantity("amplitude density", form, form, f"1e-9 {form}") for rate, form in forms.items()}
     if (fit := first_that_parses(value, known)) is not None:
         return Spectrum(fit[1] ** 2, rate=fit[0])
-    what = f'found "{value}", which is no amplitude density of {name} [{unit}/Hz^0.5] or of its rates'
+    what = f'must be an amplitude spectral density of {name} [{unit}/Hz^0.5], its velocity or its acceleration (got "{value}")'
     raise refuse(where, what, _ASD_EXAMPLE)

@@ -1,4 +1,4 @@
-"""Stacked bars: the lost-motion budget and the energy by part and actuator, the error budget by source and axis."""
+"""Stacked bars: lost motion and strain energy by part and actuator, and the error budget by source and axis."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def loss_figure(lost: LostMotion) -> Any:
 
 
 def energy_figure(lost: LostMotion) -> Any:
-    """Plot the strain energy of the parts when one actuator expands without other loads, as stacked bars in a matplotlib Figure."""
+    """Plot the strain energy of the parts when one actuator expands and no other load acts, as stacked bars in a matplotlib Figure."""
     totals = first_design(lost.energy.values, 2).sum(axis=0)
     texts = [to_typography(f"{number(1e-6 * float(total), 3)} uJ/um^2") for total in totals]
-    return _bar_figure([(_percents(energy_shares(lost)), texts, "share of the strain energy [%]")])
+    return _bar_figure([(_percents(energy_shares(lost)), texts, "fraction of the strain energy [%]")])
 
 
 def error_figure(budget: ErrorBudget) -> Any:

@@ -18,7 +18,9 @@ _ISOTROPIC = 1e-6
 
 
 def directional_figure(statics: Statics) -> Any:
-    """Plot the stiffness in the plane by direction [N/um], other DOFs free and fixed, with principal axes, as a matplotlib Figure.
+    """Plot the in-plane stiffness [N/um] as a function of direction, with the other DOFs free and with them fixed, as a matplotlib Figure.
+
+    The principal axes are shown too.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

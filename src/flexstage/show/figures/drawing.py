@@ -22,12 +22,12 @@ def format_of(name: str) -> str:
     """
     ending = PurePath(name).suffix.lower()
     if ending not in FORMATS:
-        raise refuse(name, f'unknown format "{ending}"', f"End the name in {', '.join(FORMATS)}")
+        raise refuse(name, f'unknown format "{ending}"', f"Use a file name that ends in {', '.join(FORMATS)}")
     return ending
 
 
 def drawing(figure: Any, ending: str) -> bytes:
-    """Return the content of a figure file in the format of an `ending`; equal figures have equal bytes.
+    """Return the content of a figure file in the format of an `ending`. Equal figures have equal bytes.
 
     >>> from flexstage.show.figures.style import canvas
     >>> drawing(canvas(1.0, 1.0), ".svg")[:5]

@@ -18,9 +18,9 @@ _DIGITS = 5
 
 @dataclass(frozen=True)
 class Spot:
-    """A named point of a figure: its `text` appears if the cursor is close to `x` and, in panel number `panel`, to `y`.
+    """A named point of a figure: its `text` appears if the cursor is close to (`x`, `y`) in panel number `panel`.
 
-    Without `y`, only the distance from `x` counts. `plays` names the motion of the page's viewer that the point shows.
+    Without `y`, only the distance from `x` is used. `plays` is the name of the motion that the page's viewer then shows.
     """
 
     x: float
@@ -33,9 +33,9 @@ class Spot:
 def reading(figure: Any, spots: Iterable[Spot] = ()) -> str:
     """Describe the panels of a drawn figure as JSON: positions in points, axes, and labelled curves.
 
-    A curve without a label has the label of the curve with equal style in the same column; without such a curve it is left out. A panel
-    without a name has the name of a panel in the same row. Equal abscissae are listed once, in `over`; the `x` of a curve is an index
-    into `over`.
+    A curve without a label gets the label of the curve with equal style in the same column; if there is none, the curve is left out. A
+    panel without a name gets the name of a panel in the same row. Equal abscissae are listed once, in `over`; the `x` of a curve is an
+    index into `over`.
 
     >>> from flexstage.show.figures.style import canvas
     >>> figure = canvas(1.0, 1.0)

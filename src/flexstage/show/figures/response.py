@@ -21,7 +21,7 @@ _DECADES = 1e-4
 def response_figure(response: Response, modes: Modes | None = None) -> Any:
     """Plot magnitude and phase (Bode plot) of the first outputs, each for the input with the largest effect, as a matplotlib Figure.
 
-    Curves of the same unit share a column. The phase is for e^{+j omega t}, unwrapped from the lowest frequency.
+    Curves of the same unit are in one column. The phase follows the convention e^{+j omega t}, and is unwrapped from the lowest frequency.
 
     >>> import flexstage as fs
     >>> from flexstage.analysis.dynamics.response import response

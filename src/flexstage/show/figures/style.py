@@ -103,7 +103,7 @@ class Margins:
 
 
 def panels(figure: Any, rows: int, columns: int, margins: Margins, *, heights: Sequence[float] | None = None) -> Any:
-    """Create axes (rows, columns) of a figure within margins; `heights` of rows are relative, axes of a column share the x axis.
+    """Create axes (rows, columns) of a figure within margins. Axes of a column share the x axis; `heights` are relative row heights.
 
     >>> panels(canvas(3.0, 3.0), 2, 1, Margins()).shape
     (2, 1)

@@ -24,7 +24,7 @@ _CROSS: Mapping[str, Any] = {"color": SERIES[1], "markersize": 5, "linewidth": 1
 
 
 def workspace_figure(workspace: Workspace) -> Any | None:
-    """Plot reachable poses, single-axis strokes and the commanded box, projected on pairs of coordinates, as a matplotlib Figure.
+    """Plot reachable poses, single-axis strokes and the commanded poses, projected on pairs of coordinates, as a matplotlib Figure.
 
     Returns `None` for stages with one DOF, or if the reachable poses are unknown.
 
@@ -80,7 +80,7 @@ def _panel(axes: Any, workspace: Workspace, across: str, up: str) -> None:
     outline = hull(vertices * [x.unit.factor, y.unit.factor])
     closed = np.vstack([outline, outline[:1]])
     axes.fill(*closed.T, color=SERIES[0], alpha=0.12, linewidth=0.0)
-    axes.plot(*closed.T, color=SERIES[0], label="reachable, others free to follow", linewidth=1.0)
+    axes.plot(*closed.T, color=SERIES[0], label="reachable, with any values of the other coordinates", linewidth=1.0)
     axes.plot(_strokes(workspace, x), [0.0, 0.0], marker="|", label="one axis at a time", **_CROSS)
     axes.plot([0.0, 0.0], _strokes(workspace, y), marker="_", **_CROSS)
     _command(axes, workspace.command, x, y)
@@ -101,4 +101,4 @@ def _command(axes: Any, command: Mapping[str, Number], x: _Shown, y: _Shown) -> 
         return
     across, up = (each.unit.factor * single(command[each.name]) for each in (x, y))
     ends = across * np.array([-1, 1, 1, -1, -1]), up * np.array([-1, -1, 1, 1, -1])
-    axes.plot(*ends, color=MUTED, linestyle="--", linewidth=0.9, label="commanded box")
+    axes.plot(*ends, color=MUTED, linestyle="--", linewidth=0.9, label="commanded poses")

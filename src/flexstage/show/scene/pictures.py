@@ -41,8 +41,8 @@ def stage_picture(data: StageData, *, side: Side = Side.ISOMETRIC, width: float 
 def mode_picture(data: StageData, motion: Motion, *, width: float = FULL) -> Any | None:
     """Draw a motion of the stage, magnified, over the undeformed platform's outline, without gauges, as a matplotlib Figure.
 
-    The view is from above if the platform moves mainly in its plane, else isometric. Arrows are the platform's motion: blue translation,
-    red rotation. Returns `None` if nothing moves.
+    The view is from above if the platform moves mainly in its plane, else isometric. Blue arrows show translation of the platform, red
+    arrows show rotation. Returns `None` if nothing moves.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.show.viewer.data import stage_data

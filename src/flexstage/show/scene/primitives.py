@@ -21,7 +21,7 @@ _ROUND_SIDES, _ROUND_NECK_SIDES = 12, 8
 
 
 def first_value(value: Number | None, default: float = 0.0) -> float:
-    """Return the value of the first design of a batch as a float, for `None` the default.
+    """Return the value of the first design of a batch as a float, or the default for `None`.
 
     >>> first_value(np.array([2.0, 3.0])), first_value(None)
     (2.0, 0.0)
@@ -30,7 +30,7 @@ def first_value(value: Number | None, default: float = 0.0) -> float:
 
 
 def part_length(part: Part) -> float:
-    """Return the length of a part along its x axis [m]; 0 for parts without a shape (compliance matrices, joints).
+    """Return the length of a part along its x axis [m], or 0 for parts without a shape (compliance matrices, joints).
 
     >>> from flexstage.parts.rod import Rod
     >>> part_length(Rod("steel", length=0.03, diameter=0.001))
@@ -41,7 +41,7 @@ def part_length(part: Part) -> float:
 
 
 def part_section(part: Part) -> tuple[float, float]:
-    """Return the extents of a part's end section along its y and z axes [m]; 0 for parts without a shape.
+    """Return the extents of a part's end section along its y and z axes [m], or 0 for parts without a shape.
 
     >>> from flexstage.parts.rod import Rod
     >>> part_section(Rod("steel", length=0.03, diameter=0.001))
@@ -57,7 +57,7 @@ def part_section(part: Part) -> tuple[float, float]:
 def part_skin(part: Part, marker: float, *, steps: int = 1) -> DrawnSurface:
     """Build the surface of a part in its link frame; a part without a shape is drawn as a cube of edge `marker` [m].
 
-    The surface is divided along the part into rings, at distances of at most the part's length over `steps`.
+    Along the part, the surface is divided into rings. Their distance is at most the part's length divided by `steps`.
 
     >>> from flexstage.parts.rod import Rod
     >>> len(part_skin(Rod("steel", length=0.03, diameter=0.001), 0.01).triangles)
@@ -92,7 +92,7 @@ def _more_rings(rings: Array, shares: Array, steps: int) -> tuple[Array, Array]:
 
 
 def simplification(solid: Solid) -> str:
-    """Describe the simplification with which an outline is drawn; empty if it is drawn exactly.
+    """Describe the simplification with which an outline is drawn. Returns an empty string if it is drawn exactly.
 
     >>> simplification(Block("steel", (0.1, 0.1, 0.01)))
     ''

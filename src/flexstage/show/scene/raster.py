@@ -7,11 +7,11 @@ import numpy as np
 from flexstage.base.number import Array
 
 _BIAS = 1.0
-"""Distance of a line behind the farthest of the pixels around it up to which it is visible [pixels]."""
+"""A line is visible up to this distance behind the farthest pixel around it [pixels]."""
 
 
 def nearest(corners: Array, shape: tuple[int, int]) -> tuple[Array, Array]:
-    """Find the nearest triangle at the middle of each pixel; returns its number (-1: none) and its depth, both of this `shape`.
+    """Find the nearest triangle at the middle of each pixel. Returns its number (-1: none) and its depth, both with this `shape`.
 
     `corners` (t, 3, 3) are in pixels to the right, down, and towards the viewer. A triangle without projected area is not visible.
 
@@ -43,7 +43,7 @@ def nearest(corners: Array, shape: tuple[int, int]) -> tuple[Array, Array]:
 
 
 def normals(corners: Array) -> Array:
-    """Compute the outward unit normals (t, 3) of triangles; zero without area.
+    """Compute the outward unit normals (t, 3) of triangles; zero for triangles without area.
 
     `corners` (t, 3, 3) are in pixels to the right, down and towards the viewer; the normals point right, up and towards the viewer.
 
@@ -56,7 +56,9 @@ def normals(corners: Array) -> Array:
 
 
 def planes(corners: Array, values: Array) -> Array:
-    """Interpolate values (t, 3) at triangles' corners linearly; returns the coefficients (t, 3) of right, down and 1, 0 without area.
+    """Interpolate values (t, 3) at the corners of triangles linearly. Triangles without area have coefficients of zero.
+
+    Returns the coefficients (t, 3) of the coordinate to the right, of the coordinate down, and of 1.
 
     >>> planes(np.array([[[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]]]), np.array([[1.0, 3.0, 5.0]])).tolist()
     [[1.0, 2.0, 1.0]]

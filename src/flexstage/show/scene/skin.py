@@ -29,9 +29,10 @@ ROUND = slice(0)
 
 @dataclass(frozen=True, eq=False)
 class DrawnSurface:
-    """A surface: `points` (n, 3) [m]; `triangles` (t, 3), counter-clockwise from outside, and sharp `edges` (e, 2) by point index.
+    """A surface: `points` (n, 3) [m], `triangles` (t, 3) and sharp `edges` (e, 2) as indices of points.
 
-    If the surface is between two bodies, point k follows the first body by 1 - `share`[k] and the second body by `share`[k].
+    Corners of triangles are counter-clockwise as seen from outside. If the surface connects two bodies, the motion of point k is the sum of
+    the motions of both bodies, with weights 1 - `share`[k] for the first body and `share`[k] for the second body.
     """
 
     points: Array
@@ -70,9 +71,9 @@ def loft(
 ) -> DrawnSurface:
     """Build the surface through rings (s, k, 3) of points, counter-clockwise seen from the last ring towards the first.
 
-    If `closed`, the surface has end faces. The `shares` (s,) of the second body are by default evenly spaced from 0 at the first ring to 1
-    at the last. Sharp edges are the rings with indices `ringed`, and the edges between successive rings that `along` selects (`ROUND`:
-    none).
+    If `closed`, the surface has end faces. `shares` (s,) are the weights of the second body (see `DrawnSurface`), by default evenly spaced
+    from 0 at the first ring to 1 at the last. Sharp edges are the rings with indices `ringed`, and the edges between successive rings that
+    `along` selects (`ROUND`: none).
 
     >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     >>> box = loft(np.stack([square, square + [0, 0, 1.0]]))
@@ -94,7 +95,7 @@ def _rows(*columns: Array) -> Array:
 
 
 def fan(corners: Array) -> Array:
-    """Divide a convex polygon into triangles (k - 2, 3), by the indices (k,) of its corners.
+    """Divide a convex polygon with corner indices (k,) into triangles (k - 2, 3).
 
     >>> fan(np.array([4, 5, 6, 7])).tolist()
     [[4, 5, 6], [4, 6, 7]]
@@ -103,7 +104,7 @@ def fan(corners: Array) -> Array:
 
 
 def face(points: Array, share: float) -> DrawnSurface:
-    """Build the surface of a convex polygon (k, 3); all its points have the same `share` (see `DrawnSurface`).
+    """Build the surface of a convex polygon (k, 3). All its points have the same `share` (see `DrawnSurface`).
 
     >>> len(face(np.zeros((5, 3)), 1.0).triangles)
     3
@@ -154,7 +155,7 @@ def extrude(stations: Array, sections: list[Array]) -> Array:
 
 
 def line(points: Array) -> DrawnSurface:
-    """Build a line between two points (2, 3); the first point follows the first body, the second the second body.
+    """Build a line between two points (2, 3). The first point moves with the first body, the second point with the second body.
 
     >>> line(np.zeros((2, 3))).share.tolist()
     [0.0, 1.0]

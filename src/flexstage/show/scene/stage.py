@@ -26,7 +26,7 @@ _GROUNDED = (GROUND, GROUND)
 
 @dataclass(frozen=True)
 class Label:
-    """A name at a point of the stage [m], in the colour of its kind; it moves with the mean motion of two `bodies`."""
+    """A name at a point of the stage [m], in the colour of its kind. It moves with the mean motion of two `bodies`."""
 
     text: str
     point: tuple[float, float, float]
@@ -36,7 +36,7 @@ class Label:
 
 @dataclass(frozen=True, eq=False)
 class DrawnPiece:
-    """A surface in the stage's frame, its name (`B1/front`, `platform.plate`) and kind, and the two bodies that it follows."""
+    """A surface in the stage's frame, its name (`B1/front`, `platform.plate`) and kind, and the two bodies with which it moves."""
 
     name: str
     kind: Kind
@@ -58,10 +58,10 @@ class Scene:
 
 
 def scene(mechanism: Mechanism, *, steps: int = 1) -> Scene:
-    """Build the scene of the first design of a description; hinges are divided into `steps` along their length, to show bending.
+    """Build the scene of the first design of a description. Hinges are divided into `steps` along their length, to show bending.
 
-    Bodies without outlines, and superelements, are bars between their joints or ports. If a joint is outside the outline of its body, a
-    thin line connects the two. Ground is drawn at each link that is fixed to it.
+    Bodies without outlines, and superelements, are drawn as bars between their joints or ports. If a joint is outside the outline of its
+    body, a thin line connects the two. The ground is drawn at each link that is fixed to it.
 
     >>> scene(Mechanism("", bodies={})).pieces
     ()

@@ -37,11 +37,11 @@ _EDGE = "#323e4b"
 _LIGHT = np.array([-0.35, 0.55, 0.76])
 """Towards a light above the viewer's left shoulder: right, up, towards the viewer."""
 _DOTS = 160.0
-"""Pixels of an image in an inch: twice those of a screen."""
+"""Pixels per inch of an image: twice as many as on a screen."""
 
 
 class Side(Enum):
-    """Side from which the stage is seen; the value is the direction towards the viewer and the upward direction in the picture."""
+    """Side from which the stage is seen. The value is the direction towards the viewer, and the upward direction of the picture."""
 
     TOP = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
     FRONT = ((0.0, -1.0, 0.0), (0.0, 0.0, 1.0))
@@ -51,7 +51,7 @@ class Side(Enum):
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A view direction; the rows of `axes` (3, 3) are unit vectors to the right, up and towards the viewer, in the stage's frame."""
+    """A view direction. The rows of `axes` (3, 3) are unit vectors to the right, up and towards the viewer, in the stage's frame."""
 
     axes: Array
 
@@ -74,10 +74,10 @@ def view(side: Side) -> View:
 
 
 def picture_axes(points: Array, seen: View, width: float, *, gap: float = 0.05, tallest: float = 1.1, below: float = 0.0) -> Any:
-    """Create a figure of this `width` [inch] with axes in mm, without a frame, that contain all points (n, 3) [m] in this view.
+    """Create a figure of this `width` [inch] whose axes [mm] contain all points (n, 3) [m] in this view and have no frame.
 
-    `gap` is the margin relative to the larger extent. `tallest` limits the height over the width. `below` is free space under the axes
-    [inch].
+    `gap` is the margin relative to the larger extent. `tallest` is the largest ratio of height and width. `below` is free space under the
+    axes [inch].
 
     >>> picture_axes(np.zeros((1, 3)), view(Side.TOP), 2.0).viewLim.intervalx.tolist()
     [-1.0, 1.0]
@@ -91,7 +91,7 @@ def picture_axes(points: Array, seen: View, width: float, *, gap: float = 0.05, 
 
 
 def fit(axes: Any, low: Array, high: Array) -> Any:
-    """Set axes to equal scales around a box from `low` to `high` (2,) [mm], without a frame; returns the axes.
+    """Set axes to equal scales around a box from `low` to `high` (2,) [mm], without a frame. Returns the axes.
 
     >>> fit(canvas(2.0, 1.0).add_axes((0.0, 0.0, 1.0, 1.0)), np.array([0.0, 0.0]), np.array([1.0, 1.0])).viewLim.intervalx.tolist()
     [-0.5, 1.5]
@@ -128,13 +128,13 @@ def pixels(axes: Any, points: Array, seen: View) -> tuple[Array, tuple[int, int]
 
 
 def show_image(axes: Any, image: Array) -> None:
-    """Show an image (h, w, 4) of red, green, blue and opacity, 0 to 255, on the whole area of axes; the size is that of `pixels`."""
+    """Show an image (h, w, 4) of red, green, blue and opacity, 0 to 255, on the whole area of axes. Its size must be as in `pixels`."""
     extent = (*axes.get_xlim(), *axes.get_ylim())
     axes.imshow(image, extent=extent, interpolation="none", aspect="auto")
 
 
 def draw(axes: Any, data: StageData, seen: View, points: Array | None = None, kinds: Container[Kind] = tuple(Kind)) -> None:
-    """Draw the parts of these kinds as an image on axes prepared by `fit`; `points` (n, 3) [m] are positions of displaced vertices.
+    """Draw the parts of these kinds as an image on axes prepared by `fit`. `points` (n, 3) [m] are positions of displaced vertices.
 
     The platform is translucent, so that parts under it are visible.
     """
@@ -258,7 +258,7 @@ def triad(axes: Any, seen: View) -> None:
 
 
 def arrows(axes: Any, starts: Sequence[Array], reaches: Sequence[Array], colour: str, width: float) -> None:
-    """Draw arrows from the points `starts` by the vectors `reaches` [mm], with shafts of this `width` in points."""
+    """Draw arrows from the points `starts` along the vectors `reaches` [mm], with shafts of this `width` in points."""
     (x, y), (across, up) = np.transpose(starts), np.transpose(reaches)
     axes.quiver(
         x,

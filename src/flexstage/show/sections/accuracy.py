@@ -21,15 +21,15 @@ def drift_section(analysis: Analysis) -> Section | None:
     if drift is None:
         return None
     text = (
-        "Free expansion of all bodies and parts, redistributed by the elasticity of the links, per kelvin of uniform change and "
-        "per gradient of 1 K/m."
+        "All bodies and parts expand freely; the elasticity of the links determines the resulting motion. It is listed per kelvin of "
+        "uniform temperature change, and per temperature gradient of 1 K/m."
     )
     gauges = gauge_drift_table(drift)
     return section("Thermal drift", [Prose(text), drift_table(drift), fold("Gauge readings", gauges)])
 
 
 def error_section(analysis: Analysis) -> Section | None:
-    """Make the section on the error budget: every source of pose error by axis; `None` without results.
+    """Make the section on the error budget, with every source of pose error for each axis; `None` without results.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -41,7 +41,7 @@ def error_section(analysis: Analysis) -> Section | None:
         return None
     picture = Picture(
         to_svg(error_figure(budget), "errors", "Error budget by axis and source"),
-        "Largest errors by source, added up"
-        + ("." if budget.forced else ": with the ideal mapping commanded, and with lost motion corrected by command."),
+        "Sum of the largest errors of all sources"
+        + ("." if budget.forced else ", for a command by the ideal mapping, and for a command that corrects lost motion."),
     )
     return section("Error budget", [picture, *error_budget_tables(budget)])

@@ -24,8 +24,8 @@ from flexstage.show.viewer.motions import Group
 _SHAPES = 6
 _LEAST, _NAMED = 0.01, 4
 SHAPES = (
-    "The amplitude is arbitrary. Dashed: the undeformed platform. Arrows: its motion, blue translation, red rotation. Seen from above if "
-    "it stays in its plane."
+    "The amplitude is arbitrary. Dashed: the undeformed platform. Blue arrow: its translation. Red arrow: its rotation. In-plane modes are "
+    "seen from above."
 )
 
 
@@ -42,8 +42,8 @@ def mode_section(analysis: Analysis, data: StageData) -> Section | None:
     if modes is None or not modes.names:
         return None
     text = (
-        "Undamped modes, actuators fixed. In platform modes the platform has a large kinetic-energy fraction. Local modes of single units "
-        "near the platform modes are listed too."
+        "Undamped modes with fixed actuators. In platform modes, the platform has a large fraction of the kinetic energy. Local modes of "
+        "single units with frequencies near the platform modes are listed too."
     )
     shapes = tuple(_shapes(modes, data))
     gallery = [BlockRow(shapes, narrow=True), Prose(SHAPES)] if shapes else []
@@ -83,7 +83,7 @@ def response_section(analysis: Analysis) -> Section | None:
     if response is not None and np.size(response.values):
         figure = response_figure(response, analysis.modes)
         drawn = to_svg(figure, "strokes", "Response of the platform to the strokes")
-        caption = "Platform motion per stroke, each output with the actuator that moves it most; dotted: the platform's modes."
+        caption = "Platform motion per stroke, for each output with the actuator that moves it most. Dotted: the platform's modes."
         blocks.append(Picture(drawn, caption, reading=reading(figure, _mode_spots(analysis.modes))))
     if ground is not None and np.size(ground.values):
         figure = response_figure(ground, analysis.modes)

@@ -49,8 +49,8 @@ def kinematics_section(analysis: Analysis) -> Section | None:
     """
     kinematics = analysis.kinematics
     text = (
-        "The ideal stage: rigid bodies, hinges free about their intended axes and locked about all others. Mappings are for small motions "
-        "about the undeformed configuration, at the platform's reference point."
+        "The ideal stage has rigid bodies, and hinges that are free about their intended axes and locked about all others. Mappings apply "
+        "to small motions about the undeformed configuration, at the platform's reference point."
     )
     return section(
         "Kinematics",
@@ -59,7 +59,7 @@ def kinematics_section(analysis: Analysis) -> Section | None:
             mobility_table(kinematics),
             *_mappings(kinematics),
             motion_table(kinematics),
-            Folded("DOFs taken as free", (freedom_table(kinematics),)),
+            Folded("Free DOFs of the links in the ideal model", (freedom_table(kinematics),)),
             fold("Free internal modes and redundant constraints", result_table(kinematics.idle), result_table(kinematics.redundant)),
         ],
     )
@@ -85,18 +85,18 @@ def stiffness_section(analysis: Analysis) -> Section | None:
         return None
     polar = to_svg(directional_figure(statics), "polar", "Stiffness by direction in the plane")
     sag = () if analysis.deflection is None else (deflection_table(analysis.deflection),)
-    caption = "Stiffness in the plane by direction of the force. Others free: as in a push test. Others fixed: no other motions."
+    caption = "In-plane stiffness by direction, with other motions free, as in a push test, and with other motions fixed."
     return section(
         "Stiffness",
         [
-            Prose("Stiffness of the platform at its reference point, actuators fixed."),
+            Prose("Stiffness of the platform at its reference point, with fixed actuators."),
             stiffness_table(statics),
             *([] if analysis.freedoms is None else [freedom_stiffness_table(analysis.freedoms)]),
             principal_table(statics),
             BlockRow((Picture(polar, caption), BlockRow((centre_table(statics), *sag)))),
             result_table(analysis.units or {}),
             fold(
-                "Compliance, stiffness by angle, mass, springs of the lever units",
+                "Compliance, stiffness by angle, mass, spring constants of the lever units",
                 compliance_table(statics),
                 direction_table(statics),
                 *(() if analysis.mass is None else mass_tables(analysis.mass)),
@@ -107,7 +107,7 @@ def stiffness_section(analysis: Analysis) -> Section | None:
 
 
 def lost_motion_section(analysis: Analysis) -> Section | None:
-    """Make the section on lost motion: transmission ratios, losses by part and corrected mapping; `None` without results.
+    """Make the section on lost motion: transmission ratios, loss of each part, corrected mapping; `None` without results.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -118,14 +118,14 @@ def lost_motion_section(analysis: Analysis) -> Section | None:
     if lost is None:
         return None
     text = (
-        "Loss of the ideal motion by elasticity. The budget is exact: by virtual work every link contributes its force times its "
-        "deformation in the ideal motion. The contributions add up to the loss."
+        "Lost motion is the loss of ideal motion due to elasticity. The budget is exact: by virtual work, the contribution of every link "
+        "is its force times its deformation in the ideal motion. The contributions add up to the loss."
     )
     loss = to_svg(loss_figure(lost), "loss", "Lost motion by actuator and part")
     energy = to_svg(energy_figure(lost), "energy", "Strain energy by actuator and part")
     pictures = [
         Picture(loss, "Lost motion of each actuator by part and axis of its unit."),
-        Picture(energy, "Strain energy by part when one actuator expands without other loads."),
+        Picture(energy, "Strain energy by part when one actuator expands and no other load acts."),
     ]
     return section(
         "Lost motion",
@@ -137,7 +137,7 @@ def lost_motion_section(analysis: Analysis) -> Section | None:
             fold("Budget by part, and energy by part", budget_table(lost), energy_table(lost)),
             Folded("Gains, crosstalk, corrected mapping", (gain_table(lost), crosstalk_table(lost), correction_table(lost))),
             *[
-                fold(f"Terms of the {name} unit's gain that Eq. 3 omits", omitted_table(unit.omitted))
+                fold(f"Terms in the transmission ratio of unit {name} that Eq. 3 omits", omitted_table(unit.omitted))
                 for name, unit in (analysis.units or {}).items()
                 if unit.omitted is not None
             ],

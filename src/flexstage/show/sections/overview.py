@@ -12,7 +12,7 @@ from flexstage.show.tables.requirements import is_met, verdict_table, verdict_te
 
 
 def headline(analysis: Analysis) -> Headline:
-    """Make the headline of a report: the number of met requirements, and the smallest margin.
+    """Make the headline of a report: the number of requirements that are met, and the smallest margin.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -21,7 +21,7 @@ def headline(analysis: Analysis) -> Headline:
     """
     verdicts = analysis.verdicts
     if not verdicts:
-        return Headline("No requirements are stated.")
+        return Headline("The design has no requirements.")
     return Headline(verdict_text(verdicts), all(map(is_met, verdicts)))
 
 
@@ -35,7 +35,7 @@ def requirement_section(analysis: Analysis) -> Section | None:
     """
     if not analysis.verdicts:
         return None
-    note = "Verdicts always use the lumped model, whatever the model of this report."
+    note = "Verdicts always use the lumped model, even if this report is based on another model."
     return section("Requirements", [verdict_table(sorted(analysis.verdicts, key=is_met), explained=True), Prose(note)])
 
 

@@ -13,7 +13,7 @@ from flexstage.show.tables.workspace import gauge_tables, load_tables, stroke_ta
 
 
 def workspace_section(analysis: Analysis) -> Section | None:
-    """Make the section on the platform's workspace and the use of actuators and gauges; `None` if strokes do not determine the platform.
+    """Make the section on the platform's workspace, actuators and gauges; `None` if the strokes do not determine the platform's pose.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -34,7 +34,7 @@ def workspace_section(analysis: Analysis) -> Section | None:
             *stroke_tables(reach),
             picture,
             *gauge_tables(reach),
-            fold("Extents, error of the linear map, volts", *map(result_table, (reach.polytope, reach.map_error, reach.drive))),
+            fold("Extents, error of the linear map, voltages", *map(result_table, (reach.polytope, reach.map_error, reach.drive))),
         ],
     )
 
@@ -56,7 +56,7 @@ def strength_section(analysis: Analysis) -> Section | None:
 
 def _strength(reach: Workspace) -> list[Block | None]:
     stressed = reach.stress is not None and bool(reach.stress.links)
-    text = "Stress, buckling and loads are relative to the stage without voltage, over all corners of the strokes, with permanent load."
+    text = "Stress, buckling and loads are the worst over all corners of the strokes, measured from zero voltage, permanent load included."
     return [
         Prose(text) if stressed else None,
         weakest_first(reach.stress),
@@ -64,7 +64,7 @@ def _strength(reach: Workspace) -> list[Block | None]:
         *load_tables(reach),
         result_table(reach.clearance),
         fold(
-            "Stacks against the stage, buckling",
+            "Load lines of stacks and stage, buckling",
             result_table(reach.stack_lines),
             *([] if reach.buckling is None else [result_table(reach.buckling.stage), weakest_first(reach.buckling)]),
         ),

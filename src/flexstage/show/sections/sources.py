@@ -17,15 +17,15 @@ from flexstage.spatial.frame import COMPONENTS
 
 _LIMITS = {
     Model.IDEAL: (
-        "Ideal model: rigid bodies and perfect hinges, small motions about the undeformed configuration. No stiffness, loads or modes."
+        "Ideal model: rigid bodies, perfect hinges, and small motions about the undeformed configuration. No stiffness, loads or modes."
     ),
     Model.MAPPED: (
         "Mapped model, as in the paper: springs along the strokes under a rigid platform, massless units, no bending of hinges. It has "
         "no lost motion, no local modes and no crosstalk."
     ),
     Model.LUMPED: (
-        "Lumped model: rigid bodies joined by 6x6 beam-theory hinges, small displacements, frequencies below the first resonance of the "
-        "parts themselves. Bodies are rigid: a real plate or lever makes the stage softer."
+        "Lumped model: rigid bodies connected by hinges with 6x6 compliances from beam theory. It holds for small displacements, and for "
+        "frequencies below the first resonance of each part. Real plates and levers are elastic, which makes the stage softer."
     ),
 }
 _PAPER = "Shin & Moon, Static and Dynamic Analyses of a 6-DOF Ultra-Precision Parallel Mechanism: mappings, unit stiffness, Eq. 28."
@@ -45,7 +45,7 @@ def description_section(mechanism: Mechanism) -> Section | None:
     >>> description_section(double_triangle()).title
     'Description and provenance'
     """
-    text = "Stated: printed in a source. Derived: follows from stated values. Assumed: chosen, or not tagged."
+    text = "Stated: printed in a source. Derived: computed from stated values. Assumed: chosen, or without a tag."
     values: tuple[Block, ...] = value_tables(mechanism, PAGE_ROWS)
     return section(
         "Description and provenance",
@@ -69,7 +69,7 @@ def limit_section(analysis: Analysis) -> Section | None:
     """
     blocks: list[Block | None] = [Prose(_LIMITS[analysis.model])]
     if not part_warnings(analysis.mechanism):
-        blocks.append(Prose("All parts are inside the range compared with beam theory."))
+        blocks.append(Prose("All parts are inside the range in which beam theory was compared with 3-D elasticity."))
     blocks.append(_missing_table(analysis))
     accuracy = error_of_theory_table(analysis.mechanism) if analysis.model is not Model.IDEAL else None
     return section("Limits", [*blocks, accuracy])
@@ -96,7 +96,7 @@ def error_of_theory_table(mechanism: Mechanism) -> Table | None:
         for name, errors in known.items()
         if errors
     }
-    note = "Negative: beam theory is too stiff. A component without a number was not compared with elasticity."
+    note = "Negative: beam theory is too stiff. Components without a number were not compared with 3-D elasticity."
     return text_table("Model error of beam theory in the compliance of the parts", ["part", *map(Column, COMPONENTS)], rows, notes=[note])
 
 

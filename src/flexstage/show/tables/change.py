@@ -22,7 +22,7 @@ def set_table(before: Mechanism, after: Mechanism, addresses: Iterable[str]) -> 
     ['parts.neck.thickness', '1.54 mm', '1.4 mm', '-0.14 mm', '-9.09 %']
     """
     heads = ["value", Column("old"), Column("new"), Column("change"), Column("relative")]
-    return make_table("Values set", heads, [_set_row(before, after, address) for address in dict.fromkeys(addresses)])
+    return make_table("Changed values", heads, [_set_row(before, after, address) for address in dict.fromkeys(addresses)])
 
 
 def _set_row(before: Mechanism, after: Mechanism, address: str) -> tuple[Cell, ...]:

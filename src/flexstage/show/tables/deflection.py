@@ -13,9 +13,9 @@ _NOISE = 1e-9
 
 
 def deflection_table(deflection: Deflection) -> Table:
-    """Tabulate the deflection of a point by cause: own weight, each payload, each specified force.
+    """Tabulate the deflection of a point due to own weight, each payload and each specified force.
 
-    Values at the level of rounding noise, relative to the largest translation or rotation, are shown as 0.
+    Rounding noise, relative to the largest translation or rotation, is shown as 0.
 
     >>> from flexstage.analysis.linear_statics.deflection import deflection
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -26,5 +26,5 @@ def deflection_table(deflection: Deflection) -> Table:
     values = np.array(first_design(deflection.by_cause.values, 2))
     for block in (values[:3], values[3:]):
         block[np.abs(block) < _NOISE * np.max(np.abs(block), initial=0.0)] = 0.0
-    note = "Actuators fixed. In closed loop the controller compensates the deflection measured by the gauges."
-    return matrix_table(f"Permanent load, {deflection.point}", replace(deflection.by_cause, values=values), notes=[note])
+    note = "Actuators are fixed. In closed loop, the controller compensates the deflection that the gauges measure."
+    return matrix_table(f"Deflection of {deflection.point} under permanent load", replace(deflection.by_cause, values=values), notes=[note])

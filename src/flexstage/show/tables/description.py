@@ -76,7 +76,7 @@ def kind_name(part: Part) -> str:
 
 
 def link_table(mechanism: Mechanism) -> Table | None:
-    """Tabulate the links of the design file: joined bodies, part, number of instances; `None` without links.
+    """Tabulate the links of the design file: connected bodies, part, number of instances; `None` without links.
 
     >>> link_table(Mechanism("")) is None
     True
@@ -97,9 +97,9 @@ _Numbers: TypeAlias = Mapping[str, tuple[Number, Quantity]]
 
 
 def value_tables(mechanism: Mechanism, most: int | None = None) -> tuple[Table, ...]:
-    """Tabulate all numbers of the description with unit, tag (stated, derived, assumed) and source; one table for each kind of entry.
+    """Tabulate all numbers of the description with unit, tag (stated, derived, assumed) and source, one table for each kind of entry.
 
-    With `most`, tables are limited to that number of rows, and a note states the number of further rows.
+    With `most`, tables are limited to that number of rows, and a note contains the number of further rows.
 
     >>> value_tables(Mechanism(""))[0].texts()[1]
     ['gravity', '(0, 0, -9.80665)', 'm/s^2', 'assumed', '']

@@ -17,12 +17,12 @@ def force_workspace_tables(found: ForceWorkspace) -> Iterator[Table | None]:
     yield result_table(found)
     if found.current.columns:
         yield column_table(
-            "Coil inputs at the travel", found.holding, head="along, coil", notes=["At the continuous travel, without permanent load."]
+            "Coil inputs at the continuous travel", found.holding, head="along, coil", notes=["Inputs for permanent load are not included."]
         )
 
 
 def drive_force_tables(found: DriveForce | None) -> Iterator[Table | None]:
-    """Tabulate the drive force per displacement and its excess over the ideal guide, in total and by flexure; no table without a result.
+    """Tabulate the drive force per displacement and its excess over the ideal guide, in total and by flexure. No table without a result.
 
     >>> list(drive_force_tables(None))
     []
@@ -35,5 +35,5 @@ def drive_force_tables(found: DriveForce | None) -> Iterator[Table | None]:
         for place, name in enumerate(found.shares.columns)
         for text, matrix in (("", found.shares), (", excess", found.excess))
     }
-    notes = ["Share of each flexure in the drive force, and its part of the excess over the ideal guide."]
+    notes = ["Contribution of each flexure to the drive force, and to its excess over the ideal guide."]
     yield merge_rows(make_table("Drive force by flexure", ["part", *columns], share_rows(columns, "all"), notes=notes))

@@ -25,14 +25,14 @@ def mobility_table(kinematics: Kinematics) -> Table | None:
         "gauges": kinematics.gauges,
     }
     rows = {name: (str(len(each)), ", ".join(each)) for name, each in named.items() if each or name != "force actuators"}
-    rows["free internal modes"] = str(len(kinematics.idle)), "move neither platform nor stroke"
+    rows["free internal modes"] = str(len(kinematics.idle)), "move neither platform nor actuators"
     rows["redundant constraints"] = str(len(kinematics.redundant)), "stress the stage if parts do not fit exactly"
     notes = [actuation_text(kinematics)]
     return text_table("Mobility", ["", Column("number"), "which"], rows, notes=notes, provenance=kinematics.provenance)
 
 
 def actuation_text(kinematics: Kinematics) -> str:
-    """State in one or two sentences whether the strokes determine the platform, and which motions forces command.
+    """Describe whether the strokes determine the platform, and along which coordinates forces act individually.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -44,12 +44,12 @@ def actuation_text(kinematics: Kinematics) -> str:
     strokes, mobility = len(kinematics.actuators), kinematics.mobility
     counted = f"{count_text(strokes, 'stroke')}, {count_text(mobility, 'DOF')}"
     if kinematics.thrusts and not kinematics.actuated:
-        return f"{counted}: the strokes do not determine the platform, and the mapping R_a is refused. {_command_text(kinematics)}"
+        return f"{counted}: the strokes do not determine the platform, so there is no mapping R_a. {_command_text(kinematics)}"
     if not kinematics.actuated:
         held = f", but the links lock {', '.join(kinematics.immobile)}" if kinematics.immobile and mobility else ""
-        return f"{counted}{held}: the strokes do not determine the platform, and the mapping R_a is refused."
+        return f"{counted}{held}: the strokes do not determine the platform, so there is no mapping R_a."
     if strokes > mobility:
-        return f"{counted}: redundant actuation, commands outside the range of R_a only stress the stage."
+        return f"{counted}: redundant actuation. Stroke combinations outside the range of R_a only stress the stage."
     return f"{counted}: the strokes determine the platform, and every command is free of stress in the ideal stage."
 
 
@@ -57,14 +57,14 @@ def _command_text(kinematics: Kinematics) -> str:
     """Ideal motions that forces, with the strokes, can command."""
     known = kinematics.commanded
     left = [name for name in kinematics.coordinates if name not in known]
-    reach = f"with any strokes they push along {', '.join(known)}" if known else "they push along no coordinate alone"
-    rest = f", not along {', '.join(left)} alone" if known and left else ""
+    reach = f"at any strokes, they act individually along {', '.join(known)}" if known else "they act along no coordinate individually"
+    rest = f", but not along {', '.join(left)}" if known and left else ""
     forces = count_text(len(kinematics.thrusts), "force actuator")
-    return f"{forces}: forces determine no motion; {reach}{rest}. The elastic model computes the travel."
+    return f"{forces}: forces do not determine motions; {reach}{rest}. The elastic model computes the travel."
 
 
 def force_table(kinematics: Kinematics) -> Table | None:
-    """Tabulate V^T W, the generalised forces of a unit input of each force actuator along ideal motions; `None` without force actuators.
+    """Tabulate V^T W, the generalised forces along ideal motions per unit input of each force actuator; `None` without force actuators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -74,7 +74,7 @@ def force_table(kinematics: Kinematics) -> Table | None:
     if not kinematics.thrusts or not kinematics.mobility:
         return None
     whole = kinematics.mobility == len(COMPONENTS)
-    note = "The platform's wrench at its reference point." if whole else "Generalised forces of the ideal motions only."
+    note = "Wrench on the platform at its reference point." if whole else "Generalised forces along the ideal motions only."
     found = kinematics.force_map
     rows = tuple(f"{name} [{WRENCH_UNITS[FORCES.index(name)]}]" for name in found.rows)
     columns = tuple(f"{name} [{unit}]" for name, unit in zip(found.columns, kinematics.thrust_inputs, strict=True))
@@ -82,7 +82,7 @@ def force_table(kinematics: Kinematics) -> Table | None:
 
 
 def mapping_table(kinematics: Kinematics) -> Table:
-    """Tabulate R_a = da/dxi, the stroke of each actuator for each motion of the platform; raises `DesignError` if under-actuated.
+    """Tabulate R_a = da/dxi, the stroke of each actuator for each motion of the platform. Raises `DesignError` if under-actuated.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -115,7 +115,7 @@ def jacobian_table(kinematics: Kinematics) -> Table:
 
 
 def motion_table(kinematics: Kinematics) -> Table | None:
-    """Tabulate V, the ideal motions of a platform with fewer than six DOFs, else `None`.
+    """Tabulate V, the ideal motions of a platform with fewer than six DOFs. Returns `None` for other platforms.
 
     Entries outside the named coordinates are parasitic motions.
 
@@ -127,7 +127,7 @@ def motion_table(kinematics: Kinematics) -> Table | None:
     if kinematics.mobility in (0, 6):
         return None
     units = ratio_units(TWIST_UNITS, tuple(TWIST_UNITS[COMPONENTS.index(name)] for name in kinematics.coordinates))
-    note = f"The length that makes rotations comparable with translations is {number(1e3 * kinematics.first_length, 4)} mm."
+    note = f"Rotations are compared with translations by a length of {number(1e3 * kinematics.first_length, 4)} mm."
     return matrix_table(
         "Ideal motions V", Matrix(kinematics.motion, COMPONENTS, kinematics.coordinates, units), units=("mrad",), notes=[note]
     )
@@ -142,4 +142,5 @@ def freedom_table(kinematics: Kinematics) -> Table:
     ['back (B1, B2, B3)', 'rx, ry, rz']
     """
     free = {link: ", ".join(freedom.value for freedom in freedoms) or "none" for link, freedoms in kinematics.free.items()}
-    return merge_rows(make_table("DOFs taken as free", ["link", "free"], free.items(), notes=["In each link's frame, x along the part."]))
+    notes = ["In the frame of each link, with x along the part."]
+    return merge_rows(make_table("Free DOFs of the links in the ideal model", ["link", "free"], free.items(), notes=notes))

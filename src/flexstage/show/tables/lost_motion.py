@@ -15,7 +15,7 @@ from flexstage.show.table import Cell, Column, Mark, Table, first_design, make_t
 _SHOWN = 1e-4
 _LARGEST = 3
 _NAMED, _MOST_NAMED = 0.02, 16
-"""Smallest share of an actuator's loss for which links of other units are named, and their largest number."""
+"""Smallest fraction of an actuator's loss for which a link of another unit is named, and the largest number of such links."""
 
 
 def loss_table(lost: LostMotion) -> Table:
@@ -29,7 +29,7 @@ def loss_table(lost: LostMotion) -> Table:
     """
     rows = [_loss_row(lost, name) for name in lost.loss.rows]
     heads = ["actuator", Column("gain"), Column("loss"), Column("coupling from others"), "largest contributions"]
-    note = "Gain: transmission ratio, actual over ideal motion. Coupling: the largest response to another actuator's command."
+    note = "Gain: transmission ratio, actual / ideal motion. Coupling: the largest response to the command of another actuator."
     return make_table("Lost motion", heads, rows, notes=[note], provenance=lost.provenance)
 
 
@@ -71,7 +71,7 @@ def budget_table(lost: LostMotion) -> Table | None:
     if not lost.budget:
         return None
     budgets = {name: named_budget(lost, name) for name in lost.loss.rows}
-    notes = [f"{_OWN_AND_OTHERS}, all axes together. Negative ones increase the gain."]
+    notes = [f"{_OWN_AND_OTHERS}, with all axes added up. Negative contributions increase the gain."]
     return make_table("Lost-motion budget", ["link", *(Column(name) for name in budgets)], share_rows(budgets, "loss"), notes=notes)
 
 
@@ -79,7 +79,7 @@ _OWN_AND_OTHERS = "Links without a unit's name are parts of the actuator's own u
 
 
 def named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
-    """Return the contributions to an actuator's loss, largest first: by link and axis in its own unit, by link in other units.
+    """Return the contributions to an actuator's loss, the largest first: by link and axis in its own unit, by link in other units.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -93,9 +93,9 @@ def named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
 
 
 def name_links(shares: Mapping[str, float], actuator: str, link: Callable[[str], str]) -> dict[str, float]:
-    """Rename shares by link for one actuator: names in its own instance lose the instance, and shares of other instances are added up.
+    """Rename contributions of links for one actuator: links of its own instance lose the instance's name.
 
-    The function `link` returns the name under which a share of another instance is added.
+    Contributions in other instances are added up, under the name that the function `link` returns.
 
     >>> name_links({"B1/front.rz": 1.0, "B2/front.ry": 2.0, "B2/front.rz": 3.0, "guide.y": 4.0}, "B1", lambda name: name.partition(".")[0])
     {'front.rz': 1.0, 'B2/front': 5.0, 'guide.y': 4.0}
@@ -110,7 +110,10 @@ def name_links(shares: Mapping[str, float], actuator: str, link: Callable[[str],
 
 
 def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[tuple[Cell, ...]]:
-    """Make rows of shares by link, largest first, with columns by actuator. Negligible links are one row; the last row is the `total`."""
+    """Make a row of contributions for each link, the largest first, with a column for each actuator.
+
+    Negligible links are combined in one row. The last row is the `total`.
+    """
     parts = list(dict.fromkeys(part for shares in columns.values() for part in shares))
     size = {part: max(abs(shares.get(part, 0.0)) for shares in columns.values()) for part in parts}
     ranked = sorted(parts, key=lambda part: -round(size[part], 9))
@@ -126,7 +129,7 @@ def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[t
 
 
 def foreign_links(ranked: Iterable[str], columns: Mapping[str, Mapping[str, float]]) -> list[str]:
-    """Select, from all links `ranked` by size, the links of other units with a significant share of a loss in `columns`.
+    """Select, from all links `ranked` by size, the links of other units with a significant contribution to a loss in `columns`.
 
     >>> foreign_links(["front.rz", "B2/front", "B2/back"], {"B1": {"front.rz": 0.02, "B2/front": 0.01, "B2/back": 0.0002}})
     ['B2/front']
@@ -163,7 +166,7 @@ def gain_table(lost: LostMotion) -> Table:
 
 
 def crosstalk_table(lost: LostMotion) -> Table:
-    """Tabulate R_a V^+ T: the achieved share of each commanded stroke (diagonal), and coupling to other actuators.
+    """Tabulate R_a V^+ T: the achieved fraction of each commanded stroke (diagonal), and the coupling to other actuators.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -171,7 +174,7 @@ def crosstalk_table(lost: LostMotion) -> Table:
     >>> crosstalk_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][4]
     '0.96632'
     """
-    note = "Row: motion in actuator strokes. Column: commanded actuator. Ideal: the identity matrix."
+    note = "Rows: motion as actuator strokes. Columns: commanded actuator. Without elasticity, this is the identity matrix."
     return matrix_table("Gain and crosstalk, R_a V+ T", lost.transfer, notes=[note])
 
 
@@ -189,7 +192,7 @@ def parasitic_table(lost: LostMotion) -> Table | None:
     weight = np.array([1.0, 1.0, 1.0, *[length] * 3])[:, None]
     if np.max(np.abs(values * weight), initial=0.0) < NOISE * np.max(np.abs(scale * weight), initial=0.0):
         return None
-    note = f"Rotations and translations are compared by a length of {number(1e3 * length, 4)} mm."
+    note = f"Rotations are compared with translations by a length of {number(1e3 * length, 4)} mm."
     return matrix_table("Parasitic motion per stroke", lost.parasitic, against=lost.gain, notes=[note])
 
 
@@ -206,7 +209,7 @@ def correction_table(lost: LostMotion) -> Table:
 
 
 def energy_table(lost: LostMotion) -> Table:
-    """Tabulate the shares of parts in the strain energy, when one actuator expands without other loads.
+    """Tabulate the strain-energy fractions of parts when one actuator expands and no other load acts.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -223,7 +226,7 @@ def energy_table(lost: LostMotion) -> Table:
 
 
 def energy_shares(lost: LostMotion) -> dict[str, dict[str, float]]:
-    """Return the shares of strain energy by expanding actuator and by part, of the actuator's unit or of another unit.
+    """Return the strain-energy fraction of each part, for each expanding actuator.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

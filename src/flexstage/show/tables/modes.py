@@ -7,14 +7,14 @@ from flexstage.models.batch.choice import THRESHOLD
 from flexstage.show.display import percent
 from flexstage.show.table import Table, batch_note, result_table
 
-PLATFORM_MODES = f"Each platform mode completes {percent(THRESHOLD, 2)} of the compliance in one more direction of the platform."
+PLATFORM_MODES = f"With each platform mode, modes explain {percent(THRESHOLD, 2)} of the compliance in one more direction of the platform."
 """Note on the criterion for platform modes."""
 
 _FURTHER = 3
 
 
 def mode_table(modes: Modes) -> Table | None:
-    """Tabulate frequencies, names, shares and planes of modes, up to the third mode above the highest platform or local mode.
+    """Tabulate frequencies, names, fractions and planes of modes, up to the third mode above the highest platform or local mode.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

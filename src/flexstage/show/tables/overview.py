@@ -28,7 +28,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS, WRENCH_UNITS
 _DIGITS = 4
 _ROWS = 8
 _LOSS = 3
-"""Columns of the table of lost motion up to the loss."""
+"""Number of columns in the table of lost motion, up to the loss."""
 _NO_REQUIREMENTS = "no requirements. Add a table [requirements] to the design file."
 
 
@@ -75,7 +75,7 @@ def floating_line(model: LinearModel | None) -> str | None:
     driving = [name for name, drives in zip(model.actuators, floats(model, model.actuators), strict=True) if drives]
     modes = "a mode" if len(twist) == 1 else f"{len(twist)} modes"
     where = f"No stiffness along {', '.join(axes)}, driven by {', '.join(driving)}"
-    return f"{where}: {modes} at 0 Hz; static stiffness and strokes at force are undefined there."
+    return f"{where}: {modes} at 0 Hz. Static stiffness, and strokes under force, are undefined along these axes."
 
 
 def small_line(analysis: Analysis) -> str | None:
@@ -99,13 +99,13 @@ def count_text(count: int, thing: str) -> str:
 
 
 def overview_tables(analysis: Analysis) -> Iterator[Table | str | None]:
-    """Make the tables of the requirements and of the summary, without notes under the summary's first table."""
+    """Make the tables of the requirements and of the summary. The first table of the summary has no notes."""
     yield verdict_table(analysis.verdicts)
     yield from summary_tables(analysis, explained=False)
 
 
 def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | str | None]:
-    """Make the summary: the platform's axes and modes, lost motion, and strength; if `explained`, with notes under the first table.
+    """Make the summary: the platform's axes and modes, lost motion, and strength. If `explained`, the first table has notes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -150,11 +150,11 @@ def axis_table(analysis: Analysis) -> Table | None:
 
 def _axis_note(analysis: Analysis) -> str:
     said = {
-        "Strokes: one axis at a time, lost motion made up by command": analysis.workspace is not None and analysis.lost_motion is not None,
+        "Strokes: one axis at a time, with corrected lost motion": analysis.workspace is not None and analysis.lost_motion is not None,
         "Strokes: one axis at a time": analysis.workspace is not None and analysis.lost_motion is None,
-        "Strokes: elastic motion, held for ever": analysis.force_workspace is not None,
-        "Stiffness: against a load along that axis, strokes held, the other axes free": analysis.statics is not None,
-        "Resolution: all gauges a step off, signs at their worst": bool(_resolution(analysis)),
+        "Strokes: elastic motion that can be held continuously": analysis.force_workspace is not None,
+        "Stiffness: under a load along that axis, with fixed actuators and the other axes free": analysis.statics is not None,
+        "Resolution: pose error if all gauges are off by one step, with the worst signs": bool(_resolution(analysis)),
     }
     return "".join(f"{text}. " for text, there in said.items() if there).rstrip()
 
@@ -173,7 +173,7 @@ def _strokes(analysis: Analysis) -> Mapping[str, tuple[str, str]]:
     else:
         return {}
     return {
-        name: (NO_VALUE if np.isnan(value) else f"+-{_shown(value, name, TWIST_UNITS)}", cause or "no limit stated")
+        name: (NO_VALUE if np.isnan(value) else f"+-{_shown(value, name, TWIST_UNITS)}", cause or "no limit specified")
         for name, value, cause in zip(names, np.real(values), causes, strict=True)
     }
 
@@ -207,7 +207,7 @@ def _platform_modes(modes: Modes) -> Table | None:
     notes: list[str] = []
     if modes.local:
         lowest = number(modes.mode(min(modes.local)).frequency, _DIGITS)
-        notes = [f"Up to 1.5 times the highest: {count_text(len(modes.local), 'mode')} of single units, from {lowest} Hz."]
+        notes = [f"{count_text(len(modes.local), 'local mode')} of single units from {lowest} Hz to 1.5 times the highest frequency."]
     fields = "number frequency name platform_share compliance_share"
     table = result_table(tuple(map(modes.mode, modes.platform)), fields, title="Platform modes", notes=notes)
     return None if table is None else merge_rows(table)
@@ -254,7 +254,7 @@ def _weakest_text(found: HingeStress) -> str:
 
 
 def closing_text(analysis: Analysis, *, whole: bool) -> str:
-    """Format the verdict: number of met requirements, smallest margin, its cause, and, unless `whole`, options for more output.
+    """Format the verdict: number of requirements that are met, the smallest margin and its cause. Unless `whole`, it lists further options.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse
@@ -264,7 +264,7 @@ def closing_text(analysis: Analysis, *, whole: bool) -> str:
     """
     doubts = () if analysis.ends is None else analysis.ends.warnings
     more = "".join(f"\n  warning: {each}" for each in doubts) + (
-        "" if whole else "\n  All tables: --full. With pictures, in one page: --report FILE."
+        "" if whole else "\n  For all tables, use --full. For a page with pictures, use --report FILE."
     )
     if not analysis.verdicts:
         return f"Verdict: {_NO_REQUIREMENTS}{more}"
@@ -315,7 +315,7 @@ def _loss_cause(analysis: Analysis, name: str) -> str:
 def _safety_cause(analysis: Analysis, _: str) -> str:
     stress = None if analysis.workspace is None else analysis.workspace.stress
     if stress is None and analysis.kinematics.thrusts:
-        return "all coils at peak current; safety.at_strokes is at the required strokes"
+        return "all coils at peak current; for the required strokes, use safety.at_strokes"
     return f"the hinge {stress.weakest}" if stress is not None and stress.links else ""
 
 

@@ -25,5 +25,5 @@ def random_table(found: RandomResponse) -> Table:
     values = np.column_stack([rms, shares / np.where(sums > 0.0, sums, 1.0)])
     units = tuple((channel.unit, *("%",) * len(found.inputs)) for channel in found.outputs)
     table = Matrix(values, found.responding, ("rms", *(f"from {name}" for name in found.disturbing)), units)
-    band = f"From {number(found.band[0], 4)} to {number(found.band[1], 4)} Hz; inputs uncorrelated. {found.method}."
+    band = f"From {number(found.band[0], 4)} to {number(found.band[1], 4)} Hz, for uncorrelated inputs. {found.method}."
     return column_table("Random response", table, head="output", notes=[band], provenance=found.provenance)

@@ -16,7 +16,7 @@ _LEAST = 0.01
 
 
 def verdict_table(verdicts: Sequence[Verdict], *, explained: bool = False) -> Table | None:
-    """Tabulate requirements with limit, value, margin and verdict, if `explained` with their meaning; `None` without requirements.
+    """Tabulate requirements with limit, value, margin and verdict; if `explained`, also with their meaning. `None` without requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -59,7 +59,7 @@ def meaning(verdict: Verdict) -> str:
 
 
 def verdict_text(verdicts: Sequence[Verdict]) -> str:
-    """State the number of met requirements, and the smallest margin or the failed requirements, in one or two sentences.
+    """Describe the verdict: the number of requirements that are met, and the smallest margin or the failed requirements.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge
@@ -101,7 +101,7 @@ def value_text(verdict: Verdict) -> str:
 
 
 def quantity_text(value: float, quantity: Quantity, digits: int = DIGITS) -> str:
-    """Format an SI value in the display unit of its quantity; values below a hundredth of that unit are in a smaller unit.
+    """Format an SI value in the display unit of its quantity, or in a smaller unit if it is below a hundredth of that unit.
 
     >>> from flexstage.base.units.quantity import STIFFNESS
     >>> quantity_text(17e6, STIFFNESS), quantity_text(420.0, STIFFNESS)

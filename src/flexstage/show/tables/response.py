@@ -17,7 +17,7 @@ _NOISE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """One entry of a response over frequency: `values` (f,) complex, output over input, in SI `unit`."""
+    """One entry of a frequency response: complex ratio of output and input, `values` (f,), in SI `unit`."""
 
     output: str
     input: str
@@ -26,7 +26,7 @@ class Curve:
 
 
 def leading_curves(response: Response) -> tuple[Curve, ...]:
-    """Select for each output the response to the input with the largest effect at the lowest frequency (first design of a batch).
+    """Select, for each output, the response to the input with the largest effect at the lowest frequency (first design of a batch).
 
     >>> import numpy as np
     >>> from flexstage.models.linear.model import Channel
@@ -51,7 +51,7 @@ def _leading_input(gains: Array) -> int:
 def response_table(response: Response) -> Table:
     """Tabulate the gain at the lowest frequency, the highest magnitude and its frequency, for each output and its leading input.
 
-    Values at the level of rounding noise are shown as 0.
+    Rounding noise is shown as 0.
 
     >>> import numpy as np
     >>> from flexstage.models.linear.model import Channel
@@ -70,10 +70,10 @@ def response_table(response: Response) -> Table:
     found = Matrix(
         np.column_stack([low, highest, there, rise]),
         tuple(f"{curve.output}, {curve.input}" for curve in curves),
-        ("low-frequency gain", "highest magnitude", "at", "rise"),
+        ("low-frequency gain", "highest magnitude", "at frequency", "ratio"),
         tuple((curve.unit, curve.unit, "Hz", "1") for curve in curves),
     )
     band = f"From {number(float(response.frequencies[0]), 4)} to {number(float(response.frequencies[-1]), 4)} Hz."
-    noise = ["0: rounding noise, below 1e-9 of the largest magnitude in its unit."] if not np.all(low) else []
+    noise = ["0: rounding noise, below 1e-9 of the largest magnitude with the same unit."] if not np.all(low) else []
     notes, provenance = [band, *noise], response.provenance
     return column_table("Frequency responses", found, head="output, leading input", notes=notes, provenance=provenance)

@@ -13,7 +13,7 @@ from flexstage.show.table import Table, column_table
 
 
 def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: int = 15) -> Table:
-    """Tabulate the `top` parameters by effect on the lowest frequencies: change in per cent for 1 % change of the parameter.
+    """Tabulate the `top` parameters with the largest effect on the lowest frequencies: change in per cent for 1 % change of the parameter.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.sensitivities import sensitivities
@@ -24,12 +24,12 @@ def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: in
     relative = found.relative_frequency
     values = relative.values[:, :modes]
     heads = [f"{name} ({frequency:.5g} Hz)" for name, frequency in zip(relative.columns[:modes], found.frequencies, strict=False)]
-    note = "Relative change of the frequency per relative change of the parameter; for repeated modes the change of their mean."
+    note = "Relative change of the frequency per relative change of the parameter. For repeated modes, the change of their mean frequency."
     return _ranking_table("Sensitivities of the frequencies", found, values, heads=heads, top=top, note=note)
 
 
 def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | None:
-    """Tabulate the `top` parameters by effect on the losses: loss in per cent of stroke for 1 % change of the parameter.
+    """Tabulate the `top` parameters with the largest effect on losses: change in per cent of the stroke for 1 % change of the parameter.
 
     Returns `None` without losses.
 
@@ -42,7 +42,7 @@ def loss_sensitivity_table(found: Sensitivities, *, top: int = 15) -> Table | No
     if not found.actuators:
         return None
     matrix = found.relative_loss
-    note = "Change of the loss (a share of the stroke) per relative change of the parameter."
+    note = "Change of the loss, as a fraction of the stroke, per relative change of the parameter."
     return _ranking_table("Sensitivities of the lost motion", found, matrix.values, heads=matrix.columns, top=top, note=note)
 
 

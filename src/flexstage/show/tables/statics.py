@@ -19,7 +19,7 @@ _STEP = 15
 
 
 def stiffness_table(statics: Statics) -> Table:
-    """Tabulate the stiffness matrix K of the platform, actuators fixed.
+    """Tabulate the stiffness matrix K of the platform with fixed actuators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -31,7 +31,7 @@ def stiffness_table(statics: Statics) -> Table:
 
 
 def compliance_table(statics: Statics) -> Table:
-    """Tabulate the compliance matrix C of the platform, actuators fixed.
+    """Tabulate the compliance matrix C of the platform with fixed actuators.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -54,14 +54,14 @@ def freedom_stiffness_table(freedoms: FreedomStiffness) -> Table:
     left, rest = freedoms.motions, freedoms.constraints
     names = (*(f"{name}, free motion" for name in left.rows), *(f"{name}, constrained" for name in rest.rows))
     whole = by_freedom(np.concatenate([left.values, rest.values], axis=-2), (*left.rows, *rest.rows))
-    note = "Actuators fixed. Others free: as in a push test, including parasitic motion along other axes."
+    note = "Actuators are fixed. Others free: other motions are free, as in a push test, including parasitic motion along other axes."
     locked = [f"{reason[:1].upper()}{reason[1:]}." for reason in sorted(set(freedoms.reasons.values()))]
     found = replace(whole, rows=names, columns=("others free", "others fixed"))
     return column_table(f"Stiffness by DOF at {freedoms.point}", found, head="DOF", notes=(note, *locked))
 
 
 def mass_tables(mass: MassMatrix) -> Iterator[Table]:
-    """Tabulate the mass at a point: mass of its body with payloads, and condensed mass of the whole stage.
+    """Tabulate two mass matrices at a point: its body with payloads, and the whole stage by static condensation.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")
@@ -71,7 +71,7 @@ def mass_tables(mass: MassMatrix) -> Iterator[Table]:
     if mass.rigid is not None:
         yield matrix_table(f"Mass at {mass.point}, {mass.body} with payloads", _short(mass.rigid))
     if mass.reduced is not None:
-        note = "Statically condensed (Guyan), actuators fixed: other masses follow quasi-statically."
+        note = "Static (Guyan) condensation with fixed actuators: all other masses follow quasi-statically."
         yield matrix_table(f"Mass at {mass.point}, whole stage", _short(mass.reduced), notes=[note])
 
 
@@ -85,7 +85,7 @@ def _points(statics: Statics) -> str:
 
 
 def direction_table(statics: Statics, load: float = _LOAD) -> Table:
-    """Tabulate displacement and stiffness by direction of a force `load` [N] in the plane (as in the paper's Table 1).
+    """Tabulate displacement and stiffness for several directions of a force `load` [N] in the plane, as in the paper's Table 1.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

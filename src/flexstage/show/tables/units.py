@@ -12,7 +12,7 @@ from flexstage.show.table import Column, Table, result_table, text_table
 
 
 def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
-    """Tabulate the springs and arms of lever units as in Eqs. 3-11 of Shin & Moon; `None` without lever units.
+    """Tabulate the spring constants and arms of lever units, as in Eqs. 3-11 of Shin & Moon; `None` without lever units.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.linear_statics.units import units
@@ -23,7 +23,7 @@ def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
 
 
 def omitted_table(found: Omitted, *, top: int = 12) -> Table | None:
-    """Tabulate the change of a gain by each DOF that a simpler theory omits, the `top` DOFs individually, others in one row.
+    """Tabulate the effect on a gain of each DOF that a simpler theory omits: the `top` DOFs individually, the others in one row.
 
     >>> omitted_table(Omitted("platform.z", "B1", 2.0, 1.9, {"lever.rz": -0.1, "lever.x": 1e-15})).texts()[2:4]
     [['lever.rz', '-0.1', '-5.26 %'], ['further DOFs', '+0', '0 %']]
@@ -35,7 +35,7 @@ def omitted_table(found: Omitted, *, top: int = 12) -> Table | None:
     further = {"further DOFs": sum(change for change in rest if abs(change) >= least)} if rest else {}
     changes = {**kept, **further, "interaction": found.interaction}
     rows = {name: (f"{change:+.4g}", percent(change / found.full, 3)) for name, change in changes.items()}
-    title = f"Omitted by the simple theory: {found.output} over {found.input}"
+    title = f"DOFs that the simple theory omits, and their effect on {found.output} / {found.input}"
     ends = {name: (number(value), "") for name, value in (("simple theory", found.simple), ("full theory", found.full))}
     rows = {"simple theory": ends["simple theory"], **rows, "full theory": ends["full theory"]}
-    return text_table(title, ["restored DOF", Column("value"), Column("of the full")], rows)
+    return text_table(title, ["added DOF", Column("value"), Column("relative to full theory")], rows)

@@ -19,7 +19,7 @@ from flexstage.spatial.frame import MOTION
 
 
 def command_text(command: Mapping[str, Number]) -> str:
-    """Format a box of commanded motions as text.
+    """Format the ranges of commanded motions as text.
 
     >>> command_text({"x": 50e-6, "rz": 244e-6})
     'x +-50 um, rz +-244 urad'
@@ -28,9 +28,9 @@ def command_text(command: Mapping[str, Number]) -> str:
 
 
 def stroke_tables(workspace: Workspace) -> Iterator[Table | None]:
-    """Tabulate the platform's strokes along single coordinates, ideal and with corrected lost motion, and the use by the command."""
+    """Tabulate the platform's strokes along single coordinates, ideal and with corrected lost motion, and the use of actuators."""
     yield result_table(workspace.single_axis)
-    yield result_table(workspace.corrected, title="Single-axis strokes, lost motion corrected by command")
+    yield result_table(workspace.corrected, title="Single-axis strokes with corrected lost motion")
     yield None if workspace.worst_case is None else corner_table(workspace.worst_case)
 
 
@@ -44,14 +44,15 @@ def corner_table(corner: Utilisation) -> Table | None:
     scale = single(corner.scale)
     verdict = "within reach" if scale >= 1.0 else "out of reach"
     return result_table(
-        corner, notes=[f"{command_text(corner.command)}, all at once: {verdict}; the box can be scaled by {number(scale, 4)}."]
+        corner,
+        notes=[f"All combinations of {command_text(corner.command)}: {verdict}; all ranges can be scaled by {number(scale, 4)}."],
     )
 
 
 def gauge_tables(workspace: Workspace) -> Iterator[Table | None]:
     """Tabulate gauge readings at the commanded corner relative to the gauges' ranges, and the pose resolution."""
     gauges = workspace.gauges
-    yield None if gauges is None else result_table(gauges, notes=[f"{command_text(gauges.command)}, all at once."])
+    yield None if gauges is None else result_table(gauges, notes=[f"Worst combination of {command_text(gauges.command)}."])
     yield result_table(workspace.resolution)
 
 
@@ -67,7 +68,7 @@ def strength_tables(workspace: Workspace) -> Iterator[Table | None]:
 
 
 def weakest_first(found: HingeStress | Buckling | None) -> Table | None:
-    """Tabulate stress or buckling loads, sorted by factor: unknown factors, then the smallest; rows with equal cells are merged."""
+    """Tabulate stress or buckling loads: unknown safety factors first, then the smallest. Rows with equal cells are merged."""
     table = result_table(found)
     if found is None or table is None:
         return None

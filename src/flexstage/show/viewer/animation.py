@@ -42,8 +42,8 @@ _Label: TypeAlias = tuple[str, str, str, float | None]
 def stroke_data(mechanism: Mechanism, path: LoadPath, found: Stroke, *, text: str = "") -> StageData:
     """Return viewer data of a stage along a load path: one motion through its points, and the first modes at its last stable point.
 
-    Flexures follow their centre lines; a part known only by its 6x6 matrix is interpolated linearly between its ends. Points without an
-    equilibrium are skipped. `text` is the design file's text, for line numbers.
+    Flexures follow their centre lines; parts that are known only by a 6x6 matrix are interpolated linearly between their ends. Points
+    without an equilibrium are skipped. `text` is the text of the design file, for line numbers.
     """
     still = still_data(mechanism, text=text)
     motions = [_along(still, path.state, path.drive, found), *_modes_there(still, path)]
@@ -58,7 +58,7 @@ def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
 
 
 def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: PostBuckling | None = None) -> StageData:
-    """Return viewer data of buckling: in each load case the mode about the last stable state, and the path `after` buckling."""
+    """Return viewer data of buckling: for each load case, the buckling mode about the last stable state, and the path `after` buckling."""
     still = still_data(mechanism)
     motions = [
         motion
@@ -96,7 +96,7 @@ def _along(still: StageData, state: State, drive: str, found: Stroke | Misaligne
 
 
 def curves_of(along: Matrix) -> tuple[Curve, ...]:
-    """Convert quantities along a path (rows: points, columns: quantities) to curves in display units; the first is the drive."""
+    """Convert quantities along a path (rows: points, columns: quantities) to curves in display units. The first curve is the drive."""
     return tuple(
         Curve(name, to_typography("" if form.unit == "1" else form.unit), values * form.factor)
         for name, values, form in quantities_of(along)
@@ -114,7 +114,7 @@ def quantities_of(along: Matrix) -> Iterator[tuple[str, Array, DisplayUnit]]:
 
 
 def limits(found: Stroke | Misaligned) -> tuple[str, ...]:
-    """Describe the exceeded limits at each point; an empty text if no limit is exceeded."""
+    """Describe the exceeded limits at each point. The text is empty if no limit is exceeded."""
     return tuple(to_typography("; ".join(_words(found, point))) for point in range(len(found.along.values)))
 
 
@@ -128,12 +128,12 @@ def _words(found: Stroke | Misaligned, point: int) -> Iterator[str]:
     strained = found.strained
     for place in _over(found, point):
         stress, limit = (format_value(float(each), "Pa", 4) for each in (strained.stress[point, place], strained.limit[place]))
-        yield f"{strained.names[place]}: {stress} of {limit}"
+        yield f"{strained.names[place]}: stress {stress}, limit {limit}"
     loose = found.along.values[point, found.along.columns.index("unstable")]
     if np.isnan(loose):
         yield "no equilibrium found"
     elif loose > 0:
-        yield "the free stage is not stable here"
+        yield "the free stage is unstable"
 
 
 def _parts_beyond(found: Stroke | Misaligned, numbers: Mapping[str, int]) -> tuple[tuple[int, ...], ...]:
@@ -283,10 +283,10 @@ def _carried(still: StageData, carrier: _Carrier, bodies: Array, lines: Mapping[
 
 @check_arguments
 def animate(mechanism: Mechanism, path: LoadPath) -> Any:
-    """Animate a stage along a load path at large displacements: notebooks show the view, `save` writes it as a page.
+    """Animate a stage along a load path at large displacements. Notebooks show the view; its method `save` writes a page.
 
-    Curves of force, stiffness, parasitic motion and frequencies are below the stage, with a cursor; values beyond a limit are red. Small
-    motions are magnified by the displayed factor.
+    Curves of force, stiffness, parasitic motion and frequencies are below the stage, with a cursor. Values that exceed a limit are red.
+    Small motions are magnified by the displayed factor.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")

@@ -19,23 +19,25 @@ _INTERVALS = 400
 class Bend:
     """Shape functions of a straight part with its first end fixed, for an offset and a rotation of its second end.
 
-    The deflection at the share s of the length L, 0 to 1, is v(s) = offset N(s) + rotation L M(s). N and M and their slopes are zero at the
-    ends, except N(1) = M'(1) = 1. The columns of `values` (n, 5) at `shares` (n,) are s (for elongation and twist), N, M, N' and M'.
+    The deflection at the fraction s of the length L, 0 to 1, is v(s) = offset N(s) + rotation L M(s). N, M and their slopes are zero at the
+    ends, except N(1) = M'(1) = 1. The columns of `values` (n, 5) at the fractions `shares` (n,) are s (for elongation and twist), N, M, N'
+    and M'.
     """
 
     shares: Array
     values: Array
 
     def at(self, shares: Array) -> Array:
-        """Interpolate the values (k, 5) at shares (k,)."""
+        """Interpolate the values (k, 5) at fractions (k,) of the length."""
         return np.stack([np.interp(shares, self.shares, column) for column in self.values.T], axis=-1)
 
 
 def bend_of(part: Part | None) -> Bend:
-    """Compute the shape functions of a part, as a beam with its sections and loads only at its ends; without a shape, as a uniform beam.
+    """Compute the shape functions of a part as a beam with its cross-sections and with loads at its ends only.
 
     Curvature is proportional to (a + b s) / I(s), with the smallest second moment of area I. The constants a and b follow from the
-    conditions at the ends. For a uniform part the functions are cubic Hermite polynomials. Shear is neglected.
+    conditions at the ends. For a uniform part, the functions are cubic Hermite polynomials. Shear is neglected. A part without a shape is
+    treated as uniform.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> bend_of(Leaf("steel", 0.02, 0.001, 0.01)).at(np.array([0.5, 1.0])).round(4).tolist()

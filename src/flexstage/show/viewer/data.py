@@ -44,7 +44,7 @@ from flexstage.show.viewer.parts import Describer, DrawnEntry
 FORMAT = 1
 _Found = TypeVar("_Found")
 _STEPS, _PIECES = 12, 1800
-"""Segments of a bent link, and their largest number for all links."""
+"""Number of segments of a bent link, and their largest total number."""
 _MODES = 12
 _LOADED = ", small motions about the loaded stage"
 
@@ -53,9 +53,9 @@ _LOADED = ", small motions about the loaded stage"
 class StageData:
     """Data of a viewer for a stage: its mesh, its parts by number, and its motions.
 
-    `bodies` are in the order of twists, the ground first. `size` is the diagonal of the box around everything and `centre` (3,) its middle
-    [m]. `bones` are the bodies with their reference points. `things` are the drawn parts. `notes` list the simplifications of the picture
-    with reasons.
+    `bodies` are in the sequence of twists, the ground first. `size` [m] is the diagonal of the box around everything, and `centre` (3,) [m]
+    is its middle. `bones` are the bodies with their reference points. `things` are the drawn parts. `notes` list the simplifications of the
+    picture with reasons.
     """
 
     name: str
@@ -71,11 +71,11 @@ class StageData:
 
     @cached_property
     def links(self) -> tuple[int, ...]:
-        """Part numbers of hinges and actuators, in the order of a motion's strain energies."""
+        """Part numbers of hinges and actuators, in the sequence of a motion's strain energies."""
         return tuple(number for number, thing in enumerate(self.things) if thing.kind in {Kind.HINGE, Kind.DRIVE})
 
     def reach(self, motion: Motion) -> float:
-        """Return the largest displacement [m] in a motion: of any vertex, or at large displacements of any body's reference or node."""
+        """Return the largest displacement [m] of a vertex in a motion; at large displacements, of a body's reference point or a node."""
         if motion.course is not None:
             return motion.course.reach
         moved = self.mesh.displacement(motion.twists)
@@ -101,7 +101,7 @@ class StageData:
         }
 
     def text(self) -> str:
-        """Convert the document to JSON; equal stages have equal bytes."""
+        """Convert the document to JSON. Equal stages give equal bytes."""
         return json.dumps(self.document(), separators=(",", ":"), allow_nan=False)
 
     def _label(self, label: Label) -> dict[str, Any]:
@@ -142,9 +142,9 @@ def stage_data(
     """Compute the data of a viewer for a stage (first design of a batch), with motions.
 
     The lumped `model`, the ideal `kinematics`, the modes `found` and the data `still` without motions are computed unless specified.
-    Motions that cannot be computed are left out, with the reason among the notes. `weighed` is another model for the modes: small motions
-    about the loaded stage. `text` is the text of the design file, for line numbers. `count` is the number of lowest modes shown; platform
-    modes are always included. Raises `DesignError` if the stage cannot be drawn.
+    Motions that cannot be computed are left out, with the reason in the notes. `weighed` is the model for modes about the loaded stage.
+    `text` is the text of the design file, for line numbers. `count` is the number of lowest modes shown; platform modes are always
+    included. Raises `DesignError` if the stage cannot be drawn.
     """
     still = still or still_data(mechanism, text=text)
     notes, motions, bones = list(still.notes), list[Motion](), still.bones
@@ -164,7 +164,7 @@ def stage_data(
 
 
 def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
-    """Compute the data of a viewer for a stage (first design of a batch), without motions; no model is needed."""
+    """Compute the data of a viewer for a stage (first design of a batch) without motions. No model is needed."""
     assembly = expand(mechanism)
     steps = max(1, min(_STEPS, _PIECES // max(1, len(assembly.links))))
     seen = scene(mechanism, steps=steps)
@@ -175,7 +175,7 @@ def still_data(mechanism: Mechanism, *, text: str = "") -> StageData:
     mesh = mesh_of(seen.pieces, numbers, {name: number for number, name in enumerate(shown)}, _bends(assembly), bend_of(None))
     low, high = (mesh.points.min(axis=0), mesh.points.max(axis=0)) if len(mesh.points) else (np.zeros(3), np.zeros(3))
     size, middle = _size(seen, low, high), 0.5 * (low + high)
-    coarse = f"{len(assembly.links)} links are drawn as bent in {steps} piece{'s' if steps > 1 else ''} each"
+    coarse = f"each of the {len(assembly.links)} links is drawn with {steps} segment{'s' if steps > 1 else ''} when bent"
     notes = (*([coarse] if steps < _STEPS else []), *_simplifications(assembly))
     return StageData(mechanism.name or "stage", size, middle, bodies, Skeleton(seen.references), things, seen.labels, mesh, (), notes)
 

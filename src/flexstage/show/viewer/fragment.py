@@ -1,4 +1,4 @@
-"""The viewer in an HTML page: HTML elements, the data of stages, and the viewer's program; nothing is loaded.
+"""The viewer in an HTML page: HTML elements, the data of stages, and the viewer's program. No other file is loaded.
 
 A page contains any number of `element`s, one `data_script` for each stage and one `bundle_script`. The script finds the elements and
 draws each when it becomes visible. Without scripts or WebGL, the content of the element is shown.
@@ -16,8 +16,8 @@ from flexstage.show.viewer.data import StageData
 def element(key: str, *, motion: str = "", instead: str = "") -> str:
     """Write the HTML element of a viewer for the data named `key`.
 
-    The viewer starts with a `motion` such as "mode 1" or "stroke B1", or undeformed. `instead` is unescaped HTML that is shown without
-    scripts or WebGL, and in print.
+    The viewer starts with a `motion` such as "mode 1" or "stroke B1", by default with the undeformed stage. `instead` is HTML, inserted
+    without escapes, that is shown in print, and without scripts or WebGL.
 
     >>> element("stage", motion="mode 1", instead="<p>a picture</p>")
     '<div data-flexstage="stage" data-motion="mode 1"><p>a picture</p></div>'
@@ -27,7 +27,7 @@ def element(key: str, *, motion: str = "", instead: str = "") -> str:
 
 
 def data_script(key: str, data: StageData) -> str:
-    """Write the script element with a stage's data, once in a page, for all viewers with this `key`.
+    """Write the script element with a stage's data, once in a page for all viewers with this `key`.
 
     Every "<" in the data is escaped, so that no text can end the script.
     """

@@ -1,4 +1,4 @@
-"""The mesh of a stage: triangles and sharp edges; each vertex has a part and a share between its two bodies."""
+"""The mesh of a stage: triangles and sharp edges. Each vertex belongs to a part, and has a position between its two bodies."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from flexstage.show.viewer.bend import COLUMNS, Bend
 class Mesh:
     """Vertices, triangles and edges of a stage in its frame.
 
-    `points` (v, 3) [m] are the positions of vertices; `part`, `carrier` and `station` (v,) are indices by vertex. A carrier is a piece
-    between two bodies, with their numbers `bodies` (c, 2), 0 for the ground, and its `ends` (c, 2, 3) [m] at the bodies. For a rigid piece
-    both bodies are equal. The rows of `stations` (s, 5) are values of a `Bend`. `triangles` (t, 3) are counter-clockwise from outside;
-    `edges` (e, 2) are sharp edges.
+    `points` (v, 3) [m] are the positions of vertices. `part`, `carrier` and `station` (v,) contain indices for each vertex. A carrier is a
+    piece between two bodies, with their numbers `bodies` (c, 2), 0 for the ground, and its `ends` (c, 2, 3) [m] at the bodies. For a rigid
+    piece, both bodies are equal. The rows of `stations` (s, 5) are values of a `Bend`. `triangles` (t, 3) are counter-clockwise from
+    outside; `edges` (e, 2) are sharp edges.
     """
 
     points: Array
@@ -37,7 +37,7 @@ class Mesh:
 
     @cached_property
     def centres(self) -> Array:
-        """Points (v, 3) on the lines between the ends of carriers, at the vertices' shares."""
+        """Points (v, 3) on the lines between the ends of carriers, at the vertices' fractions of their lengths."""
         first, second = self.ends[self.carrier, 0], self.ends[self.carrier, 1]
         return first + self.stations[self.station, :1] * (second - first)
 
@@ -51,8 +51,8 @@ class Mesh:
     def displacement(self, twists: Array) -> Array:
         """Compute the displacement (v, 3) of the vertices for small twists (b, 6) of the bodies at the origin.
 
-        For a twist (t, w), a point p of a body moves by t + w x p. A link moves with its first body, and bends (see `Bend`) by the relative
-        motion of the second body. The viewer's shader computes the same.
+        For a twist (t, w), a point p of a body moves by t + w x p. A link moves with its first body, and bends (see `Bend`) due to the
+        motion of the second body relative to the first. The viewer's shader computes the same displacement.
         """
         first, second = (twists[self.bodies[self.carrier, side]] for side in (0, 1))
         rigid = first[:, :3] + np.cross(first[:, 3:], self.points)
@@ -119,7 +119,7 @@ def _stations(piece: DrawnPiece, bend: Bend) -> Array:
 
 
 def body_names(names: Iterable[str]) -> tuple[str, ...]:
-    """Return the names of the ground, number 0, and of the bodies in order.
+    """Return the names of the ground, which has number 0, and of the bodies in sequence.
 
     >>> body_names(["platform"])
     ('ground', 'platform')

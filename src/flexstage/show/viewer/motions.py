@@ -75,10 +75,10 @@ class Response:
 class PathMotion:
     """Large displacements through the points of a path, or a small motion about one displaced state.
 
-    `poses` (f, rows, 6) are displacements and rotation vectors: of the reference of each body, the ground first, then of the nodes along
-    bending pieces. `frames` (f,) are the numbers of the path's points with these poses. `shape` (rows, 6) is a small motion about the only
-    pose. `curves` are quantities along the path; the first is the drive. At every point, `beyond` are the numbers of parts beyond a limit,
-    `said` the exceeded limits.
+    `poses` (f, rows, 6) are displacements and rotation vectors of the reference points of the bodies, the ground first, then of the nodes
+    along bending pieces. `frames` (f,) are the numbers of the path's points with these poses. `shape` (rows, 6) is a small motion about the
+    only pose. `curves` are quantities along the path; the first is the drive. For every point, `beyond` contains the numbers of parts that
+    exceed a limit, and `said` describes the exceeded limits.
     """
 
     frames: Array
@@ -90,7 +90,7 @@ class PathMotion:
 
     @property
     def reach(self) -> float:
-        """Largest displacement [m] of a body's reference or a node."""
+        """Largest displacement [m] of a body's reference point or of a node."""
         moved = self.poses if self.shape is None else self.shape
         return float(np.sqrt(np.max(np.sum(moved[..., :3] ** 2, axis=-1), initial=0.0)))
 
@@ -99,10 +99,11 @@ class PathMotion:
 class Motion:
     """A motion of all bodies: `twists` (b, 6) at the stage's origin, the ground first.
 
-    `name` is unique in its group; `remark` adds information; modes have a `frequency` [Hz]. `energy` is the strain-energy fraction by name
-    of links and other elastic parts, `None` if unknown. `stress` is the utilisation of links by name, `stressed` its condition, for example
-    at the full stroke. The amplitude is physical except for modes. Large displacements, along a path or about a state, have a `course`
-    instead of twists. Motions over time have a `response`; their twists are those at the time of the largest displacement.
+    `name` is unique in its group; `remark` contains further information; modes have a `frequency` [Hz]. `energy` contains the strain-energy
+    fractions of links and other elastic parts by name, `None` if unknown. `stress` contains the utilisation of links by name, in the state
+    that `stressed` describes, for example at the full stroke. The amplitude is physical except for modes. Large displacements, along a path
+    or about a state, have a `course` instead of twists. Motions over time have a `response`; their twists belong to the time of the largest
+    displacement.
     """
 
     group: Group
@@ -139,9 +140,9 @@ class Skeleton:
 def body_twists(
     model: LinearModel, kinematics: Kinematics | None, shape: Array, bodies: Sequence[str], inputs: Array | None = None
 ) -> dict[str, Array]:
-    """Compute the twists (6,) of bodies for a shape (n,) of the model's coordinates and `inputs` (m,), if any (first design of a batch).
+    """Compute the twists (6,) of bodies for a shape (n,) of the model's coordinates, and for `inputs` (m,) if specified.
 
-    If the model has only the platform, the other bodies move by the ideal kinematics.
+    For a batch, computes the first design. If the model contains only the platform, the other bodies move by the ideal kinematics.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -167,7 +168,7 @@ def body_twists(
 def mode_motions(
     model: LinearModel, kinematics: Kinematics | None, found: Modes, bones: Skeleton, count: int, *, about: str = ""
 ) -> Iterator[Motion]:
-    """Yield the `count` lowest modes, mass-normalised, and all higher platform modes as motions; remarks end with `about`."""
+    """Yield the `count` lowest modes and all higher platform modes as mass-normalised motions. Remarks end with `about`."""
     frequencies, shapes = first_design(found.frequencies, 1), first_design(found.shapes, 2)
     last = max((*found.platform, -1)) + 1
     for index in range(min(len(found.names), max(count, last))):
@@ -200,11 +201,11 @@ class Bearing:
         self._model = model
 
     def at(self, shape: Array, inputs: Array | None = None) -> dict[str, float] | None:
-        """Compute the utilisation by link for a shape (n,) of the model's coordinates and `inputs` (m,); `None` if unknown."""
+        """Compute the utilisation of each link for a shape (n,) of the model's coordinates and `inputs` (m,); `None` if unknown."""
         return self.of_all(shape[:, None], None if inputs is None else inputs[:, None])[0]
 
     def of_all(self, shapes: Array, inputs: Array | None = None) -> list[dict[str, float] | None]:
-        """Compute the utilisation by link for k shapes (n, k) and inputs (m, k)."""
+        """Compute the utilisation of each link for k shapes (n, k) and inputs (m, k)."""
         if not self._links or not shapes.shape[1]:
             return [None] * shapes.shape[1]
         rows = self._model.output_index(tuple(f"{link}.{force}" for link in self._links for force in FORCES))
@@ -216,7 +217,7 @@ class Bearing:
         return [dict(zip(self._links, each, strict=True)) for each in shares.tolist()]
 
     def most(self, actuator: str) -> float | None:
-        """Return the stroke limit [m] of an actuator that is farther from zero; `None` if unknown."""
+        """Return the stroke limit [m] of an actuator with the larger magnitude; `None` if unknown."""
         if self._limits is None or actuator not in self._limits.actuators:
             return None
         place = self._limits.actuators.index(actuator)
@@ -224,9 +225,9 @@ class Bearing:
 
 
 def stroke_motions(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None, bones: Skeleton) -> Iterator[Motion]:
-    """Yield motions for a unit input of each actuator (1 um, 1 N or 1 A); all other actuators have zero input.
+    """Yield motions for a unit input of each actuator (1 um, 1 N or 1 A), with zero input of all other actuators.
 
-    Their stress is for the full stroke from its middle or bias.
+    The stress is computed for the full stroke from its middle or bias.
     """
     names, bearing = model.actuators, Bearing(mechanism, model)
     columns = model.input_index(names)
@@ -248,7 +249,7 @@ def stroke_motions(mechanism: Mechanism, model: LinearModel, kinematics: Kinemat
 
 
 def axis_motions(kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
-    """Yield ideal motions of the platform by 1 um or 1 urad along each of its coordinates, with the required strokes."""
+    """Yield ideal motions of the platform by 1 um or 1 urad along each of its coordinates, and the strokes that they require."""
     bodies, strokes = first_design(kinematics.bodies, 2), first_design(kinematics.actuation, 2)
     rows = {name: place for place, name in enumerate(kinematics.body_coordinates)}
     for place, coordinate in enumerate(kinematics.coordinates):
@@ -266,9 +267,9 @@ def axis_motions(kinematics: Kinematics, bones: Skeleton) -> Iterator[Motion]:
 
 
 def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics | None, bones: Skeleton) -> Iterator[Motion]:
-    """Yield static deflections under own weight, payloads and specified forces, actuators fixed; loads without effect are left out.
+    """Yield static deflections under own weight, payloads and specified forces, with fixed actuators.
 
-    Raises `DesignError` if a part has no support against a load.
+    Loads without effect are left out. Raises `DesignError` if a part has no support against a load.
     """
     bearing = Bearing(mechanism, model)
     for name, load in dead_loads(mechanism, model).items():
@@ -280,7 +281,7 @@ def deflections(mechanism: Mechanism, model: LinearModel, kinematics: Kinematics
 
 
 def drift_motions(mechanism: Mechanism, model: LinearModel, bones: Skeleton) -> Iterator[Motion]:
-    """Yield thermal motions of the bodies for 1 K of warming, and for 1 K/m along each axis, actuators fixed.
+    """Yield thermal motions of the bodies for a temperature rise of 1 K, and for 1 K/m along each axis, with fixed actuators.
 
     The thermal expansion of the bodies is not drawn. Raises `DesignError` for unknown expansion coefficients.
     """

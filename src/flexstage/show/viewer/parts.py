@@ -23,7 +23,7 @@ Fact = tuple[str, str]
 
 @dataclass(frozen=True)
 class DrawnEntry:
-    """A drawn part, body, gauge or ground: `what` is its kind, `unit` the instance it belongs to.
+    """A drawn part, body, gauge or ground: `what` is its kind, `unit` the instance to which it belongs.
 
     `address` and `line` locate it in the design file. `facts` are pairs of a name and a value with its unit of measurement.
     """
@@ -39,7 +39,7 @@ class DrawnEntry:
 
 
 class Describer:
-    """Builder of the descriptions of drawn entries by name; data of a part with several links are computed once."""
+    """Builder of the descriptions of drawn entries by name. Data of a part in several links are computed once."""
 
     def __init__(self, mechanism: Mechanism, assembly: Assembly, lines: Mapping[str, int]) -> None:
         self._mechanism = mechanism
@@ -52,7 +52,7 @@ class Describer:
         self._facts: dict[int, tuple[Fact, ...]] = {}
 
     def thing(self, name: str, kind: Kind, first: int, second: int) -> DrawnEntry:
-        """Describe the drawn entry of this name; `first` and `second` are the numbers of the bodies that it joins."""
+        """Describe the drawn entry of this name. `first` and `second` are the numbers of the bodies that it connects."""
         what, address, facts = self._description(name)
         unit = name.rpartition("/")[0]
         line = line_of(address, self._lines) if address else None
@@ -95,7 +95,7 @@ class Describer:
 
 
 def part_facts(record: object) -> Iterator[Fact]:
-    """Yield the scalar numbers of a part or other record, with the names of their keys; positions and matrices are left out."""
+    """Yield the scalar numbers of a part or other record, with the names of their keys. Positions and matrices are left out."""
     for address, value, node in node_of(type(record)).numbers(record):
         if "." not in address or address.startswith("profile."):
             form = field_unit(node.quantity)

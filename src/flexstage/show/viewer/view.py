@@ -23,7 +23,7 @@ _STYLE = (
 
 @dataclass(frozen=True, eq=False)
 class View(CheckedFields):
-    """An interactive stage with its motions: notebooks show it, `save` writes it as a self-contained page.
+    """An interactive stage with its motions. Notebooks show it; `save` writes it as a self-contained page.
 
     `motion` is the first motion shown. `height` is the height of the frame in a notebook, in pixels. `picture` (HTML) replaces the view in
     print and without WebGL.
@@ -36,14 +36,14 @@ class View(CheckedFields):
 
     @property
     def html(self) -> str:
-        """HTML page of the view: one file, nothing loaded, equal bytes for equal stages."""
+        """HTML page of the view in one file, which loads no other file. Equal stages give equal bytes."""
         name = escape(self.data.name)
         head = f'<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>{name}</title>'
         body = f"<main><h1>{name}</h1>{fragment(self.data, motion=self.motion, instead=self.picture)}</main>"
         return f'<!doctype html><html lang="en"><head>{head}<style>{_STYLE}</style></head><body>{body}</body></html>\n'
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the page to a file, completely or not at all; returns the path."""
+        """Write the page to a file, completely or not at all. Returns the path."""
         return write(path, self.html)
 
     def _repr_html_(self) -> str:
@@ -54,10 +54,10 @@ class View(CheckedFields):
 def view(mechanism: Mechanism, *, motion: str = _FIRST) -> View:
     """Show the moving stage of a description (first design of a batch).
 
-    The view starts with `motion`: "stroke B1", "axis x", "deflection own weight", or by default "mode 1" (undeformed without modes). Modes,
-    unit strokes and deflections are computed with the lumped model, motions of the platform with the ideal model. Missing motions are left
-    out, with the reason in the viewer. Small motions are magnified by the displayed factor. Raises `DesignError` if the stage cannot be
-    drawn.
+    The view starts with `motion`, e.g. "stroke B1", "axis x" or "deflection own weight"; by default with "mode 1", or undeformed if there
+    are no modes. Modes, unit strokes and deflections are computed with the lumped model, motions of the platform with the ideal model. The
+    viewer lists the reasons for missing motions. Small motions are magnified by the displayed factor. Raises `DesignError` if the stage
+    cannot be drawn.
 
     >>> import flexstage as fs
     >>> fs.view(fs.case("parallelogram")).html[:15]

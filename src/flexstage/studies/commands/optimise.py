@@ -31,7 +31,8 @@ def optimise(
 ) -> CommandResult:
     """Find the best design within ranges and limits.
 
-    Uses exact derivatives and several starts. Prints active constraints, their multipliers and rounded values. Two objectives: a front.
+    The search uses exact derivatives and several starts. Prints active constraints, their multipliers and rounded values. With two
+    objectives, computes a Pareto front.
 
     Contradictory limits are an error (exit code 2). An interrupted search ends with the best design found.
     """
@@ -41,7 +42,7 @@ def optimise(
     if source is not None and output is not None and source.resolve() == output.resolve():
         raise refuse("--output", f"{output} is the initial design of the study", "Choose another file")
     if len(definition.objectives) > 1 and output is not None:
-        raise refuse("--output", "a front has many designs", "Set a limit on one objective, optimise the other, and write that design")
+        raise refuse("--output", "a Pareto front has many designs", "Set a limit on one objective, and optimise the other")
     run = run_optimise if len(definition.objectives) == 1 else pareto_front
     with progress_bar() as shown:
         found = run(asked, definition, lambda text: shown.share(text, 0.0))

@@ -1,4 +1,4 @@
-"""The command `sweep`: compute many designs of a stage, and the effects of the variables."""
+"""The command `sweep`: many designs of a stage, and the effects of the variables."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def sweep(
     resume: Resume = False,
     workers: Workers = None,
 ) -> CommandResult:
-    """Compute many designs of a study.
+    """Analyse many designs of a study.
 
     The study file selects a grid, a Latin hypercube, a Sobol sequence, or Saltelli's plan for Sobol indices.
 

@@ -29,12 +29,12 @@ def tolerance(
 ) -> CommandResult:
     """Analyse tolerances: yield and allowances.
 
-    The table [scatter] of the study file lists the deviations.
+    The table [scatter] of the study file defines the deviations.
 
     Prints distributions, yield, variance contributions, allowable tolerances and crosstalk.
     """
     if resume and output is None:
-        raise refuse("--resume", "no results file is named", "Name it with --output")
+        raise refuse("--resume", "results file missing", "Specify the results file of the interrupted computation with --output")
     definition = load_tolerance(study)
     with progress_bar() as shown:
         found = run_tolerance(

@@ -1,1 +1,1 @@
-"""Optimise: the best design within ranges and limits, by exact derivatives."""
+"""Optimisation: the best design within ranges and limits, with exact derivatives."""

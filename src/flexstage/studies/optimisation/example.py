@@ -17,7 +17,7 @@ optimise = { maximise = "f1", starts = 2 }
 
 
 def leaf_study() -> tuple[Study, OptimisationProblem]:
-    """Return a study of the parallelogram: maximum leaf thickness for its stroke.
+    """Return a study of the parallelogram: the leaf thickness with the highest frequency, for the required stroke.
 
     >>> leaf_study()[1].objectives[0].name
     'f1'

@@ -14,7 +14,7 @@ _MOST = 2
 
 @check_arguments
 def load_optimisation(study: Study, where: str = "text") -> OptimisationProblem:
-    """Read the optimisation problem from the study's own text. Raises `DesignError` with every error, each at `where`.
+    """Read the optimisation problem from the text of the study's file. Raises `DesignError` with every error, each at `where`.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> load_optimisation(leaf_study()[0]).starts
@@ -35,15 +35,15 @@ def _objectives(table: OptimiseTable, study: Study, findings: list[Finding]) -> 
             if name not in study.responses:
                 findings.append(Finding(at, f'unknown response "{name}"', suggest_nearest(name, study.responses)))
             elif name in (each.name for each in found):
-                findings.append(Finding(at, f'"{name}" is an objective already', "Name it once"))
+                findings.append(Finding(at, f'"{name}" is listed twice', f'Remove one "{name}"'))
             elif (same := next((each for each in found if each.measure == study.responses[name]), None)) is not None:
-                findings.append(Finding(at, f'"{name}" is the same measure as "{same.name}", an objective already', "Remove one"))
+                findings.append(Finding(at, f'"{name}" is the same measure as the objective "{same.name}"', f'Remove "{name}"'))
             else:
                 found.append(Objective(name, study.responses[name], aim))
     if not found and not findings:
         example = next(iter(study.responses), "f1")
-        findings.append(Finding("optimise", "no objective is named", f'Use e.g. maximise = "{example}" in [optimise]'))
+        findings.append(Finding("optimise", "objective missing", f'Use e.g. maximise = "{example}" in [optimise]'))
     if len(found) > _MOST:
         what = f"must be at most {_MOST} objectives (got {len(found)})"
-        findings.append(Finding("optimise", what, "Keep two, and set [limits] on the others"))
+        findings.append(Finding("optimise", what, "Keep two of them, and set [limits] on the others"))
     return tuple(found)

@@ -10,14 +10,14 @@ from flexstage.studies.sweeps.definition import RequestedMeasure, Study
 
 
 class ObjectiveDirection(Enum):
-    """Direction of an objective."""
+    """Direction of an objective: maximise or minimise."""
 
     MAXIMISE = "maximise"
     MINIMISE = "minimise"
 
     @property
     def sense(self) -> Sense:
-        """Better side of a limit."""
+        """Sense of a limit on the better side."""
         return Sense.AT_LEAST if self is ObjectiveDirection.MAXIMISE else Sense.AT_MOST
 
 
@@ -32,8 +32,8 @@ class Objective(RequestedMeasure):
 class OptimisationProblem:
     """Optimisation problem, as the `[optimise]` section of a study's file defines it.
 
-    One objective, or two for a front of `points` designs. `starts`: number of initial designs, first the nominal design, then a Sobol
-    sequence with this `seed`. `requirements`: the design's own `[requirements]` are limits too.
+    It has one objective, or two for a front of `points` designs. `starts` is the number of initial designs: the nominal design, then a
+    Sobol sequence with this `seed`. `requirements`: the `[requirements]` of the design are also limits.
     """
 
     objectives: tuple[Objective, ...]
@@ -44,7 +44,7 @@ class OptimisationProblem:
 
 
 def limits(study: Study, definition: OptimisationProblem) -> tuple[Requirement, ...]:
-    """List all limits: the study's, then the design's requirements on measures that the study does not limit on that side.
+    """List all limits: those of the study, then the requirements of the design on measures that the study does not limit on that side.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> [each.key for each in limits(*leaf_study())]

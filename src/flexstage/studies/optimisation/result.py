@@ -23,14 +23,15 @@ from flexstage.studies.sweeps.variable import Variable
 class Binding:
     """A binding limit, or a binding end of a variable's range.
 
-    `price`: change of the objective [its SI unit] per unit [its SI unit] of the limit or end, with all variables re-optimised.
+    `price` is the change of the objective per unit of the limit or range end, in SI units, with all variables re-optimised.
     """
 
     TABLE: ClassVar[Layout] = Layout(
         "Binding limits",
         "name limit gain price",
         notes=(
-            "Gain: of the objective, if the limit or range end is relaxed by 1 % of its value. Price: change of the objective per unit.",
+            "Gain: improvement of the objective if the limit or range end is relaxed by 1 % of its value.",
+            "Price: change of the objective per unit of the limit or range end.",
         ),
     )
 
@@ -62,10 +63,10 @@ class Accepted:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """One start: its first and last design (shares of the ranges), the final objective [SI], the largest violation, and its history.
+    """One start: its first and last design (0 to 1 in each range), its final objective `value` [SI] and largest relative `violation`.
 
-    `history` (k, 2) are the objective and the largest violation of each accepted design. `agrees`: the final design is feasible, and its
-    objective is within a relative 1e-4 of the best one.
+    `history` (k, 2) contains the objective and the largest violation of each accepted design. `agrees`: the final design is feasible, and
+    its objective differs from the best one by a relative 1e-4 at most.
     """
 
     TABLE: ClassVar[Layout] = Layout("Starts", "value violation evaluated end agrees", head="start")
@@ -94,9 +95,9 @@ class Start:
 
 @dataclass(frozen=True, eq=False)
 class Rounded:
-    """The best design that can be made: values (d,) on the variables' steps, and the `loss` in the objective's unit (0 or more).
+    """The best design with values (d,) on the steps of the variables, and the `loss` of the objective [SI] by rounding (0 or more).
 
-    `tried`: number of evaluated neighbours. `point` is `None` if none of them is feasible; `reason` then explains it.
+    `tried` is the number of evaluated neighbours. If none of them is feasible, `point` is `None`, and `reason` explains it.
     """
 
     point: Point | None
@@ -108,7 +109,7 @@ class Rounded:
 
 @dataclass(frozen=True)
 class LimitAt:
-    """A limit and a design's value [SI], with the relative margin."""
+    """A limit, the value [SI] of a design, and the relative margin."""
 
     measure: str
     point: str
@@ -120,7 +121,7 @@ class LimitAt:
 
 @dataclass(frozen=True)
 class DesignPoint:
-    """A design: variables and objectives by name [SI; factors on the design's values for relative variables], and its limits."""
+    """A design: variables and objectives by name in SI units, and its limits. Relative variables are factors on the design's values."""
 
     variables: Mapping[str, float]
     objectives: Mapping[str, float]
@@ -129,7 +130,7 @@ class DesignPoint:
 
 @dataclass(frozen=True)
 class RoundedPoint(DesignPoint):
-    """The best design on the variables' steps: the loss of the objective by rounding [SI], and the number of evaluated neighbours."""
+    """The best design on the steps of the variables: `loss` of the objective by rounding [SI], number of evaluated neighbours (`tried`)."""
 
     loss: float
     tried: int
@@ -150,10 +151,10 @@ class Contradiction:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Outcome(InNotebook):
-    """Common results of all optimisations: `before` is the nominal design; `contradictions` state why no design is feasible.
+    """Common results of all optimisations. `before` is the nominal design. `contradictions` explain why no design is feasible.
 
-    `idle` names variables without effect on any requested measure. `evaluated`: number of designs. `interrupted`: the search was
-    interrupted, and the results are the best so far.
+    `idle` names variables without effect on any requested measure. `evaluated` is the number of evaluated designs. `interrupted`: the
+    search was interrupted, and the results are the best so far.
     """
 
     study: Annotated[Study, INNER]
@@ -210,7 +211,7 @@ def _limit_at(limit: Requirement, value: float) -> LimitAt:
 class Optimum(Outcome):
     """The outcome of an optimisation with one objective.
 
-    `point` is the best design, `None` if no start found a feasible one. `binding` are the active limits and range ends.
+    `point` is the best design, or `None` if no start found a feasible design. `binding` are the active limits and range ends.
     """
 
     point: Annotated[Point | None, INNER]
@@ -225,7 +226,7 @@ class Optimum(Outcome):
 
     @property
     def on_steps(self) -> Annotated[RoundedPoint | None, VIEW, Called("rounded")]:
-        """The best design that can be made; null without steps, or if no neighbour is feasible."""
+        """The best design on the steps of the variables. Null without steps, or if no neighbour is feasible."""
         if self.rounded is None or self.rounded.point is None:
             return None
         found = self.design(self.rounded.point)
@@ -233,12 +234,12 @@ class Optimum(Outcome):
 
     @property
     def final(self) -> Point | None:
-        """The final design: rounded if steps exist and a neighbour is feasible, else the optimum."""
+        """The final design: the rounded one if steps exist and a neighbour is feasible, else the optimum."""
         return self.point if self.rounded is None or self.rounded.point is None else self.rounded.point
 
     @property
     def failure(self) -> str:
-        """Reason why there is no final design; empty otherwise."""
+        """Reason why there is no final design; empty if there is one."""
         if self.point is None:
             reasons = [start.reason for start in self.starts if start.reason]
             return f"no start found a feasible design{': ' + reasons[0] if reasons else ''}"
@@ -255,7 +256,7 @@ class Optimum(Outcome):
 
     @property
     def improvement(self) -> float:
-        """Relative change of the objective from the nominal to the final design; NaN without one."""
+        """Relative change of the objective from the nominal to the final design; NaN without a final design."""
         before = self.value(self.before)
         return np.nan if self.final is None or before == 0.0 else self.value(self.final) / before - 1.0
 
@@ -273,7 +274,7 @@ class Front(Outcome):
 
     @property
     def failure(self) -> str:
-        """Reason why there is no front; empty otherwise."""
+        """Reason why there is no front; empty if there is one."""
         return "" if self.points else "no start found a feasible design"
 
     @property

@@ -1,4 +1,4 @@
-"""Rounding an optimum to values that can be made."""
+"""Rounding of an optimum to the manufacturing steps of the variables."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _EDGE = 1e-9
 
 
 def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
-    """Find the best feasible neighbour on the variables' steps; `None` if no variable has a step.
+    """Find the best feasible neighbour on the steps of the variables. Returns `None` if no variable has a step.
 
-    All neighbours are ranked by the linear model of objective and limits, for more than 12 variables only the nearest ones. They are
-    evaluated in order until one is feasible. Then single steps of every variable are tried while they improve the design. Variables without
-    a step are constant.
+    Neighbours are ranked by the linear model of objective and limits; for more than 12 variables, only the nearest ones. They are evaluated
+    in this sequence until one is feasible. Then single steps of every variable are tried as long as they improve the design. Variables
+    without a step are constant.
     """
     stepped = [number for number, each in enumerate(setting.study.variables) if each.step is not None]
     if not stepped:
@@ -37,7 +37,7 @@ def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded 
         if best is not None:
             break
     if best is None:
-        reason = f"none of the {tried} nearest designs on the steps is feasible: use finer steps, or wider limits"
+        reason = f"none of the {tried} nearest designs on the steps of the variables is feasible; use finer steps, or wider limits"
         return Rounded(None, None, np.nan, tried, reason)
     for _ in range(_ROUNDS):
         around = np.array(list(_single_steps(setting, best, stepped)))

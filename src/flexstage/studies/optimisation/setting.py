@@ -26,7 +26,7 @@ _EDGE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """Input of a search: `values` evaluates objectives first, then the measures of the `kept` limits; `before` is the nominal design."""
+    """Input of a search. `values` evaluates the objectives, then the measures of the `kept` limits. `before` is the nominal design."""
 
     study: Study
     definition: OptimisationProblem
@@ -36,11 +36,11 @@ class Setting:
 
     @property
     def problem(self) -> Problem:
-        """The first objective under all limits."""
+        """The problem with the first objective and all limits."""
         return Problem((self.objective(0),), tuple(self.side(number) for number in range(len(self.kept))))
 
     def objective(self, number: int) -> Side:
-        """Return an objective as a side: c is its value over its scale, negative for a maximisation."""
+        """Return an objective as a side: c is its value divided by its scale, with a negative sign if it is maximised."""
         return Side(number, self.definition.objectives[number].direction.sense, 0.0, self.scale(number))
 
     def scale(self, number: int) -> float:
@@ -56,7 +56,7 @@ class Setting:
         return Side(index, limit.sense, limit.limit + (spare if limit.sense is Sense.AT_LEAST else -spare), scale)
 
     def starts(self) -> Array:
-        """Return shares (starts, n) of the initial designs: the nominal design, then a scrambled Sobol sequence."""
+        """Return the initial designs (starts, n) as fractions of the ranges: the nominal design, then a scrambled Sobol sequence."""
         count, size = self.definition.starts - 1, len(self.study.variables)
         generator = scipy.stats.qmc.Sobol(size, scramble=True, rng=np.random.default_rng(self.definition.seed))
         drawn = generator.random(1 << max(count - 1, 0).bit_length())[:count]
@@ -64,7 +64,7 @@ class Setting:
 
     @property
     def idle(self) -> tuple[str, ...]:
-        """Variables without effect on any measure, at the nominal design."""
+        """Variables that, at the nominal design, have no effect on any measure."""
         largest = np.max(np.abs(self.before.gradient) / np.maximum(np.abs(self.before.values), 1e-300)[:, None], axis=0)
         return tuple(each.name for each, most in zip(self.study.variables, largest, strict=True) if most <= 1e-14)
 
@@ -72,7 +72,7 @@ class Setting:
 def setting(study: Study, definition: OptimisationProblem) -> Setting:
     """Set up an optimisation, and evaluate the nominal design.
 
-    Raises `DesignError` for measures that the stage does not have, designs outside their ranges, and an invalid nominal design.
+    Raises `DesignError` for measures that the stage does not have, nominal values outside their ranges, and an invalid nominal design.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> found = setting(*leaf_study())
@@ -87,7 +87,7 @@ def setting(study: Study, definition: OptimisationProblem) -> Setting:
     shares = np.array([share_of(each, each.nominal(study.design)) for each in study.variables])
     before = values(np.clip(shares, 0.0, 1.0)[None])[0]
     if isinstance(before, str):
-        require([Finding("design", before, "Correct it before it is optimised")])
+        require([Finding("design", before, "Correct the design file first")])
     assert isinstance(before, Point)  # noqa: S101  refused above
     return Setting(study, definition, kept, values, before)
 
@@ -110,7 +110,7 @@ def _stated_values(study: Study, variable: Variable) -> list[float]:
 
 
 def share_of(variable: Variable, value: float) -> float:
-    """Return the share of a variable's range at a value: the inverse of `Variable.at`.
+    """Return the position of a value in a variable's range, from 0 to 1: the inverse of `Variable.at`.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> share_of(Variable("t", (), LENGTH, 1.0, 4.0, logarithmic=True), 2.0)
@@ -133,5 +133,5 @@ def _range_findings(study: Study) -> Iterator[Finding]:
         if not each.relative:
             found = _stated_values(study, each)
             if max(found) - min(found) > _EDGE * max(map(abs, found)):
-                what = f"its addresses have different values, {min(found):.6g} to {max(found):.6g}{unit}"
+                what = f"the numbers at its addresses differ (got {min(found):.6g} to {max(found):.6g}{unit})"
                 yield Finding(where, what, "Use a range in percent, or two variables")

@@ -1,4 +1,4 @@
-"""The design file of an optimised stage: the original text, with the new values and their source; comments are kept."""
+"""The design file of an optimised stage: the original text and its comments, with the new values and their source."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SAME = 1e-11
 
 
 def design_path(study: Study, folder: Path) -> Path | None:
-    """Return the path of a study's design file; `None` for a shipped case.
+    """Return the path of a study's design file, or `None` for a shipped case.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> design_path(leaf_study()[0], Path()) is None
@@ -44,7 +44,7 @@ def design_text(study: Study, folder: Path) -> str:
 
 
 def write_optimum(text: str, study: Study, definition: OptimisationProblem, values: Array | Sequence[float], *, where: str = "text") -> str:
-    """Write `values` (d,) of the study's variables into a design file's text, each tagged `derived optimise STUDY, OBJECTIVE`.
+    """Write `values` (d,) of the study's variables into the text of a design file, with the tag `derived optimise STUDY, OBJECTIVE`.
 
     Raises `DesignError` if the file's layout does not allow it.
 

@@ -1,4 +1,4 @@
-"""Measures of designs and their derivatives by all variables: exact, by complex step, several designs in one batch."""
+"""Measures of designs, and their exact derivatives with respect to all variables by complex step, for several designs in one batch."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _SPECTRAL = (frequency, platform_frequency)
 
 @dataclass(frozen=True, eq=False)
 class Scalars:
-    """Pieces of a measure at one design: `values` (m,) in SI, `gradient` (m, n) per share of each variable's range.
+    """Pieces of a measure at one design: `values` (m,) in SI, and `gradient` (m, n), in which each variable's range is the unit.
 
     A minimum or maximum has several pieces.
     """
@@ -36,7 +36,7 @@ class Scalars:
 
     @property
     def value(self) -> float:
-        """The measure."""
+        """Value of the measure."""
         return float(self.extreme.of(self.values))
 
     @property
@@ -47,14 +47,14 @@ class Scalars:
 
 @dataclass(frozen=True, eq=False)
 class NumberedFrequency:
-    """Frequency with the number `count` in a spectrum."""
+    """The frequency with number `count` in a spectrum."""
 
     spectrum: Spectrum
     count: int
 
     @property
     def value(self) -> float:
-        """The measure [Hz]."""
+        """Value of the measure [Hz]."""
         return float(self.spectrum.frequencies[self.count - 1])
 
     @property
@@ -67,7 +67,7 @@ class NumberedFrequency:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A design at `shares` (n,) of the variables' ranges, with its measures in the requested order."""
+    """A design and its measures in the requested sequence. `shares` (n,) are the fractions of the variables' ranges, 0 to 1."""
 
     shares: Array
     found: tuple[Scalars | NumberedFrequency, ...]
@@ -79,7 +79,7 @@ class Point:
 
     @property
     def gradient(self) -> Array:
-        """Derivatives (r, n) of the measures per share of each variable's range."""
+        """Derivatives (r, n) of the measures, in which each variable's range is the unit."""
         return np.array([each.slope for each in self.found])
 
 
@@ -87,9 +87,9 @@ class Point:
 class Values:
     """Evaluator of the `measures` of a study's designs.
 
-    Derivatives are exact (complex step through the models' formulas; eigenvalues analytically), except those of `map_error` and `opening`.
-    These two are computed from real corners and outlines. Their derivatives are central differences of a thousandth of the range in both
-    directions, where rounding and curvature have equal effects.
+    Derivatives are exact (complex step through the formulas of the models; analytical for eigenvalues), except for `map_error` and
+    `opening`, which are computed from real corners and outlines. Their derivatives are central differences with steps of a thousandth of
+    the range, for which rounding and curvature have equal effects.
     """
 
     study: Study
@@ -116,11 +116,11 @@ class Values:
         return tuple(Modes(count, platform) for platform, count in highest.items())
 
     def __call__(self, shares: Array) -> list[Point | str]:
-        """Compute points of designs at shares (s, n) of the ranges, with derivatives; for a failed design, the reason."""
+        """Compute points with derivatives for designs at fractions (s, n) of the ranges. A failed design is replaced by the reason."""
         return self._evaluate(np.asarray(shares, dtype=float), slopes=True)
 
     def evaluate(self, shares: Array) -> list[Point | str]:
-        """Compute points of designs at shares (s, n) of the ranges, without derivatives; for a failed design, the reason."""
+        """Compute points without derivatives for designs at fractions (s, n) of the ranges. A failed design is replaced by the reason."""
         return self._evaluate(np.asarray(shares, dtype=float), slopes=False)
 
     def _evaluate(self, shares: Array, *, slopes: bool) -> list[Point | str]:
@@ -177,7 +177,7 @@ class Values:
 
 
 def values_of(study: Study, shares: Array) -> Array:
-    """Convert shares of the ranges to values (d,) of the variables; rounded to a step if within a millionth of the range.
+    """Convert fractions of the ranges to values (d,) of the variables. Values closer to a step than 1e-6 of the range are rounded to it.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> values_of(leaf_study()[0], np.array([0.5000000001])).round(12).tolist()

@@ -26,7 +26,7 @@ from flexstage.studies.sweeps.variable import Variable, apply_columns
 
 @dataclass(frozen=True)
 class RequestedMeasure:
-    """A requested measure of a study, by its name in the file."""
+    """A requested measure of a study, with its name in the file."""
 
     name: str
     measure: Annotated[Measure, INNER]
@@ -49,7 +49,7 @@ class RequestedMeasure:
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """The contents of a study's file: nominal `design`, `variables`, `responses` by name, `limits` on measures, the sampling `plan`.
+    """The contents of a study's file: nominal `design`, `variables`, `responses` by name, `limits` on measures, and the sampling `plan`.
 
     `text` is the text of the file, stored with the results.
     """
@@ -64,7 +64,7 @@ class Study:
 
     @property
     def names(self) -> tuple[tuple[str, str], ...]:
-        """Columns of the results (variables, responses, measures of limits): for each its location in the file, and its name.
+        """Location in the file and name of each column of the results: variables, responses, and measures of limits.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().names
@@ -84,7 +84,7 @@ class Study:
 
     @property
     def facts(self) -> dict[str, str]:
-        """Inputs on which the results depend, as text: studies with equal facts have equal results.
+        """Inputs on which the results depend, as text. Studies with equal facts have equal results.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> list(neck_study().facts)
@@ -130,7 +130,7 @@ class Study:
 
     @property
     def numbers(self) -> Numbers | None:
-        """Numbers by which designs differ, as linear functions of the variables; None if designs are built from the variables directly.
+        """Numbers in which designs differ, as linear functions of the variables. None if designs are built directly from the variables.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().numbers  # what `drawn_from` makes of the variables will do
@@ -138,7 +138,7 @@ class Study:
         return None
 
     def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
-        """Compute the measures `names` (default: all columns) of a design or a batch, (...) each; for a missing one, the reason as text.
+        """Compute the measures `names`, by default all columns, of a design or a batch, (...) each. The reason replaces a missing value.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> round(float(neck_study().evaluate(neck_study().design)[0]))
@@ -148,7 +148,7 @@ class Study:
         return measure_all(mechanism, tuple(columns[name] for name in (columns if names is None else names)))
 
     def feasible(self, responses: Array, limits: Sequence[Requirement] | None = None) -> Array:
-        """Find the designs (n,) that meet all limits, from all responses (n, r). A design without values meets no limit.
+        """Find the designs (n,) that meet all limits, from all responses (n, r). A design without values does not meet a limit.
 
         `limits` replaces the limits of the study.
 
@@ -181,7 +181,7 @@ def name_findings(study: Study) -> Iterator[Finding]:
     owners = {"design": "the number of a design"}
     for where, name in study.names:
         if not name.strip() or not name.isprintable():
-            yield Finding(where, "its name is empty, or contains control characters", "Use letters and digits")
+            yield Finding(where, "the name is empty, or contains control characters", "Use letters and digits")
         elif name in owners:
             yield Finding(where, f'column "{name}" exists already, from {owners[name]}', "Use unique names")
         owners[name] = where

@@ -25,20 +25,20 @@ from flexstage.studies.sweeps.plan import Plan, Sampling
 _BINS = 16
 _FEWEST = 8
 _SPARE = 4
-"""Smallest number of designs for each bin's effect."""
+"""Smallest number of designs in a bin."""
 
 
 @dataclass(frozen=True, eq=False)
 class Effects(InNotebook):
     """Effects of d variables on r responses over the designs with values.
 
-    `used` designs of `computed`; `mean`, `deviation`, `low`, `high` (r,) in SI. `places` (d, b) and `means` (d, b, r): the mean response
-    for a variable in each of b bins of equal counts (for grids, at each level). This main effect excludes the simultaneous effects of the
-    other variables. `first` (d, r): share of the variance explained by a variable alone; `total` (d, r): with all its interactions. `total`
-    is None unless the plan is Saltelli's. `first` is Sobol's index for this plan, else the correlation ratio of the bins, corrected for
-    their number. `pairs` (d, d, r): share of two variables together beyond each alone, `strongest` the strongest interactions. `errors` (2,
-    r): the largest standard error of the first-order and total indices, and of the second-order indices; NaN for other plans. All shares
-    are NaN for a constant response.
+    `used` of `computed` designs have values. `mean`, `deviation`, `low`, `high` (r,) are in SI. `means` (d, b, r) is the mean response for
+    a variable in each of b bins at `places` (d, b), with equal counts (for grids, at each level). This main effect excludes simultaneous
+    effects of the other variables. `first` (d, r) is the fraction of the variance due to a variable alone: Sobol's index for Saltelli's
+    plan, otherwise the correlation ratio of the bins, corrected for their number. `total` (d, r) includes all interactions of a variable;
+    it is None for other plans. `pairs` (d, d, r) is the fraction due to two variables together beyond each alone; `strongest` are the
+    strongest interactions. `errors` (2, r) contains the largest standard error of first-order and total indices, and of second-order
+    indices; NaN for other plans. All fractions are NaN for a constant response.
     """
 
     variables: tuple[str, ...]
@@ -64,7 +64,7 @@ def effects(results: Results, plan: Plan) -> Effects:
     """Compute effects of a study's variables on its responses, over all complete designs so far.
 
     First-order index S_i = V[E(y | x_i)] / V(y), total index T_i = E[V(y | x_~i)] / V(y) (Sobol, Math. Comput. Simul. 55 (2001) 271;
-    estimators of Saltelli et al. 2010). Raises nothing: NaN for too few designs.
+    estimators of Saltelli et al. 2010). With too few designs, the effects are NaN.
 
     >>> plan = Plan(Sampling.GRID, 2, levels=(3, 3))
     >>> from flexstage.studies.sweeps.plan import shares
@@ -90,7 +90,7 @@ def effects(results: Results, plan: Plan) -> Effects:
     if plan.sampling is Sampling.SALTELLI:
         blocks = _complete_blocks(results, plan)
         first, total, error = _sobol(blocks, plan.dimensions)
-        method = f"Sobol indices by Saltelli's plan from {blocks.shape[1]} of its {plan.count} rows"
+        method = f"Sobol indices from {blocks.shape[1]} of {plan.count} rows of Saltelli's plan"
     pairs, further = _pairs(results, plan, sound)
     return Effects(
         *results.names,

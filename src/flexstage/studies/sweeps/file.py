@@ -1,4 +1,4 @@
-"""The study's file: TOML with unit strings, read with all its errors at once."""
+"""Reading of study files: TOML with units as text. All errors are reported together."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _MOST = 10**9
 
 @check_arguments
 def load_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study's file; its design file is searched in the same folder.
+    """Read a study's file. Its design file must be in the same folder.
 
     Raises `DesignError` with every error: unknown keys, variables and measures (with the nearest names), empty ranges, wrong units.
 
@@ -44,7 +44,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
 
 
 def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -> Study:
-    """Read a study from its text; `folder` contains the design files.
+    """Read a study from its text. `folder` contains the design files.
 
     >>> study = loads_study('''
     ... format = "flexstage study 1"
@@ -61,7 +61,7 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
     variables = _variables(file.variables, head)
     plan = _plan(file.sweep, variables, findings)
     if not file.responses:
-        findings.append(Finding("responses", "no response", 'Name a measure, e.g. f1 = "frequency.platform.1"'))
+        findings.append(Finding("responses", "no response", 'Add a measure, e.g. f1 = "frequency.platform.1"'))
     study = Study(file.name, design, variables, Table(head.responses), head.limits, plan, text)
     require(with_lines([*findings, *variable_findings(design, variables), *name_findings(study)], text, where))
     return study
@@ -69,9 +69,9 @@ def loads_study(text: str, *, where: str = "text", folder: Path | None = None) -
 
 @dataclass(frozen=True, eq=False)
 class Opening:
-    """Common part of all studies' files: the file as written, its design and responses, with the `findings` so far.
+    """Common part of the files of all studies: the file as written, its design and responses, and the `findings` so far.
 
-    `variant` is the case of the design; `None` for a design file.
+    `variant` is the case of the design, or `None` for a design file.
     """
 
     file: StudyFile
@@ -83,7 +83,7 @@ class Opening:
 
 
 def read_opening(text: str, where: str, folder: Path | None) -> Opening:
-    """Read the common part of all studies' files. Raises `DesignError` without a valid design.
+    """Read the common part of the file of any study. Raises `DesignError` without a valid design.
 
     >>> text = 'format = "flexstage study 1"' + chr(10) + 'case = "parallelogram"' + chr(10) + 'responses.f = "frequency.1"'
     >>> list(read_opening(text, "here", None).responses)
@@ -102,7 +102,7 @@ def _variables(tables: Mapping[str, VariedTable], head: Opening) -> tuple[Variab
     """All variables; without an address, the name of a variable is its address."""
     if not tables:
         what = 'Use e.g. neck = { address = "parts.neck.thickness", from = "1.4 mm", to = "1.7 mm" }'
-        head.findings.append(Finding("variables", "nothing is varied", what))
+        head.findings.append(Finding("variables", "no variable", what))
     found = []
     for name, table in tables.items():
         try:
@@ -123,7 +123,7 @@ def _variable(table: VariedTable, name: str, head: Opening) -> Variable:
     shares = (is_share(table.low), is_share(table.high))
     findings: list[Finding] = []
     if shares[0] != shares[1]:
-        findings.append(Finding(f"{where}.to", "one end is relative (%), the other not", "Use % for both or neither"))
+        findings.append(Finding(f"{where}.to", "only one end of the range is relative (%)", "Use % for both ends or for neither"))
     ends: list[float] = []
     for key, raw, share in zip(("from", "to"), (table.low, table.high), shares, strict=True):
         try:
@@ -146,7 +146,7 @@ def _step(table: VariedTable, quantity: Quantity, where: str, findings: list[Fin
         findings += error.findings
         return None
     if is_share(table.low):
-        findings.append(Finding(f"{where}.step", "the range is relative (%)", "Use a range with a unit, or leave out the step"))
+        findings.append(Finding(f"{where}.step", "a relative range (%) has no step", "Use a range with a unit, or remove the step"))
     elif not step > 0.0:
         findings.append(Finding(f"{where}.step", f"must be greater than 0 (got {step:g})", 'Use e.g. step = "10 um"'))
     return step
@@ -189,8 +189,8 @@ def _limits(file: StudyFile, design: Mechanism, findings: list[Finding]) -> tupl
 
 def _plan(table: SweepTable, variables: tuple[Variable, ...], findings: list[Finding]) -> Plan:
     if table.pairs and table.sampling is not Sampling.SALTELLI:
-        advice = f'Take sampling = "{Sampling.SALTELLI.value}", or leave it out'
-        findings.append(Finding("sweep.pairs", f"sampling is {table.sampling.value}", advice))
+        advice = f'Use sampling = "{Sampling.SALTELLI.value}", or remove pairs'
+        findings.append(Finding("sweep.pairs", f"not available for sampling {table.sampling.value}", advice))
     grid = table.sampling is Sampling.GRID
     levels = _levels(table, variables, findings) if grid else ()
     plan = Plan(table.sampling, len(variables), 0 if grid else table.designs or _DESIGNS, levels, table.seed, table.pairs)
@@ -203,5 +203,5 @@ def _levels(table: SweepTable, variables: tuple[Variable, ...], findings: list[F
     without = [each.name for each in variables if each.levels is None]
     findings += (Finding(f"variables.{name}", "levels missing for a grid", "Add e.g. levels = 5") for name in without)
     if table.designs is not None:
-        findings.append(Finding("sweep.designs", "a grid gets its number of designs from the levels", "Leave it out"))
+        findings.append(Finding("sweep.designs", "the levels define the number of designs of a grid", "Remove designs"))
     return tuple(each.levels or 2 for each in variables)

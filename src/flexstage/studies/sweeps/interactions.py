@@ -1,4 +1,4 @@
-"""Interactions of two variables: the share of a response's variance that neither explains alone, and its shape."""
+"""Interactions of two variables: the fraction of a response's variance that only both together explain, and its shape."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _ROUNDING = 1e-9
 class Interaction:
     """Means of a response over one variable, for low, middle and high values of another.
 
-    `over`, `by` and `response` are the numbers of both variables and the response. `share` is the share of the response's variance that
-    only both variables together explain. `places` (b,) and `levels` (3,) are mean values of the variables in SI. `means` (3, b) are the
-    response's means; NaN without a design.
+    `over`, `by` and `response` are the indices of both variables and of the response. `share` is the fraction of the response's variance
+    that only both variables together explain. `places` (b,) and `levels` (3,) are mean values of the variables in SI. `means` (3, b) are
+    the means of the response; NaN without a design.
     """
 
     over: int
@@ -36,12 +36,13 @@ class Interaction:
 
 
 def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
-    """Compute shares (d, d, r) of the variance of responses (n, r) that two variables `at` (n, d) explain beyond each alone.
+    """Compute fractions (d, d, r) of the variance of responses (n, r) that two variables `at` (n, d) explain beyond each alone.
 
-    Analysis of variance: variables are divided into bins (levels of a `grid`). The effects of all single bins are fitted and subtracted.
-    The cells of two variables then explain a part SS_ij of the residual. The share is (SS_ij - (b_i - 1)(b_j - 1) MSE) over the total sum
-    of squares; the subtracted term is the expectation without interaction. For a complete grid the share is exact. Otherwise effects within
-    bins are missing, and true shares are larger. NaN on the diagonal, for too few designs, and for a constant response.
+    The method is analysis of variance: variables are divided into bins (levels of a `grid`). The effects of all single bins are fitted and
+    subtracted. The cells of two variables then explain a sum of squares SS_ij of the residual. The fraction is (SS_ij - (b_i - 1)(b_j - 1)
+    MSE) divided by the total sum of squares; the subtracted term is the expected value without interaction. For a complete grid, the
+    fraction is exact. Otherwise, effects within bins are missing, and true fractions are larger. The result is NaN on the diagonal, for too
+    few designs, and for a constant response.
 
     >>> from itertools import product
     >>> at = np.array(list(product([-1.0, 0.0, 1.0], repeat=2)))
@@ -69,7 +70,7 @@ def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
 
 
 def variance(values: Array) -> Array:
-    """Compute the variance (r,) of responses (n, r); NaN for relative variations below 1e-9, which are rounding.
+    """Compute the variance (r,) of responses (n, r). It is NaN for relative variations below 1e-9, which are rounding errors.
 
     >>> variance(np.array([[1.0, 2.0], [3.0, 2.0]])).tolist()
     [1.0, nan]
@@ -90,7 +91,7 @@ def rank_bins(column: Array, count: int) -> Array:
 
 
 def single_effects(bins: Sequence[Array], values: Array) -> list[Array]:
-    """Fit the effects (b, r) of each variable's bins (n,) on responses (n, r), relative to their mean.
+    """Fit the effects (b, r) of each variable's bins (n,) on responses (n, r), relative to the mean response.
 
     One least-squares problem for all variables separates their effects, even for few designs. Empty bins have effect 0.
 
@@ -123,9 +124,9 @@ def _explained_sum(first: Array, second: Array, residual: Array) -> Array:
 def second_order(blocks: Array, dimensions: int) -> tuple[Array, Array]:
     """Compute second-order Sobol indices (d, d, r) and their largest standard error (r,) from blocks (2 d + 2, n, r) of Saltelli's plan.
 
-    S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j. Estimated by products of designs that share x_i and x_j only: A with column j of B, and B
-    with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280). The mean is subtracted first, and both orders are
-    averaged. Errors assume independent rows; a Sobol sequence has smaller ones.
+    S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j is estimated by products of designs that have only x_i and x_j in common: A with column j
+    of B, and B with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280). The mean is subtracted first, and the results
+    for (i, j) and (j, i) are averaged. Errors assume independent rows; those of a Sobol sequence are smaller.
 
     >>> second_order(np.zeros((6, 4, 1)), 2)[0][0, 1].tolist()  # constant response
     [nan]
@@ -156,7 +157,7 @@ def standard_error(rows: Array) -> Array:
 
 
 def strongest(at: Array, values: Array, shares: Array, *, grid: bool) -> tuple[Interaction, ...]:
-    """Select the strongest interactions, above 1 % of a response's variance, four at most.
+    """Select the strongest interactions, at most four, with more than 1 % of a response's variance.
 
     `at` (n, d) are the variables, `values` (n, r) the responses, `shares` (d, d, r) the results of `paired_shares`.
 

@@ -15,7 +15,7 @@ from flexstage.models.lumped import lumped
 from flexstage.studies.sweeps.definition import Study
 
 _ENDS = 8
-"""Largest number of variables with a check of all range ends; else the first designs of the plan are checked."""
+"""Largest number of variables for which all range ends are checked; for more variables, the first designs of the plan are checked."""
 _FIRST = 16
 _AT_ONCE = 64
 _MARGIN = 2.0
@@ -23,7 +23,7 @@ _MARGIN = 2.0
 
 
 def needs_load_check(study: Study) -> bool:
-    """Whether designs need individual stability checks: the load factor at a range end is not far above the limit.
+    """Whether designs need individual stability checks, because the load factor at a range end is close to the limit.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> needs_load_check(neck_study())
@@ -33,7 +33,7 @@ def needs_load_check(study: Study) -> bool:
 
 
 def unstable_designs(study: Study, values: Array) -> dict[int, str]:
-    """Find the designs with `values` (n, d) of the variables that are unstable under permanent load: the reasons by row.
+    """Find the designs with `values` (n, d) of the variables that are unstable under permanent load. Returns the reasons by row.
 
     Designs without an elastic model are omitted.
 
@@ -59,7 +59,7 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
     if least >= DOUBTFUL:
         return ()
     where = ", ".join(f"{each.name} {each.text(float(value))}" for each, value in zip(study.variables, values, strict=True))
-    effect = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs below 1 are unstable: no results"
+    effect = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs below 1 are unstable and fail"
     what = f"weight, payloads and forces reduce stiffness: smallest load factor {least:.3g} ({where}); {effect}"
     return (Finding("variables", what, 'Add to [limits] e.g. buckling = "at least 20"'),)
 

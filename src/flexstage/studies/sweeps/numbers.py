@@ -1,4 +1,4 @@
-"""Numbers by which a study's designs differ, as linear functions of the variables."""
+"""Numbers in which a study's designs differ, as linear functions of the variables."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """P numbers of the design at `addresses`: `nominal` (P,) plus the variables (d,) times `matrix` (d, P).
+    """P numbers of the design at `addresses`, with the values `nominal` (P,) plus the variables (d,) times `matrix` (d, P).
 
     Numbers of shared parts precede the numbers of single instances that override them.
     """

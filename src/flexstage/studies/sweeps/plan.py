@@ -1,4 +1,4 @@
-"""Plans of designs: points in the variables' ranges, independent of the order of computation."""
+"""Plans of designs: points in the variables' ranges, independent of the sequence of computation."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class Sampling(Enum):
 
 @dataclass(frozen=True)
 class Plan:
-    """A sampling of `count` designs with its `seed`; a grid has `levels` instead, one number for each variable.
+    """A sampling of `count` designs with its `seed`. A grid has `levels` instead, one number for each variable.
 
-    Saltelli: two Sobol samples A and B of `count` designs each, and for each of d variables A with this variable's column from B. The plan
-    has count (d + 2) designs, for Sobol indices (Saltelli et al., Computer Physics Communications 181 (2010) 259). With `pairs` it also has
-    B with each column from A: count (2 d + 2) designs, for second-order indices.
+    Saltelli's plan contains two Sobol samples A and B of `count` designs each, and for each of d variables A with this variable's column
+    from B. These are count (d + 2) designs, for Sobol indices (Saltelli et al., Computer Physics Communications 181 (2010) 259). With
+    `pairs`, it also contains B with each column from A: count (2 d + 2) designs, for second-order indices.
     """
 
     sampling: Sampling
@@ -60,7 +60,7 @@ class Plan:
 
 
 def shares(plan: Plan, start: int, stop: int) -> Array:
-    """Compute shares (stop - start, d) in [0, 1] of the ranges for designs from `start` to before `stop`.
+    """Compute fractions (stop - start, d) of the ranges, 0 to 1, for designs from `start` to before `stop`.
 
     >>> shares(Plan(Sampling.GRID, 2, levels=(3, 2)), 0, 6).tolist()
     [[0.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 1.0], [1.0, 0.0], [1.0, 1.0]]

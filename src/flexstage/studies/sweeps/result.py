@@ -32,7 +32,7 @@ class DesignCount:
 
 @dataclass(frozen=True)
 class PairShare:
-    """The share of a response's variance explained by two variables together, beyond each alone."""
+    """The fraction of a response's variance that two variables together explain beyond each alone."""
 
     variables: tuple[str, str]
     share: float
@@ -42,8 +42,8 @@ class PairShare:
 class ResponseEffects(RequestedMeasure):
     """A response over the designs with values [SI], and the effects of variables.
 
-    For each variable the first-order and total share of the response's variance. Total shares, and the largest standard errors of indices,
-    are absent unless the plan is Saltelli's. The standard error of second-order indices requires `pairs`.
+    `first_order` and `total_order` contain the fraction of the response's variance for each variable. Total fractions, and the largest
+    standard errors of indices, exist only for Saltelli's plan. The standard error of second-order indices requires `pairs`.
     """
 
     TABLE: ClassVar[Layout] = Layout("Responses", "name address min_value mean spread max_value within_limits")
@@ -66,13 +66,13 @@ class ResponseEffects(RequestedMeasure):
 
     @property
     def spread(self) -> Annotated[float, INNER, UnitIn("unit"), Heading("deviation")]:
-        """The standard deviation; zero within rounding."""
+        """The standard deviation; zero if it is a rounding error."""
         return 0.0 if self.deviation < NOISE * abs(self.mean) else self.deviation
 
 
 @dataclass(frozen=True, eq=False)
 class StudyResult(InNotebook):
-    """Result of a study of many designs: its `study`, and the `results` of all designs so far."""
+    """Result of a study of many designs: the `study`, and the `results` of all designs so far."""
 
     study: Annotated[Study, INNER]
     results: Annotated[Results, INNER]
@@ -100,7 +100,7 @@ class StudyResult(InNotebook):
 
 @dataclass(frozen=True, eq=False)
 class Sweep(StudyResult):
-    """A sweep: effects of variables on responses. The designs are in the results file."""
+    """A sweep, with the effects of variables on responses. The designs are in the results file."""
 
     effects: Annotated[Effects, INNER]
 
@@ -121,12 +121,12 @@ class Sweep(StudyResult):
 
     @property
     def method(self) -> Annotated[str, VIEW]:
-        """Estimator of the shares."""
+        """Estimator of the variance fractions."""
         return self.effects.method
 
     @property
     def made(self) -> Annotated[tuple[str, ...], VIEW]:
-        """Every combination of versions, processor and kernel in the results."""
+        """Combinations of versions, processor and kernel that computed the results."""
         return self.results.made
 
     def _share_within_limits(self, name: str) -> float | None:

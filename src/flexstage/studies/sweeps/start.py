@@ -16,7 +16,7 @@ from flexstage.studies.form import StudyFile, VariedTable
 
 
 def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
-    """Return the design of a study's file, and its case; the case is `None` for a design file, which is searched in `folder`.
+    """Return the design of a study's file, and its case. For a design file, which must be in `folder`, the case is `None`.
 
     Raises `DesignError` without a design.
 
@@ -27,10 +27,10 @@ def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
     """
     findings: list[Finding] = []
     if bool(file.design) == bool(file.case):
-        found = "both a design file and a case are named" if file.design else "no design is named"
-        findings.append(Finding("design", found, 'Write design = "stage.toml", or case = "double-triangle"'))
+        found = "both a design file and a case are specified" if file.design else "design missing"
+        findings.append(Finding("design", found, 'Use e.g. design = "stage.toml", or case = "double-triangle"'))
     if file.design and file.parameters:
-        findings.append(Finding("parameters", "a design file has no parameters", "Leave them out, or use a case"))
+        findings.append(Finding("parameters", "a design file has no parameters", "Remove the parameters, or use a case"))
     require(findings)
     return (load(folder / file.design), None) if file.design else _draw(file.case or "", file.parameters)
 
@@ -69,14 +69,14 @@ def _leaves(tree: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any
 
 
 def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> tuple[tuple[str, ...], Quantity]:
-    """Read the parameters in a variable's table at `where`: full names, and quantity. Raises `DesignError` with all errors.
+    """Read the parameters in a variable's table at `where`: their full names, and their quantity. Raises `DesignError` with all errors.
 
     >>> names, quantity = read_parameters(VariedTable("1 mm", "2 mm", parameter=("neck_radius",)), "variables.r", Variant("hexapod"))
     >>> names, quantity.name
     (('neck_radius',), 'length')
     """
     if table.address is not None:
-        raise refuse(f"{where}.address", "both an address and a parameter are named", "Name one of them")
+        raise refuse(f"{where}.address", "both an address and a parameter are specified", "Remove one of them")
     if variant is None:
         advice = 'Use the address of a number: address = "parts.neck.thickness"'
         raise refuse(f"{where}.parameter", "a design file has no parameters", advice)
@@ -96,7 +96,7 @@ def read_parameters(table: VariedTable, where: str, variant: Variant | None) -> 
 
 
 def one_quantity(where: str, found: list[Quantity]) -> Quantity:
-    """Return the common quantity of several numbers; raises `DesignError` if the quantities differ.
+    """Return the common quantity of several numbers. Raises `DesignError` if their quantities differ.
 
     >>> from flexstage.base.units.quantity import ANGLE, LENGTH
     >>> one_quantity("variables.a.address", [LENGTH, LENGTH]).name

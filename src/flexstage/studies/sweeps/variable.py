@@ -25,11 +25,11 @@ _STEP = 1e-20
 
 @dataclass(frozen=True)
 class Variable:
-    """One number of a study from `low` to `high` [SI of `quantity`], written to all its `addresses`.
+    """One variable of a study, from `low` to `high` in the SI unit of `quantity`, which sets the numbers at all its `addresses`.
 
-    `relative`: low and high are factors on the design's value at each address. `logarithmic`: equal steps are equal ratios. `levels`:
-    number of values of a grid in the range, ends included. `step` [SI]: manufacturing increment, values are its multiples. With a
-    `variant`, the addresses are parameters of that case, from which the design is rebuilt.
+    `relative`: low and high are factors on the design's value at each address. `logarithmic`: equal steps are equal ratios. `levels` is the
+    number of values of a grid in the range, ends included. `step` [SI] is the manufacturing increment; rounded values are multiples of it.
+    With a `variant`, the addresses are parameters of that case, from which the design is rebuilt.
     """
 
     name: str
@@ -55,11 +55,11 @@ class Variable:
 
     @property
     def unit(self) -> Annotated[str, VIEW]:
-        """The SI unit of its range; 1 for a relative one."""
+        """The SI unit of the range; 1 for a relative range."""
         return self.quantity.si
 
     def at(self, shares: Array) -> Array:
-        """Compute values (n,) at shares (n,) of the range: 0 is low, 1 is high.
+        """Compute values (n,) at fractions (n,) of the range: 0 is low, 1 is high.
 
         >>> import numpy as np
         >>> from flexstage.base.units.quantity import LENGTH
@@ -80,7 +80,7 @@ class Variable:
         return f"{100.0 * (value - 1.0):+.4g} %" if self.relative else show(value, self.quantity, digits=6)
 
     def nominal(self, mechanism: Mechanism) -> float:
-        """Return the value in the unchanged design: 1 for a relative variable, else the value at the first address.
+        """Return the value in the nominal design: 1 for a relative variable, else the value at the first address.
 
         >>> from flexstage.base.units.quantity import LENGTH
         >>> from flexstage.cases.double_triangle import double_triangle
@@ -94,10 +94,10 @@ class Variable:
 
 
 def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -> Mechanism:
-    """Build the design with `values` (..., d) of the variables, in SI; leading axes give a batch.
+    """Build the design with `values` (..., d) of the variables, in SI. Leading axes give a batch.
 
-    Parameters of a case come first, because the design is built from them. Then shared parts are written, then overrides of them, for any
-    order of the variables.
+    For any sequence of the variables, parameters of a case are set first, because the design is built from them. Then numbers of shared
+    parts are written, then their overrides.
 
     >>> import numpy as np
     >>> from flexstage.base.units.quantity import LENGTH
@@ -111,7 +111,7 @@ def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) ->
 
 
 def apply_columns(mechanism: Mechanism, variables: tuple[Variable, ...], columns: tuple[Number, ...]) -> Mechanism:
-    """Build the design with values (...) of each variable in `columns`; only complex values make numbers of the design complex.
+    """Build the design with values (...) of each variable in `columns`. Only complex values make numbers of the design complex.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -143,14 +143,14 @@ def variable_findings(mechanism: Mechanism, variables: Iterable[Variable]) -> It
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> neck = Variable("neck", ("parts.neck.thickness",), LENGTH, 2e-3, 1e-3)
     >>> [str(each) for each in variable_findings(double_triangle(), [neck])]
-    ['variables.neck: its range is empty: from 2 mm to 1 mm. Give from < to.']
+    ['variables.neck: the range is empty (got 2 mm to 1 mm). Use from < to.']
     """
     owners: dict[str, str] = {}
     for variable in variables:
         where = f"variables.{variable.name}"
         if not variable.low < variable.high:
-            what = f"its range is empty: from {variable.text(variable.low)} to {variable.text(variable.high)}"
-            yield Finding(where, what, "Give from < to")
+            what = f"the range is empty (got {variable.text(variable.low)} to {variable.text(variable.high)})"
+            yield Finding(where, what, "Use from < to")
         elif variable.logarithmic and variable.low <= 0.0:
             yield Finding(
                 where, f"a logarithmic range must start above 0 (got {variable.low:g})", "Use a positive start, or a linear range"
@@ -180,11 +180,11 @@ def _parameter_findings(mechanism: Mechanism, variables: tuple[Variable, ...]) -
         for name in variable.addresses:
             moved = _numbers_moved_by(variable.variant, name)
             if not moved:
-                yield Finding(where, f"parameter {name} has no effect on this design", "Use another one")
+                yield Finding(where, f"parameter {name} has no effect on this design", "Use another parameter")
             for address in sorted(moved & set(overwritten)):
                 other, text = overwritten[address]
-                what = f"parameter {name} sets {text}, as variable {other} does"
-                yield Finding(where, what, "Remove one of them, or give the range of the address in percent")
+                what = f"parameter {name} sets {text}, and so does variable {other}"
+                yield Finding(where, what, "Remove one of them, or use a range in percent for the address")
 
 
 def _numbers_moved_by(variant: Variant, name: str) -> frozenset[str]:

@@ -1,1 +1,1 @@
-"""From a specification to stages: bounds, architectures, search."""
+"""Design of stages for a specification: bounds, architectures, search."""

@@ -1,4 +1,4 @@
-"""Stages for a specification: all pairs of architecture and actuator, excluded by bounds or searched; the answers, and why others fail."""
+"""Stages for a specification: pairs of architecture and actuator are excluded by bounds or searched; answers, and reasons for failures."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ from flexstage.studies.synthesis.specification import Specification
 from flexstage.studies.synthesis.synthesised import find_architectures
 
 Progress = Callable[[str, float], None]
-"""Reports what is computed, and the share that is done."""
+"""Called with the present computation and the completed fraction."""
 
 _ALONE = Run(workers=1)
 _RELAXED = 3
-"""Failed pairs whose requirements are relaxed."""
+"""Number of failed pairs whose requirements are relaxed."""
 FIRST = 3
-"""Answers that are verified, and that get their yield and their loop."""
+"""Number of answers for which finite elements, yield and control loop are computed on request."""
 
 
 @dataclass(frozen=True, eq=False)
 class Answers(InNotebook):
-    """The outcome of a specification: `answers` from the best goal on, pairs that `failed`, and those that a bound makes `impossible`.
+    """The outcome of a specification: `answers`, the best first, `failed` pairs, and `impossible` pairs, which a bound excludes.
 
     `interrupted`: some pairs were not searched.
     """
@@ -54,7 +54,7 @@ class Answers(InNotebook):
 
     @property
     def best(self) -> Annotated[Answer | None, INNER]:
-        """The first answer, if there is any."""
+        """The best answer, or None without answers."""
         return self.answers[0] if self.answers else None
 
 
@@ -71,17 +71,18 @@ def design(  # noqa: PLR0913 (its options)
     how: Run = _ALONE,
     finished: Callable[[Answer | FailedPair], None] | None = None,
 ) -> Answers:
-    """Design stages for a specification: every architecture that has its motions, with every allowed actuator of the catalogue.
+    """Design stages for a specification: every architecture that has the required motions, with every allowed actuator of the catalogue.
 
-    Bounds exclude pairs first (`flexstage.studies.synthesis.bounds`). The others are optimised within the requirements, as
-    `studies.optimise` does, and again with corrected limits while elastic bodies or large displacements miss a requirement. With `verify`,
-    e.g. `solid.required_values`, finite elements do the same for the first three answers; with `tolerance`, these get their yield, and with
-    `close_loop`, e.g. `control.sensitivity_crossover`, the sensitivity crossover of their control loop. An empty `architectures` means all.
+    First, bounds exclude pairs (`flexstage.studies.synthesis.bounds`). The others are optimised within the requirements by
+    `studies.optimise`, and again with corrected limits as long as elastic bodies or large displacements miss a requirement. For the first
+    three answers, `verify` (e.g. `solid.required_values`) repeats this with finite elements, `tolerance` computes the yield, and
+    `close_loop` (e.g. `control.sensitivity_crossover`) computes the sensitivity crossover of the control loop. An empty `architectures`
+    means all.
 
-    `finished` receives each result of a pair as soon as it is known; a later one of the same pair replaces it.
+    `finished` receives each result of a pair as soon as it is known; a later result of the same pair replaces it.
 
-    Results of pairs are written to the folder `keep`, and taken from there if `how` resumes. Results do not depend on the number of
-    processes. A keyboard interrupt ends the search with the answers so far. Raises `DesignError` where no architecture has the motions.
+    Results of pairs are written to the folder `keep`, and read from there if `how` resumes. Results do not depend on the number of
+    processes. A keyboard interrupt ends the search with the answers so far. Raises `DesignError` if no architecture has the motions.
 
     >>> from flexstage.studies.synthesis.specification import loads_specification
     >>> found = design(loads_specification('''
@@ -263,7 +264,7 @@ def _relaxed(
 
 
 def joint_front(found: Answers) -> list[tuple[Answer, FrontPoint]]:
-    """Return the designs of all pairs that no other exceeds in both goals, from the best in the first on.
+    """Return the designs of all pairs that no other design exceeds in both goals, sorted from the best in the first goal.
 
     >>> from flexstage.studies.synthesis.specification import example
     >>> joint_front(Answers(example(), (), (), ()))

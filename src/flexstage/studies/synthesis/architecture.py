@@ -1,4 +1,4 @@
-"""Architectures: design files with named numbers that a specification sets, and ranges in which the others are searched."""
+"""Architectures: design files with named numbers. A specification sets some numbers; the search varies the others within ranges."""
 
 from __future__ import annotations
 
@@ -38,20 +38,20 @@ _DIGITS = 7
 _COPIES = 512
 _FRONT = 5
 _SPARE = 1e-4
-"""A quarter of the range of a gauge whose motion is not required [m, rad]."""
+"""A quarter of the range of a gauge for a motion that is not required [m, rad]."""
 DESIGN = "stage.toml"
-"""The design file that a study of the search names."""
+"""Name of the design file in studies of the search."""
 _TURNS: Mapping[str, Array] = {
     "x": np.eye(3),
     "y": np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
     "z": np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
 }
-"""Rows: the axes of a file in the frame of the specification, by the motion that the file's x is."""
+"""Axes of an architecture's file as rows in the frame of the specification, by the motion that corresponds to the file's x."""
 
 
 @dataclass(frozen=True)
 class LeafRule:
-    """Guided leaves that take a `share` of the displacement at their end and fit into a `room` (formula)."""
+    """Guided leaves with a fraction `share` of the displacement at their end, which must fit into a `room` (formula)."""
 
     share: float
     room: str
@@ -59,7 +59,7 @@ class LeafRule:
 
 @dataclass(frozen=True, kw_only=True)
 class Architecture:
-    """An architecture: its `name`, the sets of motions that it `serves`, and its actuators; see `architectures.toml`."""
+    """An architecture: its `name`, the sets of motions that it `serves`, and its actuators (see `architectures.toml`)."""
 
     name: str
     kind: str
@@ -74,9 +74,9 @@ class Architecture:
     set: Mapping[str, str] = field(default_factory=dict)
     ranges: Mapping[str, tuple[str, str, str]] = field(default_factory=dict)
     limits: Mapping[str, str] = field(default_factory=dict)
-    """Least values of measures, as formulas."""
+    """Smallest values of measures, as formulas."""
     drawing: str = ""
-    """Text of its design file, where it is not of the folder."""
+    """Text of its design file, if it is not a file of the folder."""
 
     def is_for(self, motions: frozenset[str]) -> bool:
         """Whether the architecture has exactly these motions.
@@ -88,7 +88,7 @@ class Architecture:
 
     @property
     def text(self) -> str:
-        """The text of its design file."""
+        """Text of the design file."""
         return self.drawing or _file(f"{self.name}.toml")
 
 
@@ -121,12 +121,12 @@ class CatalogueActuator:
 
     @property
     def stroke(self) -> float:
-        """Full stroke [m]; of a coil its travel."""
+        """Full stroke [m]; for a coil, its travel."""
         return float(self.part.travel or np.inf) if self.kind == "voice_coil" else float(self.part.stroke)
 
     @property
     def stiffness(self) -> float:
-        """Stiffness along the stroke [N/m]; u'ku for an amplified actuator of free deformation u times its stroke."""
+        """Stiffness along the stroke [N/m]; u'ku for an amplified actuator with the free deformation u per stroke."""
         if self.kind == "piezo":
             return float(self.part.stiffness)
         return float(self.part.free_deformation @ self.part.between @ self.part.free_deformation)
@@ -140,7 +140,7 @@ class CatalogueActuator:
 
 
 def catalogue_actuators(spec: Specification, where: str = "spec") -> dict[str, list[CatalogueActuator]]:
-    """Return the actuators of the catalogue that a specification allows, by kind, in the order of their names.
+    """Return the actuators of the catalogue that a specification allows, by kind, sorted by name.
 
     >>> from flexstage.studies.synthesis.specification import example
     >>> [each.name for each in catalogue_actuators(example())["piezo"]][:1]
@@ -169,7 +169,7 @@ def catalogue_entry(spec: Specification, section: str, like: str, kind: str | No
 
 
 def turned_axes(architecture: Architecture, spec: Specification) -> Array:
-    """Return the axes of the architecture's frame as rows in that of the specification (3, 3).
+    """Return the axes of the architecture's frame, as rows (3, 3) in the frame of the specification.
 
     >>> from flexstage.studies.synthesis.specification import example
     >>> turned_axes(architectures()["carriages"], example()).tolist() == np.eye(3).tolist()
@@ -179,7 +179,7 @@ def turned_axes(architecture: Architecture, spec: Specification) -> Array:
 
 
 def scope(architecture: Architecture, spec: Specification, actuator: CatalogueActuator) -> dict[str, Amount]:
-    """Return the numbers that formulas of an architecture may use, in its frame."""
+    """Return the numbers that formulas of an architecture may use, in the architecture's frame."""
     turn = np.abs(turned_axes(architecture, spec))
     box, size = turn @ np.array(spec.box.size), turn @ np.array(spec.payload.size or (0.02, 0.02, 0.01))
     found = {f"box_{axis}": box[index] for index, axis in enumerate("xyz")} | {
@@ -215,7 +215,7 @@ def payload_height(spec: Specification) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Variable:
-    """A named number that is searched, between `low` and `high`, from `start` [SI]."""
+    """A named number that the search varies between `low` and `high`, from the initial value `start` [SI]."""
 
     name: str
     quantity: Quantity
@@ -225,7 +225,7 @@ class Variable:
 
 
 def variables(architecture: Architecture, known: Mapping[str, Amount]) -> Iterator[Variable]:
-    """Yield the numbers of an architecture that are searched, with their ranges; the start is clipped into its range."""
+    """Yield the numbers of an architecture that the search varies, with their ranges. The initial value is limited to its range."""
     for name, formulas in architecture.ranges.items():
         low, start, high = (evaluate(parse_expression(text), known) for text in formulas)
         most = max(float(high.value), 1.05 * float(low.value))
@@ -233,7 +233,7 @@ def variables(architecture: Architecture, known: Mapping[str, Amount]) -> Iterat
 
 
 def measure_key(architecture: Architecture, spec: Specification, key: str) -> str:
-    """Return the measure of a design that a requirement of the specification means: its axis is that of the architecture's frame.
+    """Return the measure of a design for a requirement of the specification, with its axis in the architecture's frame.
 
     >>> from flexstage.studies.synthesis.specification import example
     >>> measure_key(architectures()["carriages"], example(), "unwanted")
@@ -277,7 +277,7 @@ def _mm(value: float) -> str:
 def draw(
     architecture: Architecture, spec: Specification, actuator: CatalogueActuator, replaced: Mapping[str, str | None] = MappingProxyType({})
 ) -> str:
-    """Return the design file's text of an architecture for a specification, with the start values of the numbers that are searched.
+    """Return the text of an architecture's design file for a specification, with the initial values of the search.
 
     Requirements in `replaced` have other limits, or are left out (`None`).
     """
@@ -308,7 +308,7 @@ def _set_gauges(tree: Any, architecture: Architecture, spec: Specification) -> N
     axes = max((each for each in architecture.serves if motions <= each), key=len, default=motions)
     needed = {"x": next(iter(spec.displacements.values()))} if architecture.turns else spec.displacements
     gauges, sensors = tomlkit.table(), tomlkit.table()
-    sensors.add(tomlkit.comment("assumed: replace them by your own"))
+    sensors.add(tomlkit.comment("assumed; replace them by your own"))
     for axis in sorted(axes, key=COMPONENTS.index):
         turns = axis.startswith("r")
         own = {"kind": "tilt", "resolution": "10 nrad"} if turns else {"kind": "encoder", "period": "4 um", "steps": 4096}
@@ -354,12 +354,12 @@ def _set_payload(tree: Any, architecture: Architecture, spec: Specification) -> 
 
 
 def specified_goals(architecture: Architecture, spec: Specification) -> list[tuple[str, str]]:
-    """Return the goals of a specification, each as the direction and the measure of a design of this architecture."""
+    """Return the goals of a specification, each as a direction and a measure of a design of this architecture."""
     return [(each[0], measure_key(architecture, spec, each[1])) for each in (spec.goal, spec.second_goal) if each is not None]
 
 
 def study_text(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, goals: Sequence[tuple[str, str]]) -> str:
-    """Return the study that searches a design of an architecture: its variables, and one or two goals, each a direction and a measure."""
+    """Return the study file of the search in an architecture: its variables, and one or two goals, each a direction and a measure."""
     lines = ['format = "flexstage study 1"', f"name = {json.dumps(spec.name)}", f'design = "{DESIGN}"', "", "[variables]"]
     for each in variables(architecture, scope(architecture, spec, actuator)):
         low, high = (show(value, each.quantity, digits=_DIGITS) for value in (each.low, each.high))
@@ -373,9 +373,9 @@ def study_text(architecture: Architecture, spec: Specification, actuator: Catalo
 
 
 def tolerance_text(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, limits: Mapping[str, str]) -> str:
-    """Return the tolerance study of a design: lengths and the thickness of every hinge vary evenly within the tolerance.
+    """Return the tolerance study of a design: lengths, and the thickness of every hinge, are uniformly distributed within the tolerance.
 
-    `limits` are requirements of the design; those on its named numbers, rules of the architecture, are left out.
+    `limits` are requirements of the design. Requirements on its named numbers, which are rules of the architecture, are left out.
     """
     spread = f'uniform = "{_mm(spec.make.tolerance)}"'
     lines = ['format = "flexstage study 1"', f"name = {json.dumps(spec.name)}", f'design = "{DESIGN}"', ""]

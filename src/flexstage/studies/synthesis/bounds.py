@@ -1,7 +1,7 @@
-"""Performance bounds of a stage that hold for every mechanism: what actuators can reach at best, whatever levers and guides they use.
+"""Performance bounds of actuators that hold for every mechanism, with any levers and guides.
 
-Notation: displacements X of the motions in both directions [m, rad], least masses M [kg] or moments of inertia [kg m^2] of the payload
-along them, whatever other motions accompany them. Bounds are exact upper limits, not estimates.
+Notation: X are displacements of the motions in both directions [m, rad]; M are the smallest masses [kg] or moments of inertia [kg m^2] of
+the payload along the motions, whatever other motions accompany them. Bounds are exact upper limits, not estimates.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ def stroke_energy(stroke: float, stiffness: float, count: int = 1) -> float:
 def stiffness_bound(energy: float, displacement: float, negative_stiffness: float = 0.0) -> float:
     """Return the largest stiffness K [N/m, N m/rad] along a motion that actuators of imposed stroke displace by X in both directions.
 
-    K X^2 <= U (1 + N/K), N >= 0 the negative part of the passive stiffness along the motion. Proof: with stroke ratios G, the stiffness is
-    K = G'kG + P, the passive part P >= -N. Strokes u move the stage by K x = G'k u. Hence x'Kx = (k^1/2 G x)'(k^1/2 u) is at most
-    (x'G'kGx)^1/2 (u'ku)^1/2 <= (x'Kx + N x'x)^1/2 U^1/2. The bound is the positive root of K^2 - (U/X^2) K - (U/X^2) N = 0.
+    The bound is K X^2 <= U (1 + N/K); N >= 0 is the negative part of the passive stiffness along the motion. Proof: with stroke ratios G,
+    the stiffness is K = G'kG + P, with a passive part P >= -N. Strokes u move the stage by K x = G'k u. Hence x'Kx = (k^1/2 G x)'(k^1/2 u)
+    is at most (x'G'kGx)^1/2 (u'ku)^1/2 <= (x'Kx + N x'x)^1/2 U^1/2. The largest K is the positive root of K^2 - (U/X^2) K - (U/X^2) N = 0.
 
     >>> round(stiffness_bound(0.025, 1e-3))
     25000
@@ -39,8 +39,9 @@ def stiffness_bound(energy: float, displacement: float, negative_stiffness: floa
 def frequency_bound(energy: float, displacements: Mapping[str, float], masses: Mapping[str, float]) -> float:
     """Return the highest first natural frequency [Hz] of a stage that reaches all displacements together.
 
-    The energies of the motions add up: sum K_j X_j^2 <= U, the mean over the corners of the required box. By Rayleigh's quotient
-    (2 pi f)^2 M_j <= K_j for the first frequency f, thus (2 pi f)^2 <= U / sum M_j X_j^2. Without negative stiffness.
+    The energies of the motions add up: sum K_j X_j^2 <= U, as the mean over the corners of the required displacements. By Rayleigh's
+    quotient, (2 pi f)^2 M_j <= K_j for the first frequency f, thus (2 pi f)^2 <= U / sum M_j X_j^2. Springs of negative stiffness are
+    excluded.
 
     >>> round(frequency_bound(2 * stroke_energy(1e-3, 0.35e6), {"x": 0.5e-3, "y": 0.5e-3}, {"x": 1.0, "y": 1.0}), 1)
     94.2
@@ -59,7 +60,7 @@ def displacement_factor(energy: float, displacements: Mapping[str, float], masse
 
 
 def required_energy(displacements: Mapping[str, float], masses: Mapping[str, float], frequency: float) -> float:
-    """Return the energy U [J] that actuators need at least for a first natural frequency [Hz].
+    """Return the smallest energy U [J] with which actuators can reach a first natural frequency [Hz].
 
     >>> round(required_energy({"x": 0.5e-3}, {"x": 1.0}, 500.0), 2)
     2.47
@@ -73,7 +74,7 @@ def _weighted(displacements: Mapping[str, float], masses: Mapping[str, float]) -
 
 @dataclass(frozen=True)
 class ForceSource:
-    """An actuator of continuous force [N] with a moving mass [kg] and a full travel [m]; `count` of them act along the motion."""
+    """An actuator with a continuous force [N], a moving mass [kg] and a full travel [m]. `count` of them act along the motion."""
 
     force: float
     mass: float
@@ -84,8 +85,9 @@ class ForceSource:
 def force_frequency_bound(source: ForceSource, displacement: float, mass: float) -> float:
     """Return the highest frequency [Hz] of a motion that continuous forces displace by X in both directions, through the best levers.
 
-    With lever ratios g = dx/dX <= T/(2X) for a travel T: K X <= n F g and (2 pi f)^2 (M + n m g^2) <= K, K the total stiffness, so that
-    negative springs do not break the bound. The best ratio is sqrt(M/(n m)), or the one that the travel allows. g = 1 is direct drive.
+    With lever ratios g = dx/dX <= T/(2X) for a travel T, K X <= n F g and (2 pi f)^2 (M + n m g^2) <= K. K is the total stiffness, so that
+    springs of negative stiffness do not exceed the bound. The best ratio is sqrt(M/(n m)), or the largest ratio for this travel. g = 1 is
+    direct drive.
 
     >>> coil = ForceSource(force=73.9, mass=0.18, travel=26e-3)
     >>> round(force_frequency_bound(coil, 0.5e-3, 1.0), 1)
@@ -100,7 +102,7 @@ def force_frequency_bound(source: ForceSource, displacement: float, mass: float)
 
 
 def leaf_length(thickness: float, displacement: float, young: float, poisson: float, stress: float) -> float:
-    """Return the least length [m] of a wide guided leaf for a displacement of its end [m] at an allowable stress [Pa].
+    """Return the smallest length [m] of a wide guided leaf for a displacement of its end [m] at an allowable stress [Pa].
 
     The bending stress is 3 E t d / ((1 - nu^2) L^2).
 
@@ -111,7 +113,7 @@ def leaf_length(thickness: float, displacement: float, young: float, poisson: fl
 
 
 def efficiency(frequency: float, energy: float, displacements: Mapping[str, float], masses: Mapping[str, float]) -> float:
-    """Return the stroke energy that a stage of a first natural frequency [Hz] uses, as a share of that of its actuators: at most 1.
+    """Return the fraction of the actuators' stroke energy that a stage with a first natural frequency [Hz] uses; it is at most 1.
 
     >>> round(efficiency(50.0, 2 * stroke_energy(1e-3, 0.35e6), {"x": 0.5e-3, "y": 0.5e-3}, {"x": 1.0, "y": 1.0}), 3)
     0.282

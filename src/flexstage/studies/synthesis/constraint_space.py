@@ -1,14 +1,14 @@
 """Existence of parallel guides: whether wires and leaves between platform and ground can permit exactly the required motions.
 
 Theorem (Hopkins & Culpepper, Precision Engineering 34, 2010, 259-270; Blanding, Exact Constraint, 1999). An ideal wire transmits a pure
-force along its line, and a leaf those in its plane. They permit a motion if their forces do no work on it: these wrenches (f, m) are
-reciprocal to the twist (v, w), f.v + m.w = 0. A parallel guide permits exactly the motions T if its forces span the whole space R of
-wrenches reciprocal to T. Hence one exists if and only if the pure forces in R, f.m = 0 and f != 0, span R: if they do, a wire along each
-force of a basis is a guide, otherwise every guide also permits another motion.
+force along its line, and a leaf transmits pure forces in its plane. They permit a motion if their forces do no work on it: the wrenches
+(f, m) are reciprocal to the twist (v, w), f.v + m.w = 0. A parallel guide permits exactly the motions T if its forces span the whole space
+R of wrenches reciprocal to T. Hence such a guide exists if and only if the pure forces in R, with f.m = 0 and f != 0, span R. If they do, a
+wire along each force of a basis is a guide; otherwise, every guide also permits another motion.
 
-The pure forces in R are the zeros of the quadratic form f.m on R. The zeros of an indefinite form of rank 3 or more span R, also without
-those of f = 0: no open part of such a cone is in a linear subspace. An indefinite form of rank 2 is the product of two linear forms: its
-zeros are two hyperplanes, and one without forces is left out. The zeros of a semidefinite form are its kernel.
+The pure forces in R are the zeros of the quadratic form f.m on R. The zeros of an indefinite form of rank 3 or more span R, even without
+those with f = 0, because no open part of such a cone is in a linear subspace. An indefinite form of rank 2 is the product of two linear
+forms: its zeros are two hyperplanes; a hyperplane without forces is left out. The zeros of a semidefinite form are its kernel.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _SMALL = 1e-9
 
 
 def reciprocal_space(vectors: Array) -> Array:
-    """Return an orthonormal basis (6, 6 - n) of the wrenches that do no work on n independent twists (6, n), or the reverse.
+    """Return an orthonormal basis (6, 6 - n) of the wrenches that do no work on n independent twists (6, n), or of twists for wrenches.
 
     >>> reciprocal_space(np.eye(6)[:, :2]).shape
     (6, 4)
@@ -34,7 +34,7 @@ def reciprocal_space(vectors: Array) -> Array:
 
 
 def pure_force_span(wrenches: Array) -> Array:
-    """Return an orthonormal basis (6, k) of the span of all pure forces, f.m = 0 and f != 0, within the span of wrenches (6, n).
+    """Return an orthonormal basis (6, k) of the span of all pure forces (f.m = 0 and f != 0) within the span of wrenches (6, n).
 
     >>> np.abs(pure_force_span(np.eye(6)[:, [0, 3]])).T.tolist()  # a force along x, and a couple about x: only the force
     [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]]

@@ -1,4 +1,4 @@
-"""Values of the requirements by better models than the search's: elastic bodies, large displacements; and the limits that they demand."""
+"""Values of the requirements with elastic bodies or large displacements, and the limits that the search then needs."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from flexstage.spatial.frame import COMPONENTS
 _DIGITS = 9
 _STEPS = 12
 _CLOSE = 1e-4
-"""Largest distance from the required displacement, relative to it."""
+"""Largest deviation from the required displacement, relative to this displacement."""
 
 
 Estimator = Callable[[Mechanism], Estimate]
-"""Values of a stage's requirements by another model."""
+"""Function that computes the values of a stage's requirements by another model."""
 
 
 def elastic_values(stage: Mechanism) -> Estimate:
@@ -45,12 +45,12 @@ def elastic_values(stage: Mechanism) -> Estimate:
 def displaced_values(stage: Mechanism) -> Estimate:
     """Return the worst values of a stage's requirements over the corners of its required displacements, at large displacements.
 
-    Of more than three required displacements, each is reached alone.
+    If there are more than three required displacements, each is reached alone.
 
-    Frequencies and stiffnesses change as those of the models linearised there and at rest, stresses include stretch. A stroke is the
-    lumped one times the least ratio of linear to nonlinear inputs at the corners: it is enough exactly if the actuators reach the corners.
-    Requirements that do not depend on the displacement are left out. Raises `DesignError` without equilibrium, and for outlines that
-    overlap at a corner.
+    Frequencies and stiffnesses are multiplied by their ratios in the models linearised at the corners and at rest. Stresses include
+    stretch. A stroke is the lumped stroke times the smallest ratio of linear to nonlinear inputs at the corners, so that it is sufficient
+    exactly if the actuators reach the corners. Requirements that do not depend on the displacement are left out. Raises `DesignError`
+    without equilibrium, and for outlines that overlap at a corner.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> {key: round(value) for key, value in displaced_values(parallelogram()).values.items() if key.startswith("frequency")}
@@ -76,7 +76,7 @@ def displaced_values(stage: Mechanism) -> Estimate:
         elif line.kind is stroke:
             found[line.key] = float(np.real(line.kind.value(bench, line))) * reached.ratio
     if unknown := [key for key, value in found.items() if np.isnan(value)]:
-        raise refuse(unknown[0], "it has no value at the corners of the required displacements", "Reduce the displacements")
+        raise refuse(unknown[0], "has no value at the corners of the required displacements", "Reduce the displacements")
     return Estimate({key: value for key, value in found.items() if np.isfinite(value)})
 
 
@@ -119,10 +119,10 @@ def _at_corners(bench: StageResults) -> _Corners:
 
 
 def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Mapping[str, float], ...]) -> dict[str, str]:
-    """Return the limits with which the lumped model keeps the requirements also by the better ones; empty if it does already.
+    """Return the limits for the lumped model with which better models also meet the requirements. Empty if they do already.
 
-    Each value changes by the ratios of the better models to the lumped one (space mapping): a limit becomes limit / ratio where that is
-    stricter. Raises `DesignError` if a missed one has no such ratio.
+    Each value changes by the ratio of a better model and the lumped model (space mapping): a limit becomes limit / ratio if that is
+    stricter. Raises `DesignError` if a missed requirement has no such ratio.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> drawn = required_values(parallelogram())
@@ -132,7 +132,7 @@ def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Ma
     lines = {line.key: line for line in requirements(stage) if line.key in drawn}
     for key, line in lines.items():
         if not drawn[key] and not all(Verdict(line, np.asarray(each.get(key, 0.0))).passed for each in better):
-            raise refuse(key, "it is zero with rigid bodies only: no limit of the lumped model meets the requirement", "Relax it")
+            raise refuse(key, "zero with rigid bodies, so no limit of the lumped model ensures it", "Relax the requirement")
     ratios = {key: float(np.prod([each[key] / drawn[key] for each in better if key in each])) for key in lines if drawn[key]}
     if all(Verdict(lines[key], np.asarray(drawn[key] * ratio)).passed for key, ratio in ratios.items()):
         return {}

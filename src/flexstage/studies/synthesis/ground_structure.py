@@ -1,8 +1,9 @@
 """Guides from a ground structure: wires and leaves between the faces of a block and the ground, chosen by stiffness.
 
-Candidates are normal to five faces of the block, in a grid of three by three places on each; the payload is on the sixth. Lines along the
-axes are enough: if the pure forces reciprocal to motions along and about axes span their space, those along axes do. Candidates are taken
-as orbits, with all their images under the symmetries of the specification, so that a guide is as symmetric as its specification.
+Candidates are normal to five faces of the block, in a grid of three by three places on each face; the payload is on the sixth face. Lines
+along the axes are sufficient: if the pure forces reciprocal to motions along and about axes span their space, the forces along axes do so
+too. A candidate includes all its images under the symmetries of the specification (an orbit), so that a guide is as symmetric as its
+specification.
 """
 
 from __future__ import annotations
@@ -22,12 +23,12 @@ from flexstage.spatial.frame import spatial_rotation, transport
 from flexstage.studies.synthesis.constraint_space import reciprocal_space, twists_of
 
 _RESISTS = 0.02
-"""Stiffness of an element along the required motions, as a share of its whole, from which it resists them."""
+"""Fraction of an element's stiffness along the required motions, from which the element is regarded as resisting them."""
 _ORBITS = 4
 _BETTER = 1.5
-"""Factor by which one more orbit must raise the ratio of stiffnesses."""
+"""Factor by which an additional orbit must increase the ratio of stiffnesses."""
 _ASIDE = 0.05
-"""Weight of the forces of actuators along other motions, in the choice of their places."""
+"""Weight of actuator forces along other motions in the choice of actuator places."""
 MIRRORS: tuple[Array, ...] = (np.diag([-1, 1, 1]), np.diag([1, -1, 1]))
 """Symmetries of every set of motions along and about axes, with a payload on top."""
 QUARTER_TURN: Array = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
@@ -37,7 +38,7 @@ _Grid = tuple[int, int, int]
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """A place on the block, on a face across the axis `face`: in `grid` its side (-1, 1), and its column and row (-1, 0, 1)."""
+    """A place on a face of the block, normal to the axis `face`. `grid` contains its side (-1, 1), and its column and row (-1, 0, 1)."""
 
     face: int
     grid: _Grid
@@ -50,7 +51,7 @@ class Place:
 
 @dataclass(frozen=True, order=True)
 class Element:
-    """A wire, or a leaf with its width along an axis, normal to the block at a place; -1: a wire."""
+    """A wire or leaf, normal to the block at a place. `width` is the axis along the width of a leaf, -1 for a wire."""
 
     place: Place
     width: int = -1
@@ -58,7 +59,7 @@ class Element:
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Half sizes of the block, pitch of its grid, length of elements by axis [m]; thickness and width of leaves, diameter of wires [m]."""
+    """Half sizes of the block, pitch of its grid, length of elements by axis, thickness and width of leaves, diameter of wires [m]."""
 
     half: Array
     pitch: Array
@@ -69,7 +70,7 @@ class Block:
     material: Material
 
     def point(self, place: Place) -> Array:
-        """Return the point on the face."""
+        """Return the position of a place on its face."""
         return np.where(np.arange(3) == place.face, self.half, self.pitch) * place.grid
 
     def stiffness(self, element: Element) -> Array:
@@ -90,15 +91,15 @@ class Block:
 
     @property
     def scale(self) -> Array:
-        """Size of twists of equal displacement (6,): 1 m, and rotations that move a point at the mean half size by it."""
+        """Sizes of twists (6,) with equal displacements: 1 m, and rotations that move a point at the mean half size by 1 m."""
         return np.repeat([1.0, 1.0 / float(np.mean(self.half))], 3)
 
 
 @dataclass(frozen=True)
 class Guide:
-    """A guide: its elements, and the `ratio` of its least stiffness along other motions to the largest along the required ones.
+    """A guide: its elements, and the `ratio` of its smallest stiffness along other motions to its largest along the required motions.
 
-    `conditioning` is the least singular value of the scaled forces of its `actuators` along the required motions.
+    `conditioning` is the smallest singular value of the scaled forces of its `actuators` along the required motions.
     """
 
     elements: tuple[Element, ...]
@@ -108,9 +109,9 @@ class Guide:
 
 
 def stiffness_ratio(stiffness: Array, motions: frozenset[str], scale: Array) -> float:
-    """Return the least stiffness along other motions, the required ones free, over the largest along the required ones.
+    """Return the ratio of the smallest stiffness along other motions to the largest stiffness along the required motions.
 
-    `scale` (6,) makes translations and rotations comparable.
+    The required motions are free in the first stiffness. `scale` (6,) makes translations and rotations comparable.
 
     >>> stiffness_ratio(np.diag([1.0, 50.0, 60.0, 70.0, 80.0, 90.0]), frozenset({"x"}), np.ones(6))
     50.0
@@ -124,7 +125,7 @@ def stiffness_ratio(stiffness: Array, motions: frozenset[str], scale: Array) -> 
 
 
 def places(rows: Sequence[int]) -> Iterator[Place]:
-    """Yield all places, those of side faces in some rows along z only."""
+    """Yield all places. On side faces, only the given `rows` along z are used."""
     steps = (-1, 0, 1)
     for face, grid in product(range(3), product(steps, steps, steps)):
         if grid[face] and (grid[2] in rows if face < 2 else grid[2] < 0):
@@ -154,9 +155,9 @@ def _image(element: Element, symmetry: Array) -> Element:
 
 
 def find_guide(block: Block, motions: frozenset[str], symmetries: Sequence[Array], rows: Sequence[int]) -> Guide | None:
-    """Choose the guide of the largest ratio of stiffnesses, without actuators. `None` if no candidate permits the motions.
+    """Choose the guide with the largest ratio of stiffnesses, without actuators. Returns `None` if no candidate permits the motions.
 
-    Orbits that resist a required motion by more than a small share of their stiffness are excluded.
+    Orbits that resist a required motion by more than a small fraction of their stiffness are excluded.
     """
     scaled, wanted = np.outer(block.scale, block.scale), twists_of(motions)
     stiffness = dict[tuple[Element, ...], Array]()
@@ -181,9 +182,9 @@ def find_guide(block: Block, motions: frozenset[str], symmetries: Sequence[Array
 
 
 def with_actuators(guide: Guide, block: Block, motions: frozenset[str], room: Sequence[Place]) -> Guide:
-    """Place an actuator for each motion where no element is, so that the map from actuators to motions is well conditioned.
+    """Place an actuator for each motion at places without elements, so that the map from actuators to motions is well conditioned.
 
-    The merit is the least singular value of the forces along the required motions, less a small share of those along others.
+    The merit is the smallest singular value of the forces along the required motions, minus a small fraction of the forces along others.
     """
     used = {each.place for each in guide.elements}
     free = [each for each in room if each not in used]
@@ -204,7 +205,7 @@ def _conditioning(forces: Array) -> float:
 
 
 def exchange(options: int, count: int, merit: Callable[[Sequence[int]], float]) -> tuple[int, ...]:
-    """Choose `count` of some options: added one by one, then exchanged one by one as long as the merit increases.
+    """Choose `count` of several options. They are added one by one, then exchanged one by one as long as the merit increases.
 
     >>> exchange(5, 2, lambda chosen: sum(chosen))
     (4, 3)

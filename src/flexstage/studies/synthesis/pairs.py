@@ -15,9 +15,9 @@ from flexstage.studies.synthesis.specification import FREQUENCY_KEYS, Specificat
 
 @dataclass(frozen=True)
 class Shortfall:
-    """A bound that a pair cannot meet: the requirement, the best value and the required one [SI], the reason, and who it holds for.
+    """A bound that excludes a pair: the requirement, its best possible and its required value [SI], and the reason.
 
-    `universal`: for every mechanism with these actuators, otherwise for the architecture alone.
+    `universal`: the bound holds for every mechanism with these actuators; otherwise, it holds for this architecture only.
     """
 
     requirement: str
@@ -29,7 +29,7 @@ class Shortfall:
 
     @property
     def ratio(self) -> float:
-        """Best value as a share of the required one."""
+        """Ratio of the best to the required value."""
         return self.best / self.required
 
 
@@ -42,7 +42,7 @@ class CandidatePair:
 
     @property
     def name(self) -> str:
-        """Its name: architecture and actuator."""
+        """Name of the pair: architecture and actuator."""
         return f"{self.architecture.name} with {self.actuator.name}"
 
 
@@ -64,7 +64,7 @@ def _energy(pair: CandidatePair) -> float | None:
 
 
 def energy_groups(spec: Specification, pair: CandidatePair) -> list[tuple[float, dict[str, float]]]:
-    """Energies of actuators [J] with the displacements that they reach at once: of each axis on its own, or of all together."""
+    """Return energies of actuators [J], each with the displacements reached at once: one for each axis, or one for all axes."""
     energy, moved = _energy(pair) or math.inf, spec.displacements
     if pair.architecture.own:
         return [(energy / len(moved), {axis: value}) for axis, value in moved.items()]
@@ -72,7 +72,7 @@ def energy_groups(spec: Specification, pair: CandidatePair) -> list[tuple[float,
 
 
 def demand(spec: Specification, pair: CandidatePair) -> float:
-    """Required energy as a share of that of the actuators; the least demanding pairs are searched first."""
+    """Return the ratio of the required energy and that of the actuators. The pairs with the smallest ratio are searched first."""
     frequency = spec.least(FREQUENCY_KEYS[0])
     return 0.0 if frequency is None else max(bounds.efficiency(frequency, *each, spec.masses) for each in energy_groups(spec, pair))
 
@@ -104,7 +104,7 @@ def _energy_shortfalls(spec: Specification, pair: CandidatePair, frequency: floa
             factor = bounds.displacement_factor(energy, moved, spec.masses, frequency)
             needed = bounds.required_energy(moved, spec.masses, frequency)
             reason = (
-                f"{', '.join(moved)}: the actuators store {energy:.3g} J, and {needed:.3g} J is needed; "
+                f"{', '.join(moved)}: the actuators store {energy:.3g} J, but {needed:.3g} J is needed; "
                 f"at most {100 * factor:.0f} % of the displacement, or {best:.4g} Hz"
             )
             yield Shortfall("frequency", best, frequency, "Hz", reason, universal=energy == whole)
@@ -131,7 +131,7 @@ def _stroke_shortfalls(spec: Specification, pair: CandidatePair) -> Iterator[Sho
         flat = max(moved["x"], moved["y"])
         least = 1.0 / math.hypot(0.5 / moved["z"], 0.5 / (flat * math.cos(math.pi / 6.0)))
         if stroke < least:
-            reason = f"struts of {1e6 * stroke:.4g} um, whatever their slope: x and z need {1e6 * least:.4g} um"
+            reason = f"struts with {1e6 * stroke:.4g} um of stroke at any slope, but x and z need {1e6 * least:.4g} um"
             yield Shortfall("motion.z", moved["z"] * stroke / least, moved["z"], "m", reason)
 
 

@@ -1,4 +1,4 @@
-"""The specification of a stage: motions, payload, box, requirements; read from a file."""
+"""The specification of a stage: motions, payload, box and requirements, read from a file."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from flexstage.spatial.frame import COMPONENTS
 
 FORMAT = "flexstage specification 1"
 FREQUENCY_KEYS = ("frequency", "unwanted")
-"""Requirements of their own: the first natural frequency, and the first of a motion that is not required."""
+"""Requirements that only specifications have: the first natural frequency, and the first frequency of a motion that is not required."""
 
 EXAMPLE = """\
 format = "flexstage specification 1"
@@ -47,7 +47,7 @@ _STARTS = Bound(low=1.0)
 
 
 class ActuatorKind(Enum):
-    """Kinds of actuators, as parts of a design file call them."""
+    """Kinds of actuators, with the names of the parts in a design file."""
 
     PIEZO = "piezo"
     AMPLIFIED = "amplified"
@@ -56,7 +56,7 @@ class ActuatorKind(Enum):
 
 @dataclass(frozen=True)
 class MotionTable:
-    """Required displacement of the payload along each axis, in both directions; an axis without one is to be stiff."""
+    """Required displacement of the payload along each axis, in both directions. An axis without a displacement must be stiff."""
 
     x: Annotated[float, DISPLACEMENT, POSITIVE] | None = None
     y: Annotated[float, DISPLACEMENT, POSITIVE] | None = None
@@ -68,9 +68,9 @@ class MotionTable:
 
 @dataclass(frozen=True)
 class PayloadTable:
-    """The payload: mass, and `size` of a uniform block or `inertia` about its centre of mass, `height` above the platform.
+    """The payload: its mass, its `size` as a uniform block or its `inertia` about the centre of mass, and its `height` above the platform.
 
-    The default height is half of the block's.
+    The default height is half the height of the block.
     """
 
     mass: Annotated[float, MASS, POSITIVE]
@@ -89,7 +89,7 @@ class BoxTable:
 
 @dataclass(frozen=True)
 class MakeTable:
-    """Materials of flexures and of bodies, by name of the catalogue; thinnest flexure, step and tolerance (+-) of dimensions."""
+    """Materials of flexures and of bodies, by names of the catalogue; thinnest flexure, step and tolerance (+-) of dimensions."""
 
     flexures: str = "7075-T6"
     bodies: str = "7075-T6"
@@ -100,7 +100,7 @@ class MakeTable:
 
 @dataclass(frozen=True)
 class ActuatorTable:
-    """The kinds of actuators to choose from; `like` restricts them to entries of the catalogue."""
+    """The kinds of actuators to choose from. `like` restricts the choice to these entries of the catalogue."""
 
     kinds: tuple[ActuatorKind, ...] = tuple(ActuatorKind)
     like: _Texts | None = None
@@ -108,9 +108,9 @@ class ActuatorTable:
 
 @dataclass(frozen=True)
 class GoalTable:
-    """What to `maximise` or `minimise`: a requirement's key. The default maximises the first required frequency.
+    """The requirement to `maximise` or `minimise`, by its key. By default, the first required frequency is maximised.
 
-    With both, `maximise` is the goal, and the front of the two is computed as well.
+    With both, `maximise` is the goal, and the Pareto front of both goals is also computed.
     """
 
     maximise: str | None = None
@@ -119,13 +119,13 @@ class GoalTable:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Specification:
-    """A specification: what a stage must do, in the frame of its box (z is up).
+    """The specification of a stage, in the frame of its box (z is up).
 
     `requirements` are `frequency` (first natural frequency), `unwanted` (first frequency of a motion that is not required), and any measure
-    of a design file's requirements; `safety` is at least 2 unless stated.
+    of a design file's requirements; `safety` is at least 2 unless specified.
 
-    `together`: all displacements are reached at once, at the corners of their box, instead of each on its own. `starts` and `seed` belong
-    to the search of each pair.
+    `together`: all displacements must be reached at once, in all combinations, instead of each alone. `starts` and `seed` apply to the
+    search of each pair.
     """
 
     name: str
@@ -163,9 +163,9 @@ class Specification:
 
     @property
     def masses(self) -> dict[str, float]:
-        """Least mass or moment of inertia of the payload along each required motion, whatever other motions accompany it.
+        """Smallest mass or moment of inertia of the payload along each required motion, whatever other motions accompany it.
 
-        That of a rotation is 1 / (J^-1)_ii, for the inertia J about the centre of mass: (w_i)^2 <= (J^-1)_ii w^T J w.
+        For a rotation, it is 1 / (J^-1)_ii with the inertia J about the centre of mass, because (w_i)^2 <= (J^-1)_ii w^T J w.
         """
         least = dict.fromkeys("xyz", self.payload.mass)
         if any(axis not in least for axis in self.displacements):
@@ -173,12 +173,12 @@ class Specification:
         return {axis: float(least[axis]) for axis in self.displacements}
 
     def least(self, key: str, quantity: Quantity = FREQUENCY) -> float | None:
-        """The required least value [SI] of a key, `None` without one."""
+        """Return the required smallest value [SI] of a key, or `None` if it is not required."""
         text = self.requirements.get(key)
         if text is None:
             return None
         if not text.startswith("at least "):
-            raise refuse(f"requirements.{key}", f'must be a least value (got "{text}")', f'Use e.g. "at least {quantity.example}"')
+            raise refuse(f"requirements.{key}", f'must begin with "at least" (got "{text}")', f'Use e.g. "at least {quantity.example}"')
         return parse(text.removeprefix("at least "), quantity, where=f"requirements.{key}")
 
     @property
@@ -209,7 +209,7 @@ def load_specification(path: str | os.PathLike[str]) -> Specification:
 
 
 def loads_specification(text: str, *, where: str = "text") -> Specification:
-    """Read a specification from its text; a catalogue that it names is in the folder of `where`.
+    """Read a specification from its text. Paths of catalogues are relative to the folder of `where`.
 
     >>> found = loads_specification(EXAMPLE)
     >>> found.displacements, found.least("frequency"), found.goal
@@ -265,7 +265,7 @@ def _findings(spec: Specification) -> Iterator[Finding]:
     yield from _requirement_findings(spec)
     yield from _size_findings(spec)
     if any(axis.startswith("r") for axis in spec.displacements) and np.linalg.eigvalsh(spec.inertia)[0] <= 0.0:
-        what = "a rotation is required, and the payload has no moment of inertia about some axis"
+        what = "a rotation is required, but the payload has no moment of inertia about an axis"
         yield Finding("payload", what, 'Use e.g. size = ["30 mm", "30 mm", "5 mm"]')
 
 
@@ -278,7 +278,7 @@ def _requirement_findings(spec: Specification) -> Iterator[Finding]:
             if key in (*FREQUENCY_KEYS, "safety"):
                 spec.least(key, RATIO if key == "safety" else FREQUENCY)
             elif key.startswith("stroke."):
-                yield Finding(where, "strokes follow from the motion", f'Use e.g. motion.{key.removeprefix("stroke.")} = "50 um"')
+                yield Finding(where, "strokes are required by motion", f'Use e.g. motion.{key.removeprefix("stroke.")} = "50 um"')
             else:
                 requirement(frame, key, text, where)
         except DesignError as error:
@@ -307,7 +307,7 @@ def _mm(value: float) -> str:
 
 
 def actuator_findings(spec: Specification, where: str) -> Iterator[Finding]:
-    """Actuators that the catalogue, looked for in the folder of `where`, does not have."""
+    """Yield a finding for each actuator that is not in the catalogue, whose path is relative to the folder of `where`."""
     names = [name for section in catalogue_of(spec.catalogue, where).sections if section.key == "parts" for name in section.entries]
     for name in spec.actuators.like or ():
         if name not in names:

@@ -1,4 +1,4 @@
-"""Architectures for motions that no architecture of the folder has: guides from a ground structure, drawn as design files."""
+"""Architectures for motions that no shipped architecture has: guides from a ground structure, written as design files."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ SYNTHESISED: Mapping[str, str] = {"synthesised-stacks": "piezo", "synthesised-co
 """Names of synthesised architectures, and the kinds of their actuators."""
 _SLOTS: Mapping[str, str] = {"piezo": "stack", "voice_coil": "coil"}
 _STIFF = 20.0
-"""Ratio of stiffnesses from which one row of elements on each side of the block is enough."""
+"""Ratio of stiffnesses from which one row of elements on each side of the block is sufficient."""
 _CONDITIONED = 0.1
-"""Least singular value of the scaled map from actuators to motions that is accepted."""
+"""Smallest accepted singular value of the scaled map from actuators to motions."""
 _SET = {"payload_length": "payload_x", "payload_width": "payload_y"}
 _RANGES: Mapping[str, tuple[str, str, str]] = {
     "seat": ("4 mm", "10 mm", "20 mm"),
@@ -142,7 +142,7 @@ _STRUT_ENDS = 0.03
 
 
 def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list[Architecture]:
-    """Return the architectures that serve the motions of a specification; if none of the folder does, those of a synthesised guide.
+    """Return the architectures with the motions of a specification. If no shipped one has them, returns those of a synthesised guide.
 
     Raises `DesignError` if there is none, with the reason if no parallel guide exists.
 
@@ -157,7 +157,7 @@ def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list
         raise refuse("--architecture", f'unknown architecture "{unknown[0]}"', f"Use one of {', '.join((*known, *SYNTHESISED))}")
     served = [each for _, each in sorted(known.items()) if each.is_for(motions)]
     if not served and spec.box.opening is not None:
-        raise refuse("box.opening", f"the guide for the motions {_listed(motions)} has no opening", "Leave it out")
+        raise refuse("box.opening", f"the guide for the motions {_listed(motions)} has no opening", "Remove the opening")
     found = [each for each in served or synthesise(spec) if each.name in (names or (each.name,))]
     if not found:
         what = f"no architecture{' of these' if names else ' with these actuators'} has exactly the motions {_listed(motions)}"
@@ -178,7 +178,7 @@ def _listed(motions: frozenset[str]) -> str:
 
 
 def synthesise(spec: Specification) -> list[Architecture]:
-    """Return architectures of a synthesised guide for the motions of a specification: with stacks, and with coils."""
+    """Return architectures of a synthesised guide for the motions of a specification: one with stacks, one with coils."""
     known = catalogue_actuators(spec)
     found = (_drawn(spec, name, kind, known.get(kind, [])) for name, kind in SYNTHESISED.items())
     return [each for each in found if each is not None]
@@ -275,7 +275,7 @@ def _length(actuator: CatalogueActuator) -> float:
 
 
 def nominal_block(spec: Specification, actuator: CatalogueActuator, rows: Sequence[int]) -> Block:
-    """Return the block and the dimensions of candidates at the start values of the numbers that are searched."""
+    """Return the block and the dimensions of candidates at the initial values of the search."""
     all_ranges = Architecture(name="", kind=actuator.kind, slot="", count=0, ranges=_RANGES)
     known = scope(all_ranges, spec, actuator)
     known |= {"stack_length": known["length"], "stack_diameter": known["diameter"]}

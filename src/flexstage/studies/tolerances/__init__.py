@@ -1,1 +1,1 @@
-"""Tolerances: scatter of manufacture and material, yield of the specification, and allowable tolerances."""
+"""Tolerances: scatter due to manufacture and material, yield, and allowable tolerances."""

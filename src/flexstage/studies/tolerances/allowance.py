@@ -1,4 +1,4 @@
-"""Allowable tolerances: deviations for which every requirement keeps its margin at the required yield."""
+"""Allowable tolerances: deviations for which every requirement reaches the required yield."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _NEGLIGIBLE = 1e-9
 
 @dataclass(frozen=True)
 class AllowedEntry:
-    """Allowable factors on the deviations of one entry; infinite without an effect.
+    """Allowable factors on the deviations of one entry. They are infinite if the deviations have no effect.
 
-    `alone`: the other entries are unchanged; `decided_by` is the requirement that limits it. `equal_shares`: all entries change, and each
-    uses the same share of the margin.
+    `alone`: the other entries are unchanged; the requirement `decided_by` limits the factor. `equal_shares`: all entries change, and each
+    uses the same fraction of the margin.
     """
 
     name: str
@@ -40,10 +40,11 @@ class Allowance:
     """Factors on the specified deviations for which each requirement has at least the yield `wanted`, to first order.
 
     `names` are the m entries, `lines` the l requirements. `reach` (l,) is the change of a requirement's value towards its limit at this
-    yield, and `share` (m, l) the share of each entry in the square of `reach`. `together` is the factor on all deviations (above 1: a
-    margin; 0: the nominal design fails), limited by the requirement `binding`. `alone` (m,) is the factor on one entry with the others
-    unchanged, limited by `binds` (m,). `equal` (m,) are factors on all entries at once, each with the same share. Factors without an effect
-    are infinite. `then` is the yield of the sample with its changes scaled by `together`.
+    yield, and `share` (m, l) is the fraction of its square due to each entry. `together` is the factor on all deviations (above 1: a
+    margin; 0: the nominal design fails); the requirement `binding` limits it. `alone` (m,) is the factor on one entry with the others
+    unchanged; the requirements `binds` (m,) limit it. `equal` (m,) are factors on all entries at once, for which each entry uses the same
+    fraction of the margin. A factor is infinite if the entry has no effect. `then` is the yield of the sample with all changes multiplied
+    by `together`.
     """
 
     wanted: Annotated[float, Called("yield")]
@@ -62,7 +63,7 @@ class Allowance:
 
     @property
     def decided_by(self) -> Annotated[str | None, VIEW]:
-        """The requirement that decides the common factor of all deviations."""
+        """The requirement that limits the common factor of all deviations."""
         return self.binding or None
 
     @property
@@ -73,10 +74,11 @@ class Allowance:
 
 
 def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary) -> Allowance:
-    """Compute the allowable deviations for the specification; unlimited without a specification. Raises nothing.
+    """Compute the allowable deviations for the specification. Without a specification, they are unlimited.
 
-    Responses are linearised in the deviations if derivatives and sample agree. Otherwise the sample's quantile is used, with shares from
-    the samples of single entries. In both cases changes are assumed proportional to the deviations, which is accurate for small deviations.
+    Responses are linearised in the deviations if derivatives and sample agree. Otherwise the quantile of the sample is used, with variance
+    contributions from the samples of single entries. In both cases, changes are assumed to be proportional to the deviations, which is
+    accurate for small deviations.
     """
     names = tuple(study.columns)
     columns = [names.index(line.column) for line in found.lines]

@@ -16,9 +16,10 @@ from flexstage.studies.tolerances.scatter import Deviation, Target
 
 
 def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tuple[Deviation, ...]) -> Iterator[Finding]:
-    """Find numbers that scatter may move out of their bounds: within five standard deviations, or within the largest deviation if bounded.
+    """Find numbers that scatter may move out of their bounds.
 
-    One error for each entry of `[scatter]`, about the number with the largest excess.
+    Deviations up to five standard deviations are checked; bounded deviations, up to the largest one. Each entry of `[scatter]` has at most
+    one error, about the number with the largest excess.
 
     >>> from flexstage.studies.tolerances.distribution import Distribution, Shape
     >>> from flexstage.base.units.quantity import LENGTH

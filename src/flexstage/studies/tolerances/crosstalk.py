@@ -1,4 +1,4 @@
-"""Crosstalk of a stage with scatter, commanded and measured with the mapping of the nominal stage."""
+"""Crosstalk of a stage with scatter that is commanded and measured with the mappings of the nominal stage."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ _SINGULAR = 1e9
 
 @dataclass(frozen=True, eq=False)
 class Command:
-    """Command of the nominal stage: nominal numbers known to a controller.
+    """Command of the nominal stage: the nominal matrices that a controller uses.
 
-    `gains` (n, f): strokes per unit of each of the `coordinates` of the platform at `point`, R_a with corrected lost motion. `strokes`
-    (n,): full strokes of the stacks, proportional to a voltage; `reference` (3,): position of the point. `sensing` (6, g): R_s^-1, from
-    gauges to the pose at the point, absent if the gauges do not determine the pose.
+    `gains` (n, f) are the strokes per unit of each of the `coordinates` of the platform at `point`: R_a with corrected lost motion.
+    `strokes` (n,) are the full strokes of the stacks, which are proportional to voltage. `reference` (3,) is the position of the point.
+    `sensing` (6, g) is R_s^-1, from gauges to the pose at the point; it is absent if the gauges do not determine the pose.
     """
 
     point: str
@@ -44,7 +44,7 @@ class Command:
 
 @dataclass(frozen=True)
 class PoseMeasure(Measure):
-    """Motion of the platform along or about one axis per unit of a command along another."""
+    """Motion of the platform along or about one axis, per unit of a command along or about an axis."""
 
 
 def command(bench: StageResults, point: str) -> Command:
@@ -97,7 +97,7 @@ def _strokes(bench: StageResults) -> list[Array]:
 
 
 def pose_measures(asked: Command) -> Mapping[str, Measure]:
-    """Name the measures computed by `poses`: `open.x.rz` is the motion along x per command about z.
+    """Return the measures that `poses` computes, by name: `open.x.rz` is the motion along x per command about z.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.analysis.assessment.judge import bench_of
@@ -120,12 +120,12 @@ def _quantity(row: str, column: str) -> Quantity:
 
 
 def poses(bench: StageResults, asked: Command) -> tuple[Array, ...]:
-    """Compute the motion per command (...) of a stage with scatter, or a batch, in the order of `pose_measures`.
+    """Compute the motion per command (...) of a stage with scatter, or of a batch, in the sequence of `pose_measures`.
 
-    Open loop (`open`): the voltages of the nominal stage give x = X T (stroke / nominal stroke) C e_j. X transfers to the nominal point, T
-    = dx/da is the elastic gain of the stage with scatter, and C corrects the nominal lost motion. Closed loop (`held`): a controller
-    regulates the pose measured with the nominal R_s^-1, so that the true pose is x = (R_s^-1 R_s,real)^-1 e_j. Both are identity matrices
-    for the nominal stage (open loop with fewer than six motions: plus its own parasitic motions).
+    In open loop (`open`), the voltages of the nominal stage cause x = X T (stroke / nominal stroke) C e_j. X transfers the motion to the
+    nominal point, T = dx/da is the elastic gain of the stage with scatter, and C corrects the nominal lost motion. In closed loop (`held`),
+    a controller regulates the pose measured with the nominal R_s^-1, so that the true pose is x = (R_s^-1 R_s,real)^-1 e_j. For the nominal
+    stage, both are identity matrices; in open loop with fewer than six motions, parasitic motions are added.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import bench_of

@@ -1,4 +1,4 @@
-"""A tolerance study: samples of a design with scatter, and their specification."""
+"""A tolerance study: samples of a design with scatter, and the specification."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from flexstage.studies.tolerances.crosstalk import Command, PoseMeasure, command
 from flexstage.studies.tolerances.scatter import Deviation, Scatter, Target, apply_deviations, sums
 
 _MANY = 64
-"""Samples for each number with scatter above which the engine of many designs is faster, including its plan."""
+"""Number of samples for each number with scatter above which the engine of many designs is faster, including the time of its plan."""
 
 
 @dataclass(frozen=True)
 class Copies(Plan):
-    """Plan of a tolerance study: `count` samples with all scatter, then `alone` more for each entry of `[scatter]` with only its scatter.
+    """Plan of a tolerance study: `count` samples with all scatter, then `alone` samples with the scatter of each single entry.
 
-    The samples of single entries are always a Latin hypercube, because they are few. `groups` is the number of variables of each entry, in
-    order.
+    The samples of single entries are always a Latin hypercube, because they are few. `groups` contains the number of variables of each
+    entry.
     """
 
     alone: int = 0
@@ -47,7 +47,7 @@ class Copies(Plan):
         return self.count + self.alone * len(self.groups)
 
     def parts(self, start: int, stop: int) -> list[tuple[Plan, int, int, tuple[bool, ...]]]:
-        """Split a piece into intervals: for each its plan, first and last design, and the mask of its variables.
+        """Split a piece into intervals. Returns the plan, the first and last design, and the mask of the variables of each interval.
 
         >>> from flexstage.studies.sweeps.plan import Sampling
         >>> [part[1:] for part in Copies(Sampling.SOBOL, 2, count=8, alone=4, groups=(1, 1)).parts(6, 13)]
@@ -68,10 +68,10 @@ class Copies(Plan):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Tolerance(Study):
-    """A tolerance study: `scatters` are the entries of `[scatter]`, whose variables are the study's; `limits` are the specification.
+    """A tolerance study: `scatters` are the entries of `[scatter]`, which define the study's variables; `limits` are the specification.
 
     `targets` are the numbers with scatter. `wanted` is the required yield of each requirement. `commanded` is the command of the nominal
-    stage for crosstalk at a point; without it no crosstalk is computed.
+    stage for crosstalk at a point; without it, no crosstalk is computed.
     """
 
     scatters: tuple[Scatter, ...]
@@ -117,7 +117,7 @@ class Tolerance(Study):
         return {**plain, **{f"scatter.{each.name}": repr(each) for each in self.scatters}, **point}
 
     def sample(self, start: int, stop: int) -> Array:
-        """Compute deviations (n, d) of samples from `start` to before `stop`; zero for an entry without scatter."""
+        """Compute deviations (n, d) of samples from `start` to before `stop`. Entries without scatter in a sample are zero."""
         if not isinstance(self.plan, Copies):
             return super().sample(start, stop)
         rows = []
@@ -132,7 +132,7 @@ class Tolerance(Study):
 
     @property
     def numbers(self) -> Numbers | None:
-        """The numbers by which samples differ; `None` for few samples, for which a plan would be slower."""
+        """The numbers in which samples differ, or `None` for few samples, for which a plan would be slower."""
         return sums(self.targets, len(self.variables)) if self.plan.designs >= _MANY * len(self.targets) else None
 
     def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
@@ -142,7 +142,7 @@ class Tolerance(Study):
         return tuple("no measure" if each is None else each for each in found)
 
     def measure_on(self, bench: StageResults, wanted: tuple[Measure | None, ...]) -> tuple[Array | str | None, ...]:
-        """Evaluate the measures `wanted` from the analysis results `bench` of a stage; entries that are None are omitted."""
+        """Evaluate the measures `wanted` from the analysis results `bench` of a stage. Entries that are None are omitted."""
         requested = any(isinstance(each, PoseMeasure) for each in wanted)
         found = {}
         if self.commanded is not None and requested:
@@ -152,7 +152,7 @@ class Tolerance(Study):
         )
 
     def scale(self, factors: tuple[float, ...]) -> Tolerance:
-        """Return the same study with the deviations of each entry multiplied by a factor."""
+        """Return the study with the deviations of each entry multiplied by a factor."""
         scatters = tuple(
             replace(each, distribution=each.distribution.times(factor)) for each, factor in zip(self.scatters, factors, strict=True)
         )
@@ -171,7 +171,7 @@ def line_name(line: Requirement) -> str:
 
 
 def nominal_command(design: Mechanism, point: str) -> Command:
-    """Compute the nominal design's command at a point; raises `DesignError` if strokes do not determine its platform.
+    """Compute the command of the nominal design at a point. Raises `DesignError` if the strokes do not determine the platform.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> nominal_command(parallelogram(), "platform").coordinates

@@ -1,4 +1,4 @@
-"""Distributions of deviations: normal, optionally truncated, and uniform; about zero or, for asymmetric tolerances, about an offset."""
+"""Distributions of deviations: normal, optionally truncated, and uniform. Those of asymmetric tolerances have an offset."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import scipy
 from flexstage.base.number import Array
 
 REACH = 5.0
-"""Assumed reach of an untruncated normal distribution for bounds, in standard deviations."""
+"""Largest assumed deviation of an untruncated normal distribution in checks of bounds [standard deviations]."""
 _LEAST = 2.0**-54
 
 
 class Shape(Enum):
-    """Shape of a distribution; its size is the standard deviation (normal) or the half width (uniform)."""
+    """Shape of a distribution. Its size is the standard deviation (normal) or the half width (uniform)."""
 
     NORMAL = "normal"
     UNIFORM = "uniform"
@@ -24,7 +24,7 @@ class Shape(Enum):
 
 @dataclass(frozen=True)
 class Distribution:
-    """A distribution of `size` about its mean `offset`; a normal one may be truncated at `offset` plus or minus `within`."""
+    """A distribution of `size` about its mean `offset`. A normal distribution may be truncated at `offset` plus or minus `within`."""
 
     shape: Shape
     size: float
@@ -32,7 +32,7 @@ class Distribution:
     offset: float = 0.0
 
     def quantile(self, shares: Array) -> Array:
-        """Compute deviations at shares of the probability: the inverse of the cumulative distribution.
+        """Compute deviations at given probabilities `shares`, 0 to 1, by the inverse of the cumulative distribution.
 
         >>> Distribution(Shape.UNIFORM, 2.0, offset=1.0).quantile(np.array([0.0, 0.5, 1.0])).tolist()
         [-1.0, 1.0, 3.0]
@@ -46,7 +46,7 @@ class Distribution:
 
     @property
     def deviation(self) -> float:
-        """Standard deviation; of a truncated normal sigma sqrt(1 - 2 a phi(a) / (2 Phi(a) - 1)), a = within / sigma.
+        """Standard deviation; for a truncated normal distribution, sigma sqrt(1 - 2 a phi(a) / (2 Phi(a) - 1)) with a = within / sigma.
 
         >>> round(Distribution(Shape.NORMAL, 1.0, within=1.0).deviation, 4), Distribution(Shape.UNIFORM, 3.0**0.5).deviation
         (0.5396, 1.0)
@@ -70,7 +70,7 @@ class Distribution:
         return None if half is None else half + abs(self.offset)
 
     def times(self, factor: float) -> Distribution:
-        """Return the same shape with its width multiplied by a factor.
+        """Return the distribution with its width multiplied by a factor.
 
         >>> Distribution(Shape.NORMAL, 1.0, within=2.0).times(2.0)
         Distribution(shape=<Shape.NORMAL: 'normal'>, size=2.0, within=4.0, offset=0.0)

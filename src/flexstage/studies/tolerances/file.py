@@ -37,8 +37,8 @@ _MOST = 10**7
 def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
     """Read a study's file with sections `[scatter]` and, optionally, `[tolerance]`.
 
-    Raises `DesignError` with every error: unknown addresses (with the nearest names), deviations that are not positive or exceed
-    the number, `independent` for a single number.
+    Raises `DesignError` with every error: unknown addresses (with the nearest names), deviations that are not positive or too large for
+    a number, `independent` for a single number.
 
     >>> load_tolerance("nowhere/study.toml")
     Traceback (most recent call last):
@@ -49,7 +49,7 @@ def load_tolerance(path: str | os.PathLike[str]) -> Tolerance:
 
 
 def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = None) -> Tolerance:
-    """Read a tolerance study from its text; `folder` contains the design files.
+    """Read a tolerance study from its text. `folder` contains the design files.
 
     >>> study = loads_tolerance('''
     ... format = "flexstage study 1"
@@ -66,13 +66,13 @@ def loads_tolerance(text: str, *, where: str = "text", folder: Path | None = Non
     bench = _Reached(design)
     scatters = _scatters(file.scatter, bench, findings)
     if not file.scatter:
-        findings.append(Finding("scatter", "nothing scatters", 'Use e.g. wire = { address = "hinges.thickness", normal = "5 um" }'))
+        findings.append(Finding("scatter", "no scatter", 'Use e.g. wire = { address = "hinges.thickness", normal = "5 um" }'))
     if file.tolerance.copies > _MOST:
         findings.append(Finding("tolerance.copies", f"must be at most {_MOST:.0e} (got {file.tolerance.copies:.3g})", "Use fewer samples"))
     asked = _command(file.tolerance, design, findings)
     limits = (*(_lines(design, findings) if file.tolerance.requirements else ()), *head.limits)
     if not head.responses and not limits and asked is None:
-        findings.append(Finding("responses", "no response", 'Name a measure, e.g. f1 = "frequency.platform.1"'))
+        findings.append(Finding("responses", "no response", 'Add a measure, e.g. f1 = "frequency.platform.1"'))
     require(with_lines(findings, text, where))
     study = _study(head, scatters, limits, bench.shared, text=text, command=asked)
     named = (replace(each, where=each.where.replace("variables.", "scatter.", 1)) for each in name_findings(study))
@@ -146,7 +146,7 @@ def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
     quantity = one_quantity(f"{where}.address", [quantity_of(bench.design, address) for address in addresses])
     distribution, relative = _distribution(table, where, shape, quantity)
     if table.independent and len(addresses) < 2:
-        findings.append(Finding(f"{where}.independent", f"{addresses[0]} is a single number", "Leave it out"))
+        findings.append(Finding(f"{where}.independent", f"{addresses[0]} is a single number", "Remove independent"))
     if relative:
         findings += _no_share(where, addresses, bench.design)
     require(findings)
@@ -157,7 +157,7 @@ def _scatter(table: ScatterTable, name: str, bench: _Reached) -> Scatter:
 def _no_share(where: str, addresses: list[str], design: Mechanism) -> list[Finding]:
     nought = [address for address in addresses if float(get(design, address)) == 0.0]
     advice = 'Use a deviation with a unit, e.g. "10 um"'
-    return [Finding(where, f"{nought[0]} is 0, and a percentage of 0 is no deviation", advice)] if nought else []
+    return [Finding(where, f"{nought[0]} is 0, so a deviation in percent has no effect", advice)] if nought else []
 
 
 def _components(sources: tuple[str, ...], where: str, bench: _Reached, findings: list[Finding]) -> dict[str, list[str]]:
@@ -180,12 +180,12 @@ def _shape(table: ScatterTable, where: str, findings: list[Finding]) -> Shape:
     specified = [shape for shape, raw in ((Shape.NORMAL, table.normal), (Shape.UNIFORM, table.uniform)) if raw is not None]
     if len(specified) != 1 and (specified or table.interval is None):
         what = "must be normal or uniform, not both" if specified else "deviation missing"
-        advice = 'Use normal = "2 um", a standard deviation, uniform = "5 um", a half width, or interval = ["-1 um", "5 um"]'
+        advice = 'Use normal = "2 um" (standard deviation), uniform = "5 um" (half width), or interval = ["-1 um", "5 um"]'
         findings.append(Finding(f"{where}.normal", what, advice))
     if table.within is not None and specified == [Shape.UNIFORM]:
-        findings.append(Finding(f"{where}.within", "a uniform distribution is bounded", "Leave it out"))
+        findings.append(Finding(f"{where}.within", "a uniform distribution is bounded already", "Remove within"))
     if table.interval is not None and (table.uniform is not None or table.within is not None):
-        findings.append(Finding(f"{where}.interval", "limits given twice", "Leave out uniform or within"))
+        findings.append(Finding(f"{where}.interval", "limits specified twice", "Remove uniform or within"))
     return specified[0] if specified else Shape.UNIFORM if table.interval else Shape.NORMAL
 
 
@@ -195,7 +195,7 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
     raw = {"normal": table.normal, "uniform": table.uniform, "within": table.within, "interval.0": low, "interval.1": high}
     specified = {key: text for key, text in raw.items() if text is not None}
     if len({is_share(text) for text in specified.values()}) > 1:
-        raise refuse(f"{where}.within", "one is relative (%), the other not", "Use % for both or neither")
+        raise refuse(f"{where}.within", "some amounts are relative (%), others are not", "Use % for all amounts or for none")
     sizes: dict[str, float] = {}
     findings: list[Finding] = []
     for key, text in specified.items():
@@ -214,7 +214,7 @@ def _distribution(table: ScatterTable, where: str, shape: Shape, quantity: Quant
         return Distribution(shape, sizes[shape.value], sizes.get("within")), relative
     low, high = sizes["interval.0"], sizes["interval.1"]
     if not low < high:
-        raise refuse(f"{where}.interval", "the lower limit is not below the upper one", 'Use e.g. interval = ["-1 um", "5 um"]')
+        raise refuse(f"{where}.interval", "the lower limit must be below the upper limit", 'Use e.g. interval = ["-1 um", "5 um"]')
     half, middle = 0.5 * (high - low), 0.5 * (high + low)
     return Distribution(shape, sizes.get("normal", half), half if shape is Shape.NORMAL else None, middle), relative
 

@@ -29,7 +29,7 @@ KINDS: Mapping[str, tuple[type, ...]] = {
     "rods": (Rod,),
     "stacks": (Piezo,),
 }
-"""Kinds of parts in an entry: `hinges.thickness` is the thickness of every notch, neck, leaf and compound hinge."""
+"""Kinds of parts for entries: `hinges.thickness` is the thickness of every notch, neck, leaf and compound hinge."""
 PLACED = ("units", "gauges")
 """Kinds with a placement: `units.shift` is the shift of every instance of a unit."""
 _NONE = "no kind has a similar name"
@@ -37,7 +37,7 @@ _NONE = "no kind has a similar name"
 
 @dataclass(frozen=True)
 class ScatteredNumbers:
-    """Addresses of an entry's numbers, by vector component (`""` for scalars), and the shared number behind each address."""
+    """Addresses of an entry's numbers by vector component (`""` for scalars), and for each address the number that instances share."""
 
     components: Mapping[str, tuple[str, ...]]
     shared: Mapping[str, str]
@@ -46,9 +46,9 @@ class ScatteredNumbers:
 def reach(design: Mechanism, source: str) -> ScatteredNumbers:
     """Expand an address or a kind into numbers of single instances, and vectors into their components.
 
-    A source with a kind has the form kind.number. Kinds are the keys of `KINDS`, `units`, `gauges` and `materials`: `hinges.thickness`,
-    `units.rotation.z`, `gauges.shift`, `stacks.stroke`, `materials.young`. The name of a unit or of a pattern means its instances:
-    `horizontal.shift.x`, `S1-S3.shift`. Raises `DesignError` for unknown addresses, with the nearest names.
+    A source with a kind has the form kind.number, e.g. `hinges.thickness`, `units.rotation.z`, `gauges.shift`, `stacks.stroke` or
+    `materials.young`. Kinds are the keys of `KINDS`, `units`, `gauges` and `materials`. The name of a unit or of a pattern means all its
+    instances, e.g. `horizontal.shift.x` or `S1-S3.shift`. Raises `DesignError` for unknown addresses, with the nearest names.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> reach(parallelogram(), "hinges.thickness").components[""]
@@ -108,7 +108,7 @@ def _standing(design: Mechanism, owner: str) -> tuple[str, ...]:
 def _of_links(design: Mechanism, source: str, wanted: Callable[[PlacedLink], bool], rest: str) -> tuple[str, ...]:
     links = [link for link in _described(design) if wanted(link)]
     if not links:
-        raise refuse(source, "the design has no such part", f"Use one of its parts: {', '.join(design.parts)}")
+        raise refuse(source, "the design has no such part", f"Use one of the parts {', '.join(design.parts)}")
     return _stated_addresses(design, source, (f"{_home(link)}.{rest}" for link in links))
 
 

@@ -47,7 +47,7 @@ class Toleranced(StudyResult):
 
     @property
     def yields(self) -> Annotated[Yields | None, VIEW, Called("yield")]:
-        """Yields of the specification; null without one."""
+        """Yields of the requirements; null without a specification."""
         return None if self.summary.together is None else Yields(self.summary.together, self.summary.lines)
 
     @property
@@ -89,9 +89,9 @@ def tolerance(
     how: Run = DEFAULT,
     progress: Progress | None = None,
 ) -> Toleranced:
-    """Run a tolerance study; stores its samples in the results file at `path` (absent: none), as `sweep` does.
+    """Run a tolerance study. With a `path`, its samples are stored in this results file, as by `sweep`.
 
-    Raises `DesignError` as `sweep` does.
+    Raises `DesignError` in the same cases as `sweep`.
 
     >>> from flexstage.studies.tolerances.example import leaf_study
     >>> found = tolerance(leaf_study(), how=Run(workers=1))

@@ -1,4 +1,4 @@
-"""Scatter: deviations of a design's numbers by manufacture and material, common to all instances or individual."""
+"""Scatter: deviations of a design's numbers due to manufacture and material, common to all instances or individual."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from flexstage.studies.tolerances.distribution import NONE, REACH, Distribution
 
 @dataclass(frozen=True)
 class Scatter:
-    """One entry of a study's `[scatter]`: a `distribution` of deviations of numbers, in SI of `quantity`.
+    """One entry of a study's `[scatter]`: a `distribution` of deviations of numbers, in the SI unit of `quantity`.
 
     `members` are groups of addresses with a common deviation: one group for common scatter, one for each instance for individual scatter.
-    `relative`: deviations are shares of the design's value. `source` is the `address` in the file.
+    `relative`: deviations are fractions of the design's value. `source` is the `address` in the file.
     """
 
     name: str
@@ -38,11 +38,11 @@ class Scatter:
 
     @property
     def unit(self) -> Annotated[str, VIEW]:
-        """The SI unit of the deviations; 1 for relative ones, which are shares of the design's value."""
+        """The SI unit of the deviations; 1 for relative deviations, which are fractions of the design's value."""
         return self.quantity.si
 
     def variables(self) -> tuple[Deviation, ...]:
-        """Return the entry's variables, one for each member; several are named after their addresses."""
+        """Return the entry's variables, one for each member. Several variables are named after their addresses."""
         low, high = -self._reach, self._reach
         several = len(self.members) > 1
         names = [f"{self.name}.{self._label(member)}" if several else self.name for member in self.members]
@@ -63,16 +63,16 @@ class Scatter:
 
 @dataclass(frozen=True)
 class Deviation(Variable):
-    """A deviation of numbers, from a distribution about zero; `scatter` is its entry.
+    """A deviation of numbers, from a `distribution`. `scatter` is the name of its entry.
 
-    `low` and `high` are the smallest and largest deviation. `relative`: the values are shares of the design's value, 0.01 for one per cent.
+    Deviations are between `low` and `high`. `relative`: they are fractions of the design's value, 0.01 for one per cent.
     """
 
     distribution: Distribution = NONE
     scatter: str = ""
 
     def at(self, shares: Array) -> Array:
-        """Compute deviations at shares (n,) of the probability."""
+        """Compute deviations at given probabilities `shares` (n,)."""
         return self.distribution.quantile(shares)
 
     @property
@@ -88,7 +88,7 @@ class Deviation(Variable):
 
 @dataclass(frozen=True)
 class Target:
-    """A number with scatter: its `address`, its `nominal` value, and `factors` of the variables whose sum is added to it."""
+    """A number with scatter: its `address`, its `nominal` value, and the `factors` of the variables that are added to it."""
 
     address: str
     nominal: float
@@ -96,10 +96,10 @@ class Target:
 
 
 def targets(design: Mechanism, variables: Iterable[Variable], shared: dict[str, str]) -> tuple[Target, ...]:
-    """List all numbers with deviations, in an order for writing.
+    """List all numbers with deviations. Numbers of shared parts precede their overrides.
 
     `shared` maps an address of a single instance to the number of the shared part. If all instances have equal deviations, the shared
-    number is written instead: fewer different parts are faster to compute.
+    number is changed instead, because fewer different parts are faster to compute.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.base.units.quantity import LENGTH
@@ -133,7 +133,7 @@ def _merge_copies(design: Mechanism, reached: dict[str, tuple[tuple[int, float],
 
 
 def apply_deviations(design: Mechanism, reached: tuple[Target, ...], values: Array) -> Mechanism:
-    """Build the design with deviations (..., d) added; leading axes give a batch.
+    """Build the design with deviations (..., d) added to its numbers. Leading axes give a batch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> leaf = Target("parts.leaf.thickness", 1e-3, ((0, 1.0), (1, 1e-3)))

@@ -1,4 +1,4 @@
-"""Summary of samples: distributions, yield by requirement and total, variance contributions, crosstalk."""
+"""Summary of samples: distributions, yield of each requirement and of all, variance contributions, crosstalk."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ _ERRORS = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """Distributions of r responses over the samples with values; `nominal` is the nominal design.
+    """Distributions of r responses over the samples with values. `nominal` contains the values of the nominal design.
 
     `percentiles` (5, r) are the 1st, 5th, 50th, 95th and 99th. `linear` (r,) is the standard deviation by first-order propagation, sqrt(sum
-    (dy/dx s)^2). `trusted` (r,): the response is smooth, and the sample's deviation agrees with `linear` to a tenth, or to four standard
-    errors. `by_slope` (m, r) are the shares of the variance by the m entries of `[scatter]`, from derivatives. `by_sample` (m, r) are the
-    shares from the variance of samples with a single entry, relative to the sum over all entries. NaN for a constant response.
+    (dy/dx s)^2). `trusted` (r,): the response is smooth, and the deviation of the sample agrees with `linear` within 10 % or four standard
+    errors. `by_slope` (m, r) are the fractions of the variance due to the m entries of `[scatter]`, from derivatives. `by_sample` (m, r)
+    are those from the variance of samples with a single entry, relative to the sum over all entries. NaN for a constant response.
     """
 
     names: tuple[str, ...]
@@ -51,8 +51,9 @@ class Spread:
 class ResponseSpread(RequestedMeasure):
     """A response over the samples with values [SI].
 
-    `linear_deviation` is the standard deviation by first-order propagation, `linear` its validity. The shares of the variance by entry of
-    `[scatter]` come from derivatives, and from the samples of one entry alone. `derivatives` are by every number with scatter.
+    `linear_deviation` is the standard deviation by first-order propagation; it is valid if `linear`. The fractions of the variance due to
+    each entry of `[scatter]` are computed from derivatives, and from the samples of one entry alone. `derivatives` are with respect to
+    every number with scatter.
     """
 
     nominal: float
@@ -68,9 +69,9 @@ class ResponseSpread(RequestedMeasure):
 
 @dataclass(frozen=True)
 class Yield:
-    """Yield of one requirement, or of all together: `kept` of `copies` samples meet it. Failed samples meet no requirement.
+    """Yield of one requirement, or of all together: `kept` of `copies` samples meet it. Failed samples do not meet a requirement.
 
-    `low` to `high` is the 95 % interval of Clopper and Pearson, exact for random samples.
+    `low` to `high` is the 95 % interval of Clopper and Pearson, which is exact for random samples.
     """
 
     kept: int
@@ -80,7 +81,7 @@ class Yield:
 
     @property
     def share(self) -> Annotated[float, VIEW, SHARE, Heading("yield", mark=Graded(1.0, 0.9))]:
-        """Share of the samples."""
+        """Fraction of the samples."""
         return self.kept / self.copies
 
     @property
@@ -127,10 +128,10 @@ class Yields:
 
 @dataclass(frozen=True, eq=False)
 class Crosstalk:
-    """Pose error per command (6, f) over the samples: rows are motions, columns commands. The identity matrix is subtracted.
+    """Pose error per unit of command (6, f) over the samples: rows are motions, columns are commands. The identity matrix is subtracted.
 
-    `kind` is `open` (commanded by the nominal R_a) or `held` (regulated to the pose from the nominal R_s^-1). `nominal`, `mean` and
-    `deviation` are signed. `usual` is the 95th percentile of the absolute errors, `worst` their maximum. All are in SI.
+    `kind` is `open` (commanded by the nominal R_a) or `held` (regulated to the pose from the nominal R_s^-1). `nominal` and `mean` are
+    signed. `deviation` is the standard deviation, `usual` the 95th percentile of the absolute errors, and `worst` their maximum, all in SI.
     """
 
     kind: str
@@ -150,7 +151,7 @@ class Crosstalk:
 
 @dataclass(frozen=True, eq=False)
 class Summary:
-    """Summary of a sample; `together` is absent without a specification."""
+    """Summary of a sample. `together` is absent without a specification."""
 
     copies: int
     failed: int
@@ -241,7 +242,7 @@ def _ratio(parts: Array, whole: Array) -> Array:
 
 
 def squares_alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
-    """Compute the variance (m, r), or the mean square about a centre, of the samples of one entry alone.
+    """Compute the variance (m, r), or the mean square about a `centre`, of the samples with one entry alone.
 
     A study with a single entry uses its whole sample.
     """

@@ -14,13 +14,13 @@ from flexstage.base.storage.store import write
 _MOST = 200
 """Number of stored snapshots."""
 _USUAL = 5_000_000
-"""Bytes up to which a file is read here; the reader of designs reports larger and unreadable ones."""
+"""Largest file that is read here [bytes]; the reader of designs reports larger and unreadable files."""
 _MARK = b"\xef\xbb\xbf"
 
 
 @dataclass(frozen=True)
 class Stored:
-    """A file on disk: its `text` with plain line ends, its digest, its byte order mark and line ends."""
+    """A file on disk: its `text` with line ends converted to LF, its digest, its byte order mark and its line ends."""
 
     path: Path
     text: str
@@ -30,14 +30,14 @@ class Stored:
 
     @classmethod
     def read(cls, path: Path) -> Stored:
-        """The present file on disk; raises `DesignError` if it cannot be read."""
+        """Read a file as it is on disk. Raises `DesignError` if it cannot be read."""
         raw, text = _read(path)
         mark = _MARK if raw.startswith(_MARK) else b""
         ending = "\r\n" if "\r\n" in text and text.count("\n") == text.count("\r\n") else "\n"
         return cls(path, text.replace("\r\n", "\n") if ending == "\r\n" else text, _digest(raw), mark, ending)
 
     def write(self, text: str, *, over: bool) -> Stored:
-        """The file with that text, written completely or not at all; refused after a change by another program, unless `over`."""
+        """Write a text to the file, completely or not at all. Refused after a change by another program, unless `over`."""
         found = _digest(self.path.read_bytes()) if self.path.exists() else ""
         if found != self.digest and not over:
             what = "changed on disk by another program" if found else "removed by another program"
@@ -49,7 +49,7 @@ class Stored:
 
 @dataclass(frozen=True)
 class History:
-    """The present text, earlier ones and undone ones; `revision` counts all changes, `page` made the last one."""
+    """The present text, earlier texts and undone texts. `revision` counts all changes; `page` made the last one."""
 
     text: str
     past: tuple[str, ...] = ()
@@ -59,31 +59,31 @@ class History:
     pins: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def change(self, text: str, page: int) -> History:
-        """Return the history with another text, or unchanged for an equal text."""
+        """Return the history with another present text; an equal text changes nothing."""
         if text == self.text:
             return self
         return self._step(text, (*self.past, self.text)[-_MOST:], (), page)
 
     def undo(self, page: int) -> History:
-        """The previous text."""
+        """Return the history with the previous text as the present one."""
         return self._step(self.past[-1], self.past[:-1], (self.text, *self.future), page) if self.past else self
 
     def redo(self, page: int) -> History:
-        """The next undone text."""
+        """Return the history with the next undone text as the present one."""
         return self._step(self.future[0], (*self.past, self.text), self.future[1:], page) if self.future else self
 
     def _step(self, text: str, past: tuple[str, ...], future: tuple[str, ...], page: int) -> History:
         return replace(self, text=text, past=past, future=future, revision=self.revision + 1, page=page)
 
     def pin(self, name: str, *, keep: bool) -> History:
-        """With the present text under a name, or without that name."""
+        """Return the history with the present text pinned under a name, or with that name removed."""
         kept = {key: text for key, text in self.pins.items() if key != name}
         return replace(self, pins={**kept, name: self.text} if keep else kept)
 
     def require_known(self, revision: int, page: int) -> None:
-        """Refuse an edit of a page without the last change of another page."""
+        """Refuse an edit of a page that has not received the last change of another page."""
         if revision < self.revision and page != self.page:
-            raise refuse("text", "another window changed it first", "Its text is shown now; make the change again")
+            raise refuse("text", "another window changed the text first", "The new text is shown now; repeat your change")
 
 
 def _read(path: Path) -> tuple[bytes, str]:

@@ -1,6 +1,6 @@
 """Journal of unsaved edits: one file in the cache for each design and process.
 
-It is written as a whole before an edit is acknowledged, and remains if the process ends without saving.
+The journal is rewritten before an edit is acknowledged. It remains if the process ends without saving.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Journal:
             place.parent.mkdir(mode=0o700, parents=True, exist_ok=True)  # for this user alone: it has the token
         except OSError as error:
             raise refuse(
-                str(place.parent), f"it cannot be made: {error.strerror}", "Name another folder: FLEXSTAGE_CACHE=/tmp/cache"
+                str(place.parent), f"cannot be created: {error.strerror}", "Choose another folder, e.g. FLEXSTAGE_CACHE=/tmp/cache"
             ) from None
         write(place, json.dumps(asdict(draft)))
         self._is_kept = True

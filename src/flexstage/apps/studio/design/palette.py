@@ -21,7 +21,7 @@ def snippets() -> tuple[Snippet, ...]:
 
 
 def insert(text: str, snippet: str, fields: Mapping[str, str]) -> str:
-    """The text with a snippet's tables after the existing ones, and its entries of an existing table after the existing entries.
+    """Return the text with a snippet inserted: new tables at the end, and entries of an existing table at the end of that table.
 
     Raises `DesignError` for an unknown snippet or field, for a text that is not TOML, and for names in use.
     """
@@ -56,7 +56,7 @@ def shipped(case: str) -> str:
 def _fill(text: str, fields: Mapping[str, str]) -> str:
     for name, value in fields.items():
         if any(not sign.isprintable() or sign in '"\\' for sign in value):
-            raise refuse(name, "it has quotes, backslashes or line ends", "Use a name or a value with its unit, without quotes")
+            raise refuse(name, "contains quotes, backslashes or control characters", "Use a name or a value with its unit, without quotes")
         text = text.replace("{" + name + "}", value)
     return text
 

@@ -44,7 +44,7 @@ def design(text: str, file: str) -> Mechanism:
 
 
 def read(text: str, file: str, stored: str) -> Reading:
-    """Contents of a text, and its numbers in the `stored` one."""
+    """Read the contents of a text. Old values of its numbers are those of the `stored` text."""
     try:
         found = design(text, file)
         requirements(found)
@@ -73,14 +73,14 @@ def problems_of(findings: Iterable[Finding], text: str, file: str) -> tuple[Prob
 
 
 def link_lines(mechanism: Mechanism, lines: Mapping[str, int]) -> dict[str, int | None]:
-    """The line that draws each link."""
+    """Return the line that defines each link."""
     assembly = expand(mechanism)
     found = {**assembly.links, **assembly.superelements}
     return {name: line_of(address_of(mechanism, link), lines) for name, link in found.items()}
 
 
 def address_of(mechanism: Mechanism, link: PlacedLink | PlacedSuperelement) -> str:
-    """Address of a link's drawing in the description (`units.vertical.links.pivot`)."""
+    """Address at which the description defines a link, e.g. `units.vertical.links.pivot`."""
     drawn = link.described if isinstance(link, PlacedLink) else link
     return ".".join(link_path(mechanism, drawn.drawn.removeprefix("links.")))
 
@@ -193,7 +193,7 @@ def _gauges(assembly: Assembly) -> Iterator[Channel]:
 
 
 def finite(value: Any) -> float | None:
-    """A number of the first design; nothing if not finite, or absent."""
+    """A number of the first design, or None if it is absent or not finite."""
     found = np.nan if value is None else float(np.ravel(np.real(value))[0])
     return found if np.isfinite(found) else None
 

@@ -1,4 +1,4 @@
-"""Changes of a design's text: single numbers are written, everything else is unchanged."""
+"""Changes of single numbers in the text of a design; all other text is unchanged."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ _DIGITS, _EXACT = 6, 12
 
 
 def write(text: str, file: str, address: str, value: str | float) -> str:
-    """The text with a number set: a text in any unit of its quantity, a formula or a change; or an SI number, to six digits.
+    """Return the text with one number set.
 
-    Raises `DesignError` with the checks' text for an unknown number, or if the design would become invalid.
+    `value` is a string with any unit of the quantity, a formula or a relative change, or a number in SI units, rounded to six digits.
+    Raises `DesignError` for an unknown address, or if the design would become invalid.
     """
     stated = _tidy(text, file, address, value) if isinstance(value, str) else _shown(text, file, address, value, _DIGITS)
     patched = patch(text, {address: stated}, where=file)
@@ -37,5 +38,5 @@ def _shown(text: str, file: str, address: str, value: float, digits: int) -> str
         raise refuse(address, "must be finite", "Use a finite value")
     found = design(text, file)
     if get(found, address) is None:
-        raise refuse(address, "missing in the design", "Write it into the text first")
+        raise refuse(address, "missing in the design", "Add the number to the text first")
     return show(value, quantity_of(found, address), digits=digits)

@@ -1,1 +1,1 @@
-"""Search for an optimum: problem, steps and fronts."""
+"""Search for an optimum: the problem, steps of a search, and Pareto fronts."""

@@ -1,4 +1,4 @@
-"""Binding limits of an optimum, and their sensitivities: Lagrange multipliers in the user's units."""
+"""Binding limits of an optimum, and their sensitivities, which are Lagrange multipliers in SI units."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _EDGE = 1e-7
 
 
 def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, ...]:
-    """Find the binding limits and range ends of an optimum, sorted by their effect on the objective (for a tenth of their value).
+    """Find the binding limits and range ends of an optimum, sorted by their effect on the objective for a tenth of their value.
 
-    The multipliers belong to the convex model around the optimum with unit curvature, whose solution is the optimum itself. For min c_0
-    with c_i <= e_i they are -d c_0 / d e_i. They come from derivatives only: valid for small changes, and one-sided for repeated modes.
+    The multipliers belong to the convex model around the optimum with unit curvature; its solution is the optimum itself. For min c_0 with
+    c_i <= e_i, they are -d c_0 / d e_i. As derivatives, they are valid for small changes, and one-sided for repeated modes.
     """
     size = len(point.shares)
     model = step(problem, point, np.eye(size), Bounds(2.0, 1e4))

@@ -1,4 +1,4 @@
-"""Pareto fronts of two objectives, by bounding one objective and optimising the other."""
+"""Pareto fronts of two objectives: one objective is bounded, the other is optimised."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ _KEEP = 1e-6
 def pareto_front(study: Study, definition: OptimisationProblem, progress: Progress | None = None) -> Front:
     """Compute the Pareto front of two objectives within ranges and limits (epsilon-constraint method: Haimes, Lasdon & Wismer 1971).
 
-    First each objective is optimised individually, then the other improved without loss. Between these ends the first is optimised with the
-    second bounded at equally spaced values, each from both ends. Dominated designs are left out. An interruption ends the search with the
-    designs so far.
+    First, each objective is optimised individually; then the other is improved without a loss of the first. Between these two ends, the
+    first objective is optimised with equally spaced bounds on the second, from both ends each time. Dominated designs are left out. An
+    interruption ends the search with the designs so far.
     """
     if len(definition.objectives) != 2:
-        raise refuse("optimise", f"a front needs two objectives (got {len(definition.objectives)})", "Use optimise for one")
+        raise refuse("optimise", f"a front needs two objectives (got {len(definition.objectives)})", "Use `optimise` for one objective")
     begun = time.monotonic()
     set_up = setting(study, definition)
     counted = Count(progress, "ends of the front")
@@ -108,7 +108,7 @@ def _between(set_up: Setting, ends: list[Point], counted: Count) -> list[Point]:
 
 
 def non_dominated(set_up: Setting, points: Iterable[Point]) -> list[Point]:
-    """Select the non-dominated points, ordered from the best in the first objective."""
+    """Select the non-dominated points, sorted from the best to the worst in the first objective."""
     points = list(points)
     worth = np.array([[set_up.objective(number).at(point) for number in (0, 1)] for point in points]).reshape(-1, 2)
     kept = [number for number in range(len(points)) if not _is_dominated(worth, number)]

@@ -1,4 +1,4 @@
-"""Optimise one objective within ranges and limits, from several starts."""
+"""Optimisation of one objective within ranges and limits, from several starts."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ Progress = Callable[[str], None]
 @check_arguments
 @one_thread
 def optimise(study: Study, definition: OptimisationProblem, progress: Progress | None = None) -> Optimum:
-    """Find the best design within the variables' ranges that keeps all limits.
+    """Find the best design within the variables' ranges that meets all limits.
 
-    From every start, a sequence of convex models with exact derivatives is solved. Frequencies enter as matrices of neighbouring modes, so
-    that repeated and crossing modes are no obstacle. The method is local: `Optimum.agreeing` counts the starts that end at an equally good
+    From every start, a sequence of convex models with exact derivatives is solved. Frequencies are represented by matrices of neighbouring
+    modes, so that modes may be repeated or cross. The method is local; `Optimum.agreeing` counts the starts that end at an equally good
     design. A keyboard interrupt ends the search with the best design so far. Raises `DesignError` for a study that cannot be optimised.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
@@ -43,7 +43,7 @@ def optimise(study: Study, definition: OptimisationProblem, progress: Progress |
     (2, ['stroke.x at least 18 um'])
     """
     if len(definition.objectives) != 1:
-        raise refuse("optimise", f"must be one objective (got {len(definition.objectives)})", "Use `pareto_front` for two")
+        raise refuse("optimise", f"must be one objective (got {len(definition.objectives)})", "Use `pareto_front` for two objectives")
     begun = time.monotonic()
     set_up = setting(study, definition)
     problem, begins = set_up.problem, set_up.starts()

@@ -1,4 +1,4 @@
-"""Problem of a search: objective and limits as normalised sides of measures, and their linearisation about a design."""
+"""Problem of a search: objective and limits as normalised inequalities of measures, and their linearisation about a design."""
 
 from __future__ import annotations
 
@@ -13,12 +13,15 @@ from flexstage.base.number import Array
 from flexstage.studies.optimisation.values import NumberedFrequency, Point, Scalars
 
 SPARE = 1e-8
-"""Margin of a limit over its scale, so that rounding does not violate it."""
+"""Safety margin of a limit, relative to its scale: rounding errors then do not violate the limit."""
 
 
 @dataclass(frozen=True)
 class Side:
-    """One side of the measure number `index`: c = (limit - value) / scale for `at least`, its negative for `at most`; good where c <= 0."""
+    """One-sided bound of the measure number `index`: it is met if c <= 0.
+
+    c is (limit - value) / scale for `at least`, and its negative for `at most`.
+    """
 
     index: int
     sense: Sense
@@ -51,11 +54,11 @@ class Problem:
         return max(side.at(point) for side in self.objective)
 
     def excess(self, point: Point) -> float:
-        """Return the largest c of the limits; positive for a violation, 0 without limits."""
+        """Return the largest c of the limits. It is positive for a violation, and 0 without limits."""
         return max((side.at(point) for side in self.limits), default=0.0) if self.limits else 0.0
 
     def violation(self, point: Point) -> float:
-        """Return the largest violation; 0 for a feasible design."""
+        """Return the largest violation, which is 0 for a feasible design."""
         return max(0.0, self.excess(point))
 
 
@@ -63,7 +66,7 @@ class Problem:
 class Linear:
     """Linear model of one side around a design: c is the largest eigenvalue of constant (k, k) + sum_p d_p slope_p (n, k, k).
 
-    For scalars the matrices are diagonal, and only their diagonals are stored: (m,) and (n, m).
+    For scalars, the matrices are diagonal, and only their diagonals (m,) and (n, m) are stored.
     """
 
     constant: Array
@@ -75,20 +78,20 @@ class Linear:
         return self.constant.ndim == 1
 
     def project(self, vector: Array) -> tuple[float, Array]:
-        """Return the constant and gradient (n,) of v^T C v, which is at most c for a unit vector v."""
+        """Return the constant and the gradient (n,) of v^T C v. For a unit vector v, this value is at most c."""
         return float(vector @ self.constant @ vector), np.einsum("i,pij,j->p", vector, self.slope, vector)
 
     def after(self, change: Array) -> tuple[Array, Array]:
-        """Return ascending eigenvalues, and eigenvectors, of the matrix after a change (n,)."""
+        """Return eigenvalues, in ascending sequence, and eigenvectors of the matrix after a change (n,)."""
         return np.linalg.eigh(self.constant + np.tensordot(change, self.slope, axes=1))
 
 
 def linear(side: Side, point: Point) -> Linear:
     """Linearise a side around a design.
 
-    A lower bound of a minimum applies to all its pieces, and an upper bound of a maximum likewise. A lower bound of a frequency applies to
-    all modes from the requested number upward, an upper bound to all modes up to this number. In the opposite direction, only the active
-    piece counts.
+    A lower bound of a minimum applies to all pieces of the measure, and so does an upper bound of a maximum. For a bound in the opposite
+    direction, only the active piece is used. A lower bound of a frequency applies to all modes from the requested number upward, an upper
+    bound to all modes up to this number.
 
     >>> at = Point(np.zeros(1), (Scalars(np.array([3.0, 2.0]), np.ones((2, 1)), Extreme.LEAST),))
     >>> linear(Side(0, Sense.AT_LEAST, 1.0, 1.0), at).constant.tolist()
@@ -104,7 +107,7 @@ def linear(side: Side, point: Point) -> Linear:
 
 
 def second_order_correction(side: Side, point: Point, tried: Point) -> Linear:
-    """Linearise a side around a design, with its constant corrected to match the value at another design, `tried`.
+    """Linearise a side around a design, with a constant that is corrected to match the value at another design, `tried`.
 
     >>> first, second = (Point(np.array([x]), (Scalars(np.array([x * x]), np.array([[2.0 * x]]), Extreme.LEAST),)) for x in (1.0, 2.0))
     >>> second_order_correction(Side(0, Sense.AT_MOST, 0.0, 1.0), first, second).constant.tolist()  # 4 - 2 (2 - 1)
@@ -137,7 +140,7 @@ def _pieces(found: Scalars, sense: Sense) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Weights:
-    """Multipliers of one side: of its pieces (m,), or a positive semidefinite matrix (k, k) of its modes."""
+    """Multipliers of one side: one for each piece (m,), or a positive semidefinite matrix (k, k) for its modes."""
 
     values: Array
 
@@ -154,7 +157,7 @@ class Weights:
 
 
 def sides(problem: Problem) -> Iterator[Side]:
-    """Iterate over all sides, the objective's first.
+    """Iterate over all sides; those of the objective are first.
 
     >>> len(list(sides(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()))))
     1
@@ -166,8 +169,8 @@ def sides(problem: Problem) -> Iterator[Side]:
 def lagrangian(problem: Problem, point: Point, weights: tuple[Weights, ...], seen_from: Point | None = None) -> Array | None:
     """Compute the gradient (n,) of the Lagrangian at a design `point`.
 
-    `weights` are the multipliers. They belong to the modes and pieces of the design `seen_from` (default: of `point`). Returns `None` if
-    the pieces of both designs do not correspond.
+    The multipliers `weights` belong to the modes and pieces of the design `seen_from`, by default `point`. Returns `None` if the pieces of
+    both designs do not correspond.
 
     >>> at = Point(np.zeros(1), (Scalars(np.array([3.0]), np.array([[2.0]]), Extreme.LEAST),))
     >>> lagrangian(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()), at, (Weights(np.ones(1)),)).tolist()

@@ -1,4 +1,4 @@
-"""Small strictly convex quadratic programs, as least-distance problems."""
+"""Small strictly convex quadratic programs, solved as least-distance problems."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _TINY = 1e-300
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """The minimiser (n,) and the multipliers (m,) of the constraints, none negative."""
+    """The minimiser (n,) and the non-negative multipliers (m,) of the constraints."""
 
     at: Array
     multipliers: Array
@@ -23,9 +23,9 @@ class Solution:
 def quadratic(hessian: Array, linear: Array, normals: Array, bounds: Array) -> Solution:
     """Minimise x^T H x / 2 + h^T x subject to A x <= b, for H positive definite and feasible constraints.
 
-    From the free minimiser, in y = L^T x, the constraints require the shortest step z with G z >= g. It is the residual of a
-    non-negative least-squares problem: min |E u - e| over u >= 0 with E = [G^T; g^T] and e = (0, ..., 0, 1), z = G^T u / (1 - g^T u)
-    (Lawson & Hanson, Solving Least Squares Problems, 1974, chapter 23).
+    In the coordinates y = L^T x with H = L L^T, the solution is the shortest step z from the unconstrained minimiser with G z >= g. This
+    step follows from a non-negative least-squares problem: min |E u - e| over u >= 0 with E = [G^T; g^T] and e = (0, ..., 0, 1), then
+    z = G^T u / (1 - g^T u) (Lawson & Hanson, Solving Least Squares Problems, 1974, chapter 23).
 
     >>> found = quadratic(np.eye(2), np.array([-2.0, -1.0]), np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([1.0, 5.0]))
     >>> found.at.round(12).tolist(), found.multipliers.round(12).tolist()

@@ -1,4 +1,4 @@
-"""A search from one design: steps of the convex model in a trust region, until convergence."""
+"""A search from one design: steps of the convex model within a trust region, until convergence."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ _RADIUS, _SMALLEST = 0.25, 1e-8
 _PENALTY, _MOST = 10.0, 1e5
 _GAIN, _KEPT = 1e-9, 2e-9
 _CURVED = 0.75
-"""Smallest ratio of actual to predicted gain without a second-order correction of an infeasible step."""
+"""Ratio of actual and predicted gain below which an infeasible step gets a second-order correction."""
 _CURVATURE, _CURVATURES = 0.1, (1e-4, 1e4)
 STEPS = 80
 """Largest number of steps of a search."""
 
 Evaluate = Callable[[Array], "list[Point | str]"]
-"""Points of designs at shares (s, n), or the reasons of failures."""
+"""Points of s designs, or the reasons for their failures."""
 
 Walk = Generator[Array, "Point | str", "Trace"]
-"""A search: yields shares of a design to evaluate, receives the point or the reason of its failure, and returns its trace."""
+"""A search as a generator: it yields a design to evaluate, receives its point or the reason for its failure, and returns a trace."""
 
 
 @dataclass(eq=False)
 class Trace:
-    """History of a search: the best `point` and its `weights`, the `history` of accepted points, the number of `evaluated` ones.
+    """History of a search: the best `point` and its `weights`, the `history` of accepted points, the number of `evaluated` points.
 
-    `converged`: no further gain to first order. `reason` if there is no point.
+    `converged`: no further gain to first order. `reason` explains a missing point.
     """
 
     point: Point | None = None
@@ -44,11 +44,11 @@ class Trace:
 
 
 def search(problem: Problem, start: Array, trace: Trace | None = None, *, enough: float = -np.inf) -> Walk:
-    """Search from shares (n,) of the ranges; `trace` can be read during the search. Ends early if the objective reaches `enough`.
+    """Search from a `start` (n,), given by fractions of the ranges. The search ends early if the objective reaches `enough`.
 
-    Sequential quadratic programming with an exact penalty of the largest violation (Fletcher & de la Maza, Mathematical Programming 43
-    (1989) 235). The Lagrangian's curvature is estimated by damped BFGS updates (Powell 1978). The weights of modes are transferred to the
-    next design by the overlap of mode shapes.
+    The method is sequential quadratic programming with an exact penalty for the largest violation (Fletcher & de la Maza, Mathematical
+    Programming 43 (1989) 235). The Lagrangian's curvature is estimated by damped BFGS updates (Powell 1978). The weights of modes are
+    transferred to the next design by the overlap of mode shapes. `trace` can be read during the search.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting
@@ -145,7 +145,7 @@ def _bfgs_update(problem: Problem, hessian: Array, before: Point, now: Point, we
 def run_searches(
     walks: Sequence[Walk], evaluate: Callable[[Array], list[Point | str]], told: Callable[[int], None] | None = None
 ) -> list[Trace]:
-    """Run searches in parallel: the designs requested by all of them are evaluated as one batch.
+    """Run searches in parallel. The designs that all searches request are evaluated as one batch.
 
     >>> def still():
     ...     yield np.zeros(1)

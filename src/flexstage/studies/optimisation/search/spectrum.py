@@ -14,16 +14,16 @@ from flexstage.models.linear.model import Contribution, LinearModel, assemble
 
 _STEP = 1e-20
 _ROOM = 6
-"""Additional modes beyond the requested ones: their frequencies may decrease."""
+"""Number of modes computed in addition to the requested ones, because their frequencies may decrease."""
 
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """k modes of one design: `frequencies` (k,) ascending [Hz] and `slopes` (n, k, k) [Hz per unit of each variable].
+    """k modes of one design: ascending `frequencies` (k,) [Hz] and their `slopes` (n, k, k) [Hz per unit of each variable].
 
-    Eigenvalues of diag(f) + sum_p d_p slopes_p are the frequencies after a small change d, to first order, for distinct,
-    repeated or crossing modes. slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM) phi_j / (2 pi (omega_i + omega_j)). `shapes` (N, k)
-    and `weighted` = M shapes identify the modes of two designs.
+    To first order, the frequencies after a small change d are the eigenvalues of diag(f) + sum_p d_p slopes_p, for distinct, repeated or
+    crossing modes. slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM) phi_j / (2 pi (omega_i + omega_j)). `shapes` (N, k) and `weighted`
+    = M shapes are used to pair the modes of two designs.
     """
 
     frequencies: Array
@@ -34,7 +34,7 @@ class Spectrum:
 
 @dataclass(frozen=True)
 class Modes:
-    """Requested modes: the lowest `count`, of the platform or of any body."""
+    """Requested modes: the `count` lowest modes of the platform, or of any body."""
 
     count: int
     platform: bool
@@ -43,8 +43,8 @@ class Modes:
 def spectra(model: LinearModel, asked: tuple[Modes, ...], shape: tuple[int, int]) -> list[tuple[Spectrum, ...]]:
     """Compute the spectra of s designs from the model of a batch (s n,), in which each design occurs n times.
 
-    Each occurrence has a tiny imaginary step in one variable. `shape` is (s, n); with n = 0 the batch is (s,), real, and there are no
-    slopes. Raises `DesignError` for too few modes.
+    Each occurrence has a tiny imaginary step in one variable. `shape` is (s, n). With n = 0, the batch (s,) is real, and there are no
+    slopes. Raises `DesignError` if the stage has too few modes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -85,7 +85,7 @@ def _real(item: Contribution) -> Contribution:
 def _select_modes(requested: Modes, values: Array, parts: Array) -> Array:
     """Indices of the requested modes and of some above them, from their `participation` (6, k)."""
     if not np.all(np.isfinite(values)):
-        raise refuse("frequency", "some motion has no stiffness", "Narrow the ranges")
+        raise refuse("frequency", "a motion has no stiffness", "Narrow the ranges")
     if requested.platform:
         found = np.flatnonzero(choose(values[None], parts[None], Choice()).mask[0])
     else:

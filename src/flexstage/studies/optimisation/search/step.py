@@ -1,4 +1,4 @@
-"""One step of a search: the convex model around a design, with eigenvalue constraints as cutting planes."""
+"""One step of a search in the convex model around a design. Eigenvalue constraints are replaced by cutting planes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.studies.optimisation.search.quadratic import quadratic
 from flexstage.studies.optimisation.values import Point
 
 _SOFT = 1e-2
-"""Curvature of objective and violation: makes the model strictly convex, and vanishes with the step."""
+"""Additional curvature of objective and violation, which makes the model strictly convex. Its effect vanishes with the step."""
 _CUTS = 12
 _CLOSE = 1e-10
 _SAME = 9
@@ -20,9 +20,9 @@ _SAME = 9
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """Result of one step: the `change` (n,) of shares, and the `weights` of all sides.
+    """Result of one step: the `change` (n,) of the design in fractions of the ranges, and the `weights` of all sides.
 
-    In the model, `gain` is the improvement of the merit, and `excess` the remaining violation of limits.
+    In the model, `gain` is the improvement of the merit function, and `excess` the remaining violation of limits.
     """
 
     change: Array
@@ -52,7 +52,7 @@ class _Rows:
 
 @dataclass(frozen=True)
 class Bounds:
-    """Largest step (shares), and the penalty of a unit of violation."""
+    """Largest step, in fractions of the ranges, and the penalty of a unit of violation."""
 
     radius: float
     penalty: float
@@ -61,9 +61,10 @@ class Bounds:
 def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: Point | None = None) -> Step:
     """Minimise t + d^T B d / 2 + penalty s over a change d within the radius and the ranges.
 
-    t is above every side of the objective to first order, s >= 0 above every limit. Sides of frequencies are matrices: their eigenvectors
-    after the change are added as planes until no eigenvalue is above them. This is exact also for crossing modes. A design already `tried`
-    shifts the planes to its values. Without this second-order correction, steps along curved limits are short.
+    To first order, t is an upper bound of every side of the objective, and s >= 0 of every limit. Sides of frequencies are matrices: their
+    eigenvectors after the change are added as planes until no eigenvalue exceeds t or s. This is exact even for crossing modes. The planes
+    are shifted to the values of a design that was already `tried`. Without this second-order correction, steps along curved limits are
+    short.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting

@@ -1,4 +1,4 @@
-"""Figures of optimisations: convergence of searches, variables before and after, fronts."""
+"""Figures of optimisations: convergence of searches, variables before and after, Pareto fronts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexstage.studies.optimisation.result import Front, Optimum
 
 
 def convergence_figure(found: Optimum) -> Any:
-    """Plot the objective over accepted designs, one line for each start (open marks: infeasible), and the variables in their ranges.
+    """Plot the objective of accepted designs, one line for each start (open marks are infeasible), and the variables in their ranges.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.search.optimum import optimise

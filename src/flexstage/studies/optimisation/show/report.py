@@ -22,7 +22,7 @@ from flexstage.studies.optimisation.values import values_of
 from flexstage.studies.sweeps.loaded import loaded_findings, require_stable
 from flexstage.studies.sweeps.show.report import study_head
 
-_SEARCH = "Left: accepted designs of every start; open: infeasible. Right: each variable in its range, nominal and final."
+_SEARCH = "Left: accepted designs of every start; open marks are infeasible. Right: nominal and final value of each variable in its range."
 
 
 def optimise_report(found: Optimum) -> str:
@@ -56,7 +56,7 @@ def _stage(stages: Mapping[str, StageData]) -> Section | None:
     drawn = {"nominal": stages["before"], "optimum": stages["stage"]}
     pictures = [_still(each, f"stage{place}", f"The stage, {name}.") for place, (name, each) in enumerate(drawn.items())]
     viewer = Viewer("stage", (BlockRow(tuple(pictures)),), first_motion(stages["stage"]), "before")
-    caption = "The optimum; in the viewer, the outline behind it is the nominal design."
+    caption = "The optimum. In the viewer, the outline behind it is the nominal design."
     return section("The stage", [viewer, Legend(legend(stages["stage"])), Prose(caption)])
 
 
@@ -65,7 +65,7 @@ def _still(data: StageData, name: str, caption: str) -> Picture:
 
 
 def front_report(found: Front) -> str:
-    """Write a front as an HTML page."""
+    """Write a Pareto front as an HTML page."""
     picture = Picture(to_svg(front_figure(found), "front", "designs of the front"), "Pareto-optimal designs.")
     data = stage_data(found.study.design)
     sections = [
@@ -86,4 +86,4 @@ def _headline(found: Optimum) -> Headline:
     limits = zip(found.limits, point.values[len(found.definition.objectives) :], strict=True)
     kept = [bool(Verdict(each, np.asarray(value)).passed) for each, value in limits]
     kept_text = f"; {sum(kept)} of {len(kept)} limits are met" if kept else ""
-    return Headline(f"{objective.name}: {before} nominal, {after} at the optimum{kept_text}.", all(kept))
+    return Headline(f"{objective.name}: {before} in the nominal design, {after} at the optimum{kept_text}.", all(kept))

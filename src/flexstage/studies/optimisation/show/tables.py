@@ -14,7 +14,7 @@ from flexstage.studies.sweeps.definition import Study
 
 
 def optimise_tables(found: Optimum) -> list[Table | None]:
-    """Tabulate objective and variables before and after, limits, binding limits and their sensitivities, the starts.
+    """Tabulate objective and variables before and after, limits, binding limits with their sensitivities, and starts.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.search.optimum import optimise
@@ -25,7 +25,7 @@ def optimise_tables(found: Optimum) -> list[Table | None]:
 
 
 def front_tables(found: Front) -> list[Table]:
-    """Tabulate the designs of a front: objectives and variables."""
+    """Tabulate the objectives and variables of the designs of a front."""
     objectives = found.definition.objectives
     heads = [f"{each.name} ({each.direction.value})" for each in objectives]
     rows = []
@@ -33,12 +33,12 @@ def front_tables(found: Front) -> list[Table]:
         cells = [format_value(float(point.values[number]), each.measure.quantity.si, 6) for number, each in enumerate(objectives)]
         rows.append((str(index + 1), *cells, *_value_texts(found.study, values_of(found.study, point.shares))))
     columns = ["design", *(Column(head) for head in heads), *(Column(each.name) for each in found.study.variables)]
-    notes = [f"{found.evaluated} designs evaluated with derivatives. All are Pareto-optimal."]
+    notes = [f"All these designs are Pareto-optimal. {found.evaluated} designs were evaluated with derivatives."]
     return [make_table("Front", columns, rows, notes=[*notes, *_notes(interrupted=found.interrupted, idle=found.idle)])]
 
 
 def _notes(*, interrupted: bool, idle: tuple[str, ...]) -> list[str]:
-    notes = ["Interrupted: the best so far."] if interrupted else []
+    notes = ["The search was interrupted; these are the best results so far."] if interrupted else []
     return [*notes, *([f"Variables without effect: {', '.join(idle)}."] if idle else [])]
 
 
@@ -54,9 +54,9 @@ def _objective(found: Optimum) -> Table:
         if point is not None:
             change = found.value(point) / (found.value(found.before) or np.nan) - 1.0
             rows.append((title, format_value(found.value(point), unit, 6), f"{100.0 * change:+.2f} %"))
-    notes = [f"{found.agreeing} of {len(found.starts)} starts agree. {found.evaluated} designs evaluated with derivatives."]
+    notes = [f"{found.agreeing} of {len(found.starts)} starts agree. {found.evaluated} designs were evaluated with derivatives."]
     if found.rounded is not None and found.rounded.point is not None:
-        notes.append(f"Rounding costs {format_value(found.rounded.loss, unit, 3)} ({found.rounded.tried} neighbours tried).")
+        notes.append(f"Loss by rounding: {format_value(found.rounded.loss, unit, 3)} ({found.rounded.tried} neighbours evaluated).")
     elif found.rounded is not None:
         notes.append(f"Not rounded: {found.rounded.reason}.")
     notes += _notes(interrupted=found.interrupted, idle=found.idle)
@@ -105,10 +105,10 @@ def contradiction_text(each: Contradiction, found: Optimum | Front) -> tuple[str
     at = [_nearest_value(limit.key, limit.point, each.point, found) for limit in each.limits]
     least = f"the smallest violation is {100.0 * each.violation:.3g} %, with {', '.join(at)}"
     if len(said) == 1:
-        return f"{said[0]} cannot hold within these ranges; {least}", "Loosen it, or widen the ranges"
+        return f"{said[0]} cannot hold within these ranges; {least}", "Relax this limit, or widen the ranges"
     both = "both " if len(said) == 2 else "all "
     joined = f"{', '.join(said[:-1])} and {said[-1]}"
-    return f"{joined} cannot {both}hold within these ranges; {least}", "Loosen one of them, or widen the ranges"
+    return f"{joined} cannot {both}hold within these ranges; {least}", "Relax one of these limits, or widen the ranges"
 
 
 def _nearest_value(key: str, point: str, at: Point, found: Optimum | Front) -> str:

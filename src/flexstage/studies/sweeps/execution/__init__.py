@@ -1,1 +1,1 @@
-"""Execution of a study: designs evaluated, stored and combined."""
+"""Execution of a study: evaluation, storage and combination of designs."""

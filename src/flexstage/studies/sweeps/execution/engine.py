@@ -1,7 +1,7 @@
-"""Fast platform frequencies of a study's designs, thousands per second: planned once for a study, then evaluated for any designs.
+"""Platform frequencies of thousands of designs per second. The computation is planned once for a study, then used for all its designs.
 
-The method of a design, and whether descriptions are fitted, depend only on the study. They do not depend on the division into pieces, nor
-on the number of remaining designs.
+The method for a design, and the choice whether descriptions are fitted, depend only on the study. They depend neither on the division into
+pieces, nor on the number of remaining designs.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from flexstage.studies.sweeps.numbers import Numbers
 
 _MODES = 6
 _FIT = 4_700
-"""Cost of fitting in descriptions, `_EACH` more for every number; fitting requires `_TIMES` as many further designs."""
+"""Cost of fitting, in descriptions, with `_EACH` more for every number. A fit requires at least `_TIMES` as many further designs."""
 _EACH = 34
 _TIMES = 4
 _BEYOND = 1e-9
@@ -36,9 +36,9 @@ _SURE = (Status.ITERATED, Status.WHOLE)
 
 @dataclass(frozen=True, eq=False)
 class Engine:
-    """Responses that the engine computes: `modes` is the platform mode (from 0) of each response; empty without a `plan`.
+    """The engine of a study. `modes` contains the platform mode (from 0) of each response that it computes; it is empty without a `plan`.
 
-    The inputs of the plan are the `numbers`, or without them the variables. `loaded`: designs may be unstable under their permanent load.
+    The inputs of the plan are the `numbers`; without them, the variables. `loaded`: designs may be unstable under their permanent load.
     """
 
     modes: Mapping[str, int]
@@ -49,7 +49,7 @@ class Engine:
     def answers(self, values: Array) -> tuple[Array, Array]:
         """Compute frequencies (n, m) [Hz] of the m responses for designs with `values` (n, d), and the mask (n,) of valid designs.
 
-        An invalid design may have fewer such modes, or a rigid-body motion: a separate evaluation gives the reason.
+        An invalid design may have fewer such modes, or a rigid-body motion. A separate evaluation then provides the reason.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> engine_of(neck_study()).answers(np.array([[0.00154]]))[0].round(1).tolist()
@@ -72,7 +72,7 @@ class Engine:
 
 
 def engine_covers(study: Study) -> bool:
-    """Whether the engine supports a study: it has the standard `mechanism_for`, its own `mechanism_at` (complex values), or `numbers`.
+    """Whether the engine supports a study: it needs the standard `mechanism_for`, its own `mechanism_at` (complex values), or `numbers`.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> engine_covers(neck_study())
@@ -85,7 +85,7 @@ def engine_covers(study: Study) -> bool:
 def engine_of(study: Study) -> Engine:
     """Make the engine of a study: its plan, over the variables' ranges if the study has enough designs.
 
-    The engine is empty for studies that it does not cover (`engine_covers`); dense matrices are then used. Raises nothing.
+    The engine is empty for studies that it does not cover (`engine_covers`); dense matrices are then used. Never raises an error.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> dict(engine_of(neck_study()).modes)

@@ -1,4 +1,4 @@
-"""Evaluation of a study's designs: in batches, with failures isolated."""
+"""Evaluation of a study's designs in batches, with isolation of failed designs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from flexstage.studies.sweeps.loaded import unstable_designs
 
 _LONGEST_REASON = 400
 _MOST = 256
-"""Designs evaluated at once: matrices of more do not fit into a processor's cache."""
+"""Number of designs evaluated at once; the matrices of more designs do not fit into a processor's cache."""
 
 Reasons = dict[int, str]
 """Reasons of failed designs, by row."""
@@ -26,8 +26,8 @@ Reasons = dict[int, str]
 class Piece:
     """Designs from number `start`: variables (n, d) and responses (n, r) in SI.
 
-    `failures` are the reasons of failed designs by row; their responses are NaN. `provenance` contains versions: with different versions
-    the last digits may differ.
+    `failures` contains the reasons for failed designs by row; their responses are NaN. `provenance` contains the versions of the programs;
+    with different versions, the last digits may differ.
     """
 
     start: int
@@ -38,9 +38,9 @@ class Piece:
 
 
 def piece(study: Study, start: int, stop: int, engine: Engine | None = None) -> Piece:
-    """Compute the designs from `start` to before `stop` of a study's plan; `engine` is made here if absent.
+    """Compute the designs from `start` to before `stop` of a study's plan. Without an `engine`, one is made.
 
-    An invalid design, or one without a value, has NaN and the reason.
+    An invalid design, or a design without a value, gets NaN and the reason.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> found = piece(neck_study(), 0, 2)

@@ -1,4 +1,4 @@
-"""Run of a study: all its designs computed and stored; resumed after an interruption without loss or repetition."""
+"""Run of a study: all designs are computed and stored. After an interruption, it continues without loss or repetition."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ from flexstage.studies.sweeps.execution.store import (
 PIECE = 256
 """Designs computed and stored together."""
 LARGE, _MANY = 2048, 64
-"""Designs in a piece if each takes microseconds; smallest number of smaller pieces in a study for this."""
+"""Number of designs in a piece if each takes microseconds, and the smallest number of small pieces in a study with such pieces."""
 _COPIES = 4.0
-"""Copies of all numbers of the results in memory at the same time, while they are read."""
+"""Number of copies of all results that are in memory at the same time, during reading."""
 
 Progress = Callable[[int, int], None]
 """Called with the number of computed designs, and of all designs."""
@@ -47,7 +47,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Run(CheckedFields):
-    """Options of a run: `workers` processes (absent: one for each core), `resume` from existing results."""
+    """Options of a run: number of `workers` (processes), by default one for each core; whether to `resume` from existing results."""
 
     workers: int | None = None
     resume: bool = False
@@ -62,9 +62,9 @@ def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progre
     """Compute all designs of a study into the results file at `path`.
 
     Pieces (see `piece_size`) are written one by one and combined in the file at the end of the run. Results do not depend on
-    the number of workers or on the order of pieces; equal studies give equal files. An interruption keeps the results so far. Raises
-    `DesignError` for an existing file without `resume`, a file of another study, or a file in use; for measures that the
-    design lacks; and for a full disk.
+    the number of workers or on the sequence of pieces; equal studies give equal files. An interruption keeps the results so far. Raises
+    `DesignError` for an existing file without `resume`, a file of another study, a file in use, measures that the design does not have,
+    and a full disk.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study
@@ -91,7 +91,7 @@ def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progre
 
 
 def piece_size(study: Study) -> int:
-    """Return the number of designs computed at once: larger if the engine computes all responses of a large study.
+    """Return the number of designs computed at once. It is larger if the engine computes all responses of a large study.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> piece_size(neck_study()), piece_size(neck_study(1_000_000))
@@ -127,10 +127,10 @@ def _require_ready(target: Path, study: Study, size: int, how: Run) -> None:
     require(name_findings(study))
     require_memory(study)
     if not target.parent.is_dir():
-        raise refuse(os.fspath(target.parent), "folder not found", "Create it, or name another")
+        raise refuse(os.fspath(target.parent), "folder not found", "Create the folder, or choose another")
     there = target.exists() or pending_pieces(target)
     if there and not how.resume:
-        raise refuse(os.fspath(target), "file exists already", "Resume (--resume), or name another file")
+        raise refuse(os.fspath(target), "file exists already", "Continue with --resume, or choose another file")
     if target.exists():
         require(differences(target, study, size))
     if how.workers is not None and how.workers < 1:
@@ -147,7 +147,7 @@ def _pieces(study: Study, ranges: Iterable[tuple[int, int]], folder: Path, worke
         start, stop = failed.arguments
         what, advice = ("processes crashed repeatedly", "Free memory and resume")
         if isinstance(failed.error, DesignError):
-            what, advice = " ".join(str(failed.error).split()), "Correct it and resume"
+            what, advice = " ".join(str(failed.error).split()), "Correct the study and resume"
         elif failed.error is not None:
             raise failed.error from None
         raise refuse(f"designs {start} to {stop - 1}", what, advice) from None
@@ -165,10 +165,10 @@ def _locked(folder: Path) -> Generator[None]:
         folder.mkdir(exist_ok=True)
         lock.acquire()
     except Timeout:
-        raise refuse(os.fspath(folder), "another process computes this study", "Wait for it, or name another file") from None
+        raise refuse(os.fspath(folder), "another process computes this study", "Wait for its end, or choose another file") from None
     except OSError as error:
-        what = f"it cannot be written to ({error.strerror or error})"
-        raise refuse(os.fspath(folder.parent), what, "Name a file in another folder") from None
+        what = f"cannot be written ({error.strerror or error})"
+        raise refuse(os.fspath(folder.parent), what, "Choose a file in another folder") from None
     with lock:
         try:
             remove_leftovers(folder)

@@ -1,8 +1,7 @@
-"""Results of studies on disk: pieces written one by one, combined in one self-describing HDF5 file.
+"""Results of studies on disk. Pieces are written one by one, then combined in one self-describing HDF5 file.
 
-`results.h5` contains the combined pieces; `results.h5.pieces/` the later ones. Only complete files are renamed, so that the reader of
-both finds every computed design exactly once at any time. Files with the same designs have the same bytes, regardless of
-interruptions.
+`results.h5` contains the combined pieces, and `results.h5.pieces/` the later ones. Only complete files are renamed, so that a reader of
+both finds every computed design exactly once at any time. Files with the same designs have the same bytes, regardless of interruptions.
 """
 
 from __future__ import annotations
@@ -30,19 +29,19 @@ FORMAT = "flexstage results 1"
 _ATTEMPTS = 20
 _PIECES = ".pieces"
 _FRAME, _ENTRY = 100_000, 64
-"""Size of a results file without numbers and reasons [B]: its frame, the entry of a failure."""
+"""Size [B] of a results file without numbers, and of the entry of a failure without its reason."""
 
 _ABOUT = (
-    "Designs of a study, one in each row of variables and responses. Units are SI; attributes: names, units, and of (address or measure). "
-    "Variables in 1 may be factors on the design's values. NaN: not computed (mask computed, pieces of piece rows) or "
-    "failed (mask failed, reasons in failures). study: the study's file; facts: inputs of the numbers; made: versions. "
+    "Designs of a study, one in each row of variables and responses, in SI units. Attributes: names, units, and of (address or measure). "
+    "Variables with unit 1 may be factors on the design's values. NaN: not computed (mask computed, in pieces of piece rows) or failed "
+    "(mask failed, reasons in failures). study: the study's file; facts: inputs of the numbers; made: versions of programs. "
     "In Python: flexstage.studies.sweeps.execution.store.read_results, then to_xarray() or to_pandas()."
 )
 
 
 @dataclass(frozen=True)
 class Failure:
-    """A design, or sample, without values: its number, and the reason."""
+    """A design or sample without values: its number and the reason."""
 
     design: int
     reason: str
@@ -50,10 +49,10 @@ class Failure:
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """Designs computed so far: `designs` (n,) their numbers, `variables` (n, d), `responses` (n, r) in SI, failures by design number.
+    """Designs computed so far: their numbers `designs` (n,), `variables` (n, d) and `responses` (n, r) in SI, failures by design number.
 
-    `names` and `units` belong to the variables, then to the responses. `planned` is the number of designs, `facts` are their inputs.
-    `text` is the study's file; `made` are the versions of the programs, one text each.
+    `names` and `units` contain those of the variables, then those of the responses. `planned` is the number of all designs, `facts` are
+    their inputs. `text` is the study's file; `made` contains the versions of the programs.
     """
 
     designs: Array
@@ -82,10 +81,10 @@ class Results:
         for names, values in zip(self.names, (self.variables, self.responses), strict=True):
             if name in names:
                 return values[:, names.index(name)]
-        raise refuse(name, "unknown column", f"They have {', '.join(sum(self.names, ()))}")
+        raise refuse(name, "unknown column", f"Use one of {', '.join(sum(self.names, ()))}")
 
     def to_xarray(self) -> Any:
-        """Convert the results to an xarray dataset over the design number, units in the attributes (extra `tables`)."""
+        """Convert the results to an xarray dataset over the design number, with units in the attributes. Needs the extra `tables`."""
         import xarray
 
         named = [(name, unit) for names, units in zip(self.names, self.units, strict=True) for name, unit in zip(names, units, strict=True)]
@@ -93,7 +92,7 @@ class Results:
         return xarray.Dataset(data, coords={"design": self.designs}, attrs={"study": self.text})
 
     def to_pandas(self) -> Any:
-        """Convert the results to a pandas data frame, one row per design (extra `tables`)."""
+        """Convert the results to a pandas data frame, with one row per design. Needs the extra `tables`."""
         import pandas
 
         return pandas.DataFrame({name: self.column(name) for names in self.names for name in names}, index=pandas.Index(self.designs))
@@ -109,7 +108,7 @@ def folder_of(path: Path) -> Path:
 
 
 def write_piece(folder: Path, found: Piece) -> Path:
-    """Write a piece into the folder: `<start>.npz`, the designs from number `start`.
+    """Write a piece, with the designs from number `start`, into the folder as `<start>.npz`.
 
     Raises `DesignError` if the file cannot be written.
 
@@ -142,7 +141,7 @@ def read_piece(path: Path) -> Piece:
     except FileNotFoundError:
         raise
     except (OSError, ValueError, KeyError, EOFError, BadZipFile):
-        raise refuse(os.fspath(path), "not a piece of results, or damaged", "Remove it and resume: it is computed again") from None
+        raise refuse(os.fspath(path), "not a piece of results, or damaged", "Remove the file and resume") from None
 
 
 def pending_pieces(path: Path) -> dict[int, Path]:
@@ -167,9 +166,9 @@ def columns_of(study: Study) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], t
 
 
 def open_results(path: Path) -> Hdf:
-    """Open a results file. One process reads all HDF5 files; existing files are never written, so that no lock is needed.
+    """Open a results file. One process reads all HDF5 files. Existing files are never changed, so that no lock is needed.
 
-    Raises `FileNotFoundError` for a missing file, `DesignError` for an invalid one.
+    Raises `FileNotFoundError` for a missing file, and `DesignError` for an invalid file.
 
     >>> open_results(Path("nowhere/results.h5"))
     Traceback (most recent call last):
@@ -179,14 +178,14 @@ def open_results(path: Path) -> Hdf:
     path.stat()
     file = hdf(path)
     if file.attributes.get("format") != FORMAT:
-        raise refuse(os.fspath(path), "it contains no results of a study", f'Use a file of the format "{FORMAT}"')
+        raise refuse(os.fspath(path), "contains no results of a study", f'Use a file of the format "{FORMAT}"')
     require(_damage_findings(file))
     return file
 
 
 def _damage_findings(file: Hdf) -> Iterator[Finding]:
     """Missing or invalid parts of a results file."""
-    advice = "It is damaged: remove it, or name another file"
+    advice = "Remove the damaged file, or choose another"
     attributes = file.attributes
     wrong = [key for key in ("planned", "piece") if not _is_count(attributes.get(key))] + ["study"] * (
         not isinstance(attributes.get("study"), str)
@@ -232,7 +231,7 @@ def read_results(path: str | os.PathLike[str]) -> Results:
             return _read(open_results(target), pieces)
         except FileNotFoundError:
             continue
-    raise refuse(where, "its pieces change during reading", "Try again")
+    raise refuse(where, "its pieces changed during reading", "Try again")
 
 
 @dataclass(frozen=True, eq=False)
@@ -292,9 +291,9 @@ def _read(file: Hdf, pieces: Iterable[Path]) -> Results:
 
 
 def gather(path: Path, study: Study, size: int) -> Array:
-    """Write the results file with all pieces of `size` designs, and remove them; returns the mask (k,) of the pieces in the file.
+    """Write the results file with all pieces of `size` designs, and remove the pieces. Returns the mask (k,) of the pieces in the file.
 
-    Raises `DesignError` if the file cannot be written; then file and pieces are unchanged.
+    Raises `DesignError` if the file cannot be written; file and pieces are then unchanged.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study
@@ -343,7 +342,7 @@ def _write(file: Any, stored: _Stored, study: Study) -> None:
 
 
 def require_room(path: Path, study: Study) -> None:
-    """Raise `DesignError` if the disk has no space for a study's results: the file, and the pieces until they are combined.
+    """Raise `DesignError` if the disk has no space for a study's results: the file, and the pieces that are not yet combined.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> require_room(Path("results.h5").absolute(), neck_study())
@@ -352,12 +351,12 @@ def require_room(path: Path, study: Study) -> None:
     there = path.stat().st_size if path.exists() else 0
     missing, free = 2 * whole - min(there, whole), shutil.disk_usage(path.parent).free
     if free < missing:
-        what = f"the results need {missing / 1e6:.4g} MB more while they are combined, {free / 1e6:.4g} MB are free"
-        raise refuse(os.fspath(path.parent), what, "Free space and resume (--resume), or name a file elsewhere")
+        what = f"{missing / 1e6:.4g} MB more are needed to combine the results, but {free / 1e6:.4g} MB are free"
+        raise refuse(os.fspath(path.parent), what, "Free space and continue with --resume, or choose a file on another disk")
 
 
 def file_size(study: Study) -> int:
-    """Compute the maximum size of a study's results file [B], without reasons of failures.
+    """Compute the maximum size of a study's results file [B], without the reasons for failures.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> file_size(neck_study(2_000_000)) - file_size(neck_study(1_000_000))
@@ -380,7 +379,7 @@ def _labels(file: Hdf, name: str, label: str) -> tuple[str, ...]:
 
 
 def differences(path: Path, study: Study, size: int) -> Iterator[Finding]:
-    """Compare the study of a results file with this one, in pieces of `size` designs; one finding for each difference.
+    """Compare the study of a results file with this study, in pieces of `size` designs. Yields one finding for each difference.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study
@@ -396,4 +395,4 @@ def differences(path: Path, study: Study, size: int) -> Iterator[Finding]:
     for key in dict.fromkeys((*before, *now)):
         if before.get(key) != now.get(key):
             what = f"{key} was {before.get(key, 'absent')} and is {now.get(key, 'absent')}"
-            yield Finding(os.fspath(path), what, "Resume with the original study, or name another file")
+            yield Finding(os.fspath(path), what, "Resume with the original study, or choose another file")

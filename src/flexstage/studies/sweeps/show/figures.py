@@ -22,7 +22,7 @@ _MOST_LINES = 400
 
 @dataclass(frozen=True)
 class Display:
-    """Display form of a variable or a response: in percent of the design's value, else in a unit."""
+    """Display form of a variable or a response: in percent of the design's value, or in a unit."""
 
     unit: str
     factor: float
@@ -38,7 +38,7 @@ class Display:
 
 
 def display(of: Variable | Measure, values: Array) -> Display:
-    """Choose the display form of SI values of a variable or a response: variables in the units of design files.
+    """Choose the display form of SI values of a variable or a response. Variables have the units of design files.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> display(Variable("t", ("parts.neck.thickness",), LENGTH, 1e-3, 2e-3), np.array([1e-3])).unit
@@ -54,7 +54,7 @@ def display(of: Variable | Measure, values: Array) -> Display:
 
 
 def effects_figure(study: Study, found: Effects) -> Any:
-    """Plot the mean of each response over each variable. All panels of a response have the same scale, to compare slopes."""
+    """Plot the mean of each response over each variable. All panels of a response have the same scale, so that slopes can be compared."""
     rows, columns = len(found.responses), len(found.variables)
     with style_context():
         figure = canvas(FULL, 0.55 + 1.25 * rows)
@@ -81,7 +81,7 @@ def _scale(values: Array) -> tuple[float, float]:
 
 
 def designs_figure(study: Study, results: Results) -> Any:
-    """Plot designs as lines over parallel axes, variables then responses, each from minimum to maximum.
+    """Plot designs as lines over parallel axes: the variables, then the responses, each from minimum to maximum.
 
     Lines are coloured by the first response. Infeasible designs are grey.
     """

@@ -21,12 +21,12 @@ from flexstage.studies.sweeps.show.figures import designs_figure, effects_figure
 from flexstage.studies.sweeps.show.interaction_figures import strongest_figure
 from flexstage.studies.sweeps.show.tables import failure_table, limit_notes, pair_table, share_table, variable_table
 
-_STEEP = "All panels of a row have one scale. Means over designs, the other variables vary in their ranges."
-_STRONGEST = "The strongest pairs: lines that are not parallel show interaction. Above: share of variance."
+_STEEP = "All panels of a row have one scale. The values are means over all designs, in which the other variables vary too."
+_STRONGEST = "The strongest pairs of variables. Lines that are not parallel show interaction. Above each panel: fraction of the variance."
 
 
 def sweep_report(sweep: Sweep) -> str:
-    """Write a sweep as an HTML page: distributions first, variables, main effects, shares of variance, designs as lines."""
+    """Write a sweep as an HTML page: distributions first, then variables, main effects, variance contributions, and designs as lines."""
     study, results, found = sweep.study, sweep.results, sweep.effects
     effects = designs = None
     if found.used:
@@ -63,8 +63,8 @@ def _headline(study: Study, results: Results) -> Headline:
 
 def _parallel(study: Study, found: Effects) -> str:
     """Caption of the designs over parallel axes."""
-    text = f"Each line is a design; colour by {found.responses[0]}, from dark (minimum) to yellow (maximum)"
-    return f"{text}; grey: limits not met." if study.limits else f"{text}."
+    text = f"Each line is a design. Its colour shows {found.responses[0]}, from dark (minimum) to yellow (maximum)"
+    return f"{text}. Grey designs do not meet all limits." if study.limits else f"{text}."
 
 
 def _interactions(study: Study, found: Effects) -> list[Block]:

@@ -49,23 +49,23 @@ def variable_table(study: Study, results: Results) -> Table:
 
 
 def limit_notes(study: Study, results: Results) -> list[str]:
-    """Report the number of feasible designs. If there are none, name the limits that no design meets, or that contradict one another."""
+    """Report the fraction of feasible designs. If there are none, name the limits that no design meets, or that contradict each other."""
     kept = study.feasible(results.responses)
     if not study.limits or not len(kept):
         return []
     if np.any(kept):
-        return [f"All limits together are met by {number(100.0 * float(np.mean(kept)), 4)} % of the designs."]
+        return [f"{number(100.0 * float(np.mean(kept)), 4)} % of the designs meet all limits."]
     alone = {f"{each.key} {each.text}": study.feasible(results.responses, (each,)) for each in study.limits}
     never = [text for text, met in alone.items() if not np.any(met)]
     if never:
-        return [f"No design meets {' nor '.join(never)}: widen the ranges, or reduce the requirements."]
+        return [f"No design meets {' or '.join(never)}. Widen the ranges, or relax these limits."]
     pairs = [pair for pair in combinations(alone, 2) if not np.any(alone[pair[0]] & alone[pair[1]])]
     pair_text = "; ".join(f"{first} and {second}" for first, second in pairs)
-    return [f"No design meets all limits at once{f': no design meets both {pair_text}' if pair_text else ''}."]
+    return [f"No design meets all limits{f'; no design meets both {pair_text}' if pair_text else ''}."]
 
 
 def share_table(found: Effects) -> Table:
-    """Tabulate first-order and, if known, total indices."""
+    """Tabulate first-order indices and, if they are known, total indices."""
     columns: list[Column | str] = ["variable"]
     for name in found.responses:
         columns += [Column(name, "first order")] + ([] if found.total is None else [Column(name, "total")])
@@ -76,10 +76,10 @@ def share_table(found: Effects) -> Table:
             cells.append(share_cell(float(found.first[row, column])))
             cells += [] if found.total is None else [share_cell(float(found.total[row, column]))]
         rows.append(cells)
-    note = "First order: share of the response's variance by the variable alone"
-    note += "; total: with its interactions." if found.total is not None else "; the residual is interaction."
+    note = "First order: fraction of the response's variance due to the variable alone. "
+    note += "Total: with its interactions." if found.total is not None else "The remainder is due to interactions."
     return make_table(
-        "Variance contributions", columns, rows, notes=[note, f"By {found.method}, {found.used} designs.", *_error_note(found, 0)]
+        "Variance contributions", columns, rows, notes=[note, f"Method: {found.method}, with {found.used} designs.", *_error_note(found, 0)]
     )
 
 
@@ -88,7 +88,7 @@ def _error_note(found: Effects, order: int) -> list[str]:
     texts = [
         f"{name} {100.0 * error:.1g} %" for name, error in zip(found.responses, found.errors[order], strict=True) if np.isfinite(error)
     ]
-    return [f"Standard errors up to: {', '.join(texts)}."] if texts else []
+    return [f"Largest standard errors: {', '.join(texts)}."] if texts else []
 
 
 def pair_table(found: Effects) -> Table:
@@ -104,15 +104,14 @@ def pair_table(found: Effects) -> Table:
         for first, second in shown_pairs
     ]
     less = "No pair" if not rows else "No other pair"
-    notes = ["Share of variance explained only by both together.", f"{less} explains 1 % of a response." if len(rows) < _MOST_PAIRS else ""]
+    notes = ["Fraction of the variance that only both variables together explain."]
+    notes += [f"{less} explains 1 % of the variance of a response."] if len(rows) < _MOST_PAIRS else []
     notes += _error_note(found, 1)
-    return make_table(
-        "Interactions", ["variables", *(Column(name) for name in found.responses)], rows, notes=[note for note in notes if note]
-    )
+    return make_table("Interactions", ["variables", *(Column(name) for name in found.responses)], rows, notes=notes)
 
 
 def share_cell(value: float, form: str = "{:.1f} %") -> Cell:
-    """Format a share of a variance in percent, with a bar of this length.
+    """Format a fraction of a variance in percent, with a bar of this length.
 
     >>> share_cell(0.25).text, share_cell(float("nan")).text
     ('25.0 %', '-')
@@ -124,13 +123,13 @@ def share_cell(value: float, form: str = "{:.1f} %") -> Cell:
 
 
 def failure_table(results: Results) -> Table:
-    """Tabulate the reasons of failed designs, the most frequent first."""
+    """Tabulate the reasons for failed designs, the most frequent first."""
     reasons: dict[str, list[int]] = {}
     for design, reason in results.failures.items():
         reasons.setdefault(_NUMBER.sub("", reason), []).append(design)
     ranked = sorted(reasons.values(), key=lambda designs: -len(designs))
     rows = [(number(len(designs)), str(designs[0]), results.failures[designs[0]]) for designs in ranked[:_MOST_FAILURES]]
     rest = len(ranked) - _MOST_FAILURES
-    notes = ["Reasons that differ only in numbers are listed once; the results file contains all."]
+    notes = ["Reasons that differ only in numbers are listed once. The results file contains all reasons."]
     notes += [f"{rest} further reasons are in the results file."] if rest > 0 else []
     return make_table("Designs without values", [Column("designs"), Column("first"), "reason"], rows, notes=notes)

@@ -1,1 +1,1 @@
-"""How answers to a specification are shown."""
+"""Tables and reports of the answers to a specification."""

@@ -16,7 +16,7 @@ from flexstage.studies.synthesis.answers import Answers, joint_front
 from flexstage.studies.synthesis.search import Answer, FrontPoint
 from flexstage.studies.synthesis.show.tables import answer_tables
 
-_BOUND = "Frequency and width of the answers. Lines: highest frequency of any mechanism with these actuators and this payload."
+_BOUND = "Frequency and width of the answers. Dashed lines: bound of the frequency for any mechanism with these actuators and this payload."
 
 
 def answer_report(found: Answers) -> str:
@@ -49,7 +49,7 @@ def answer_report(found: Answers) -> str:
 
 
 def bound_figure(answers: list[tuple[Answer, float]]) -> Any:
-    """Draw the first frequency of answers with their efficiency by their width, and their bounds: efficiency = (f / bound)^2."""
+    """Draw the first frequency of answers over their width, and the bounds of the frequency. Efficiency is (frequency / bound)^2."""
     with style_context():
         figure = canvas(FULL, 2.9)
         ax = panels(figure, 1, 1, Margins(left=0.75, bottom=0.5, right=0.2))[0, 0]
@@ -65,7 +65,7 @@ def bound_figure(answers: list[tuple[Answer, float]]) -> Any:
 
 
 def front_figure(found: Answers, points: Sequence[tuple[Answer, FrontPoint]]) -> Any:
-    """Draw the designs of the joint front by both goals, in the colours of their pairs."""
+    """Draw the designs of the joint front over both goals, with one colour for each pair."""
     (_, key), (_, second) = found.specification.goal, found.specification.second_goal or ("", "")
     with style_context():
         figure = canvas(FULL, 2.9)

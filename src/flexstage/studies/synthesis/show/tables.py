@@ -17,7 +17,7 @@ _DIGITS = 4
 
 
 def answer_tables(found: Answers) -> Iterator[Table]:
-    """Answers from the best on, pairs that failed, and pairs that a bound excludes.
+    """Tabulate the answers, the best first, the pairs that failed, and the pairs that a bound excludes.
 
     >>> from flexstage.studies.synthesis.specification import example
     >>> list(answer_tables(Answers(example(), (), (), ())))[0].title
@@ -27,7 +27,7 @@ def answer_tables(found: Answers) -> Iterator[Table]:
     if points := joint_front(found):
         goal, second = (f"{key}, {way}d" for way, key in (found.specification.goal, found.specification.second_goal or ("", "")))
         rows = [(Cell(answer.architecture, Mark.STRONG), answer.actuator, *_front_cells(answer, each)) for answer, each in points]
-        notes = ["No design of any pair is better in one goal without being worse in the other. The study of an answer computes it."]
+        notes = ["Every design of any pair that is better in one goal is worse in the other. The study of an answer computes its front."]
         yield make_table("Front of both goals", ["architecture", "actuator", Column(goal), Column(second)], rows, notes=notes)
     if found.failed:
         rows = [
@@ -35,23 +35,23 @@ def answer_tables(found: Answers) -> Iterator[Table]:
             for each in found.failed
         ]
         notes = [
-            "Least violation: the smallest share by which the worst requirement is missed, within all ranges.",
-            "Possible with one relaxed: its best value with all other requirements met, found by search.",
+            "Least violation: relative violation of the worst requirement, at its minimum within all ranges.",
+            "Possible with one relaxed: the best value of this requirement if all others are met, found by search.",
         ]
         heads = ["architecture", "actuator", Column("least violation", "%"), "contradicting requirements", "possible with one relaxed"]
         yield make_table("Failed", heads, rows, notes=notes)
     if found.impossible:
         rows = [(Cell(name, Mark.STRONG), actuators, *_shortfall_cells(best)) for name, actuators, best in _excluded(found.impossible)]
         notes = [
-            "Bounds, exact for any values: with these actuators (any mechanism), or with the architecture alone.",
-            "Of several actuators, the row is that of the first one, which comes closest.",
+            "These bounds are exact. They hold for any mechanism with these actuators, or for this architecture only.",
+            "A row for several actuators shows the values of the first actuator, which is the closest to the requirement.",
         ]
         columns = ["architecture", "actuators", "requirement", Column("at most"), Column("required"), "holds for", "reason"]
         yield make_table("Impossible", columns, rows, notes=notes)
 
 
 def pair_row(result: Answer | FailedPair) -> dict[str, str]:
-    """Return the names of a pair, its goal or the reason of its failure, and of an answer its file and design, as texts.
+    """Return the names of a pair, its goal or the reason for its failure, and the file and design of an answer, as text.
 
     >>> pair_row(FailedPair("guide", "stack", 0.12, {"frequency.1": "at least 1 kHz"}))["reason"]
     'frequency.1 at least 1 kHz, missed by 12 %'
@@ -74,9 +74,9 @@ def _answer_table(found: Answers) -> Table:
     numbers = map(Column, (f"{key}, {way}d", "elastic bodies", *(each.heading for each in more), "size", "efficiency"))
     columns = ["", "architecture", "actuator", *numbers, "active requirements", "warnings"]
     notes = [
-        "Efficiency: stroke energy that the first frequency needs for the payload alone, over that of the actuators; at most 100 %.",
-        "Warnings: number of those that flexstage check prints.",
-        "Elastic bodies: the required frequency with the flexibility of bodies, estimated from their outlines.",
+        "Efficiency: stroke energy needed for the first frequency of the payload alone, relative to that of the actuators; at most 100 %.",
+        "Warnings: number of warnings that flexstage check prints.",
+        "Elastic bodies: the required frequency with flexible bodies, estimated from their outlines.",
         *(each.note for each in more),
         *(f"{each.pair} is not verified: {each.unverified}." for each in found.answers if each.unverified),
     ]
@@ -104,12 +104,12 @@ class _Extra:
 _MORE = (
     _Extra(
         "finite elements",
-        "Finite elements: the required frequency; all requirements are met. -: not verified.",
+        "Finite elements: the required frequency by finite elements, with which all requirements are met. -: not verified.",
         lambda answer: _frequency(answer.verified),
     ),
     _Extra(
         "yield",
-        "Yield: share of stages that meet all requirements when dimensions vary within the tolerance of the specification.",
+        "Yield: fraction of stages that meet all requirements if dimensions vary within the tolerance of the specification.",
         lambda answer: None if answer.manufactured is None else f"{100.0 * answer.manufactured:.0f} %",
     ),
     _Extra(

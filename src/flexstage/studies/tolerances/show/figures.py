@@ -1,4 +1,4 @@
-"""Figures of the responses' distributions over the samples of a tolerance study, with their limits."""
+"""Figures of the distributions of responses in a tolerance study, with their limits."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FEWEST = 12
 
 
 def distributions_figure(found: Toleranced) -> Any:
-    """Plot a histogram of each response with the nominal design and its limits; violations are red."""
+    """Plot a histogram of each response, with the nominal value and the limits. Violations are red."""
     names = list(found.study.measures)
     rows = -(-len(names) // _ACROSS)
     with style_context():

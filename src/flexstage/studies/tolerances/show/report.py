@@ -15,11 +15,11 @@ from flexstage.studies.tolerances.run import Toleranced
 from flexstage.studies.tolerances.show.figures import distributions_figure
 from flexstage.studies.tolerances.show.tables import allowance_table, crosstalk_table, scatter_table, share_table, spread_table, yield_table
 
-_LIMITS = "Samples by value; black: the nominal design; red: the limits, and samples beyond them."
+_LIMITS = "Histograms of all samples. Black: the nominal design. Red: the limits, and samples that violate them."
 
 
 def tolerance_report(found: Toleranced) -> str:
-    """Write a tolerance study as an HTML page: yields first, scatter, distributions, contributions, allowable tolerances, crosstalk."""
+    """Write a tolerance study as an HTML page: yields, scatter, distributions, variance contributions, allowable tolerances, crosstalk."""
     study, statistics = found.study, found.summary
     drawn = Picture(to_svg(distributions_figure(found), "distributions", "histograms of the responses"), _LIMITS)
     data = stage_data(study.design)

@@ -19,14 +19,14 @@ from flexstage.studies.tolerances.summary import Crosstalk
 _FAR = 10.0
 _FINE = 1e3
 _COLUMNS = (
-    "alone: the others unchanged; equal shares: all at once, each with the same share of the margin; common factor: all at once, in "
-    "the specified proportions."
+    "alone: the other entries are unchanged. equal shares: all entries change, and each uses the same fraction of the margin. common "
+    "factor: all entries change by the same factor."
 )
-_NO_YIELD = "No yield: neither the design's [requirements] nor the study's [limits] define a specification."
+_NO_YIELD = "No yield, because neither [requirements] of the design nor [limits] of the study define a specification."
 
 
 def tolerance_tables(found: Toleranced) -> list[Table | None]:
-    """Tabulate scatter, yield, distributions of responses, variance contributions, allowable tolerances, crosstalk."""
+    """Tabulate scatter, yield, distributions of responses, variance contributions, allowable tolerances and crosstalk."""
     tables: list[Table | None] = [scatter_table(found), yield_table(found), spread_table(found), share_table(found)]
     if found.summary.lines:
         tables.append(allowance_table(found))
@@ -43,7 +43,7 @@ def scatter_table(found: Toleranced) -> Table:
     plan = found.study.plan
     copies = f"{found.summary.copies} samples of {found.study.design.name}, {plan.sampling.value}, seed {plan.seed}"
     alone = getattr(plan, "alone", 0)
-    notes = [f"{copies}." + (f" {alone} more for each entry alone." if alone else "")]
+    notes = [f"{copies}." + (f" In addition, {alone} samples with the scatter of each entry alone." if alone else "")]
     return make_table("Scatter", ["", "number", "deviation", "in"], rows, notes=notes)
 
 
@@ -77,7 +77,7 @@ def _size(scatter: Scatter, value: float) -> str:
 
 
 def yield_table(found: Toleranced) -> Table | None:
-    """Tabulate each requirement with its nominal value and its yield; without a specification, its absence is stated."""
+    """Tabulate each requirement with its nominal value and its yield. The table explains a missing specification."""
     together, failed = found.summary.together, found.summary.failed
     if together is None:
         return make_table("Yield", [""], [(_NO_YIELD,)])
@@ -109,7 +109,7 @@ def spread_table(found: Toleranced) -> Table:
             cells[-1] = "-"
         rows.append((Cell(name, Mark.STRONG), "" if form.unit == "1" else form.unit, *cells))
     heads = ["nominal", "mean", "deviation", "1 %", "5 %", "median", "95 %", "99 %", "linear"]
-    note = "linear: the deviation by exact derivatives, sqrt(sum (dy/dx s)^2); - for a nonlinear response, or several equal values."
+    note = "linear: standard deviation by exact derivatives, sqrt(sum (dy/dx s)^2). -: the response is nonlinear, or not smooth."
     return make_table("Responses", ["response", "unit", *(Column(head) for head in heads)], rows, notes=[note])
 
 
@@ -122,9 +122,9 @@ def share_table(found: Toleranced) -> Table:
         shares = (spread.by_slope if trusted else spread.by_sample)[:, column]
         rows.append((Cell(name, Mark.STRONG), *(share_cell(float(value), "{:.1f}" if trusted else "~{:.1f}") for value in shares)))
     heads: list[Column | str] = ["response", *(Column(each.name, "%") for each in found.study.scatters)]
-    about = "~: from samples of the entry alone, over the sum of all such variances."
+    about = "~: variance of samples with the scatter of this entry alone, relative to the sum of these variances."
     return make_table(
-        "Variance contributions", heads, rows, notes=["Shares of the variance, by exact derivatives.", *([about] if sampled else [])]
+        "Variance contributions", heads, rows, notes=["Fractions of the variance, by exact derivatives.", *([about] if sampled else [])]
     )
 
 
@@ -142,7 +142,7 @@ def allowance_table(found: Toleranced) -> Table:
         )
         for index, each in enumerate(found.study.scatters)
     ]
-    heads = ["", Column("specified"), Column("alone"), "decided by", Column("equal shares"), Column("common factor")]
+    heads = ["", Column("specified"), Column("alone"), "limited by", Column("equal shares"), Column("common factor")]
     return make_table("Allowable tolerances", heads, rows, notes=_allowed_notes(allowed))
 
 
@@ -156,17 +156,17 @@ def _scaled_size(scatter: Scatter, factor: float) -> Cell:
 def _allowed_notes(allowed: Allowance) -> list[str]:
     notes = [f"For a yield of {100.0 * allowed.wanted:g} % of each requirement, to first order. {_COLUMNS}"]
     if allowed.together == 0.0:
-        return [*notes, f"the nominal design violates {allowed.binding}: no tolerance corrects that."]
+        return [*notes, f"The nominal design violates {allowed.binding}, whatever the tolerances are."]
     if allowed.then is not None and allowed.together <= _FAR:
-        then = f"the samples with scaled changes have a yield of {_percent(allowed.then.share)} %"
-        notes.append(f"Common factor: {number(allowed.together, 3)}, decided by {allowed.binding}; {then}.")
+        then = f"With all changes multiplied by this factor, the yield of the sample is {_percent(allowed.then.share)} %"
+        notes.append(f"Common factor: {number(allowed.together, 3)}, limited by {allowed.binding}. {then}.")
     return notes
 
 
 def crosstalk_table(found: Toleranced, crosstalk: Crosstalk) -> Table:
-    """Tabulate the deviations of the pose per command, and the worst deviation."""
+    """Tabulate the deviations of the pose per unit of command, and the worst deviation."""
     opened = crosstalk.kind == OPEN
-    title = "Crosstalk, commanded by the nominal R_a" if opened else "Crosstalk, regulated by gauges with the nominal R_s^-1"
+    title = "Crosstalk in open loop, with the nominal R_a" if opened else "Crosstalk in closed loop, with the nominal R_s^-1"
     heads = [Column("", numeric=False), *(Column(name, "urad" if name.startswith("r") else "um") for name in crosstalk.coordinates)]
     rows = [
         [Cell(f"{row} [{'nrad' if row.startswith('r') else 'nm'}]", Mark.STRONG), *(_entry(value) for value in values)]
@@ -174,8 +174,8 @@ def crosstalk_table(found: Toleranced, crosstalk: Crosstalk) -> Table:
     ]
     reference = ", ".join(number(round(1e3 * float(value), 6) + 0.0, 6) for value in _reference(found))
     where = f"At {crosstalk.point}, ({reference}) mm"
-    note = f"{where}: deviation over the samples, row unit per unit of command; on the diagonal of the gain."
-    how = "Nominal lost motion corrected, strokes from the nominal stacks' voltages" if opened else "The loop is ideal"
+    note = f"{where}: standard deviation over the samples, in row unit per unit of command. Diagonal: deviation of the gain."
+    how = "The command corrects the nominal lost motion, with voltages of the nominal stacks" if opened else "The loop is ideal"
     return make_table(title, heads, rows, notes=[note, f"{_worst(crosstalk)} {how}."])
 
 
@@ -198,4 +198,4 @@ def _worst(crosstalk: Crosstalk) -> str:
             values = crosstalk.worst[rows][:, columns][off] if columns else np.zeros(0)
             if values.size and np.isfinite(values).all():
                 parts.append(f"{number(_FINE * float(values.max()), 3)} {unit}/{per}")
-    return f"Worst of all samples off the diagonal: {', '.join(parts)}." if parts else ""
+    return f"Largest off-diagonal value of all samples: {', '.join(parts)}." if parts else ""
