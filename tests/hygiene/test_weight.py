@@ -12,7 +12,7 @@ CEILINGS = {
     "spatial": 3_900,
     "parts": 38_100,
     "beams": 25_900,
-    "mechanism": 56_100,
+    "mechanism": 56_400,
     "cases": 1_200,
     "models": 97_900,
     "analysis": 70_900,
@@ -20,10 +20,10 @@ CEILINGS = {
     "solid": 76_700,
     "experiment": 98_800,
     "control": 154_000,
-    "studies": 68_400,
+    "studies": 69_700,
     "apps": 39_300,
     ".": 400,
-    "all": 822_300,
+    "all": 824_000,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
