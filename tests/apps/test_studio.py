@@ -17,7 +17,8 @@ import pytest
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from flexstage.analysis.assessment.judge import judge
+import flexstage as fs
+from flexstage.analysis.assessment.judge import bench_of, judge
 from flexstage.analysis.complete import felt
 from flexstage.analysis.dynamics.modes import modes
 from flexstage.analysis.dynamics.response import response
@@ -36,7 +37,7 @@ from flexstage.apps.studio.design.reading import design, read
 from flexstage.apps.studio.design.writing import write
 from flexstage.apps.studio.forms import key_figures
 from flexstage.apps.studio.helper import Urgency
-from flexstage.apps.studio.questions import slopes
+from flexstage.apps.studio.questions import Bearing, slopes
 from flexstage.apps.studio.results import all_figures, drawn, figures, reach
 from flexstage.apps.studio.server import LARGEST
 from flexstage.apps.studio.travel import travelled
@@ -401,6 +402,12 @@ async def test_what_no_page_shows_is_computed_when_it_is_looked_at(page, studio)
     await page.until(lambda page: page.told[say.Reach].revision == page.state.revision and page.told[say.Scene].data["motions"])
     assert page.counts[say.Figures] == figures
     assert len(page.told[say.Scene].data["motions"]) > 10
+
+
+@pytest.mark.parametrize(("name", "unit"), [("voice-coil-stage", "Pa/A"), ("parallelogram", "Pa/m")])
+def test_stress_is_in_the_units_of_its_inputs(name: str, unit: str) -> None:
+    stress = Bearing(bench_of(fs.case(name))).per_input
+    assert {each for row in stress.unit for each in row} == {unit}
 
 
 @on_page

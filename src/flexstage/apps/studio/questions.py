@@ -261,6 +261,7 @@ class Bearing:
         self.inputs = model.actuators
         outputs = tuple(f"{link}.{force}" for link in self.links for force in FORCES)
         self._gain = static_gain(model, outputs, self.inputs).values
+        self._units = tuple(model.inputs[index].unit for index in model.input_index(self.inputs))
         self._rest = dead_wrenches(known.mechanism, model, outputs) + self._gain @ self._bias(known)
         self.limits = tuple(self._limit(name) for name in self.links)
 
@@ -272,8 +273,7 @@ class Bearing:
     def per_input(self) -> Labelled:
         """Peak stress under each unit input individually, without bias and permanent loads."""
         values = np.array([self._peaks(column) for column in self._gain.T]).T.reshape(len(self.links), len(self.inputs))
-        units = tuple("Pa/m" for _ in self.inputs)
-        return Labelled(values, self.links, self.inputs, (units,) * len(self.links))
+        return Labelled(values, self.links, self.inputs, ratio_units(("Pa",) * len(self.links), self._units))
 
     def _bias(self, known: StageResults) -> Array:
         """Strokes (m,) at the bias, relative to zero voltage, at which hinges are relaxed."""
