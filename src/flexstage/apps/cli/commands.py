@@ -102,7 +102,7 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage solid stage.toml --scope unit --report units.html"),
     Command("verify", _PROVE, "Compare theory with finite elements.", f"{_SOLID}.solid:verify",
             "flexstage verify stage.toml --report verified.html"),
-    Command("calibrate", _PROVE, "Calibrate the 6x6 of hinges by finite elements.", f"{_SOLID}.solid:calibrate",
+    Command("calibrate", _PROVE, "Compute the 6x6 compliance of hinges by finite elements.", f"{_SOLID}.solid:calibrate",
             "flexstage calibrate stage.toml -o stage-calibrated.toml"),
     Command("rig", _TEST, "Test a stage on a virtual rig; write the record.", f"{_EXPERIMENT}.rig:rig",
             "flexstage rig stage.toml --seconds 10 --drive-rms 1um --drift 5nm -o record.uff"),

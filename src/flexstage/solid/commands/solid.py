@@ -214,7 +214,7 @@ def calibrate(
     output: Annotated[Path, output_option("STAGE.TOML", "Design file to write.")],
     options: SolidOptions,
 ) -> CommandResult:
-    """Calibrate the 6x6 of hinges by finite elements.
+    """Compute the 6x6 compliance of hinges by finite elements.
 
     Writes a design file in which hinges have the 6x6 from FEA, for a more accurate lumped model. Comments and the drawn hinges are kept.
     """
