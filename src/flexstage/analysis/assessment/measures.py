@@ -85,8 +85,8 @@ class MeasureKind:
     The first sentence of the docstring of `work` is the meaning. `pointed`: a point may be specified. `extreme`: `work` returns pieces
     (..., m), and the measure is the least or largest; an optimiser uses all pieces (every actuator, hinge, stack). `softening`: at worst, a
     permanent load with load factor n multiplies the measure by (1 - 1/n)^softening. `over_strokes`: the measure covers all strokes. `felt`:
-    it depends on lost motion or drift, which the permanent load changes. `analytic`: complex-step differentiation is valid. `along`: it is
-    evaluated along a path of the design, or at a point of the path.
+    it depends on lost motion, drift or deflection, which the permanent load changes. `analytic`: complex-step differentiation is valid.
+    `along`: it is evaluated along a path of the design, or at a point of the path.
     """
 
     form: str
@@ -251,7 +251,7 @@ def _compliance(bench: StageResults, asked: Measure) -> Array:
     return statics(bench.model, load_point=asked.point, read_point=asked.point).compliance.values
 
 
-@partial(MeasureKind, "deflection.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, softening=-1.0)
+@partial(MeasureKind, "deflection.<axis>", DISPLACEMENT, about=ROTATION, pointed=True, softening=-1.0, felt=True)
 def deflection(bench: StageResults, asked: Measure) -> Array:
     """Motion under gravity and specified forces, with strokes fixed."""
     causes = bench.deflection(asked.point).by_cause

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexstage.analysis.loaded.load_effect import load_effect
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.base.arguments import check_arguments
 from flexstage.base.labelled import Matrix
@@ -36,15 +37,22 @@ class Deflection(Result):
 def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> Deflection:
     """Compute the deflection of a platform point under gravity and specified forces, q = K^-1 f, with strokes fixed.
 
+    If the loads change a stiffness or frequency by 1 % or more, it is the motion from the unloaded to the loaded equilibrium, with large
+    displacements. The loads then act together, as one cause.
+
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
     >>> stage = double_triangle()
     >>> bool(deflection(stage, lumped(stage)).by_cause.at("platform.z", "own weight") < 0.0)
     True
     """
+    effect = None if model.designs else load_effect(mechanism)
+    rows = tuple(f"{point}.{name}" for name in COMPONENTS)
+    if effect is not None and (whole := effect.deflection(point)) is not None:
+        unit = tuple((name,) for name in TWIST_UNITS)
+        return Deflection(point, Matrix(whole[:, None], rows, ("all loads",), unit), f"{model.provenance}, large displacements")
     causes = dead_loads(mechanism, model)
     motion = displacement(model, stack(list(causes.values())))
-    rows = tuple(f"{point}.{name}" for name in COMPONENTS)
     values = model.seen(model.output_index(rows), motion)
     unit = tuple((name,) * len(causes) for name in TWIST_UNITS)
     return Deflection(point, Matrix(values, rows, tuple(causes), unit), model.provenance)

@@ -63,6 +63,14 @@ class LoadEffect:
         """Model linearised about the loaded state without inner coordinates: flexures follow their ends quasi-statically."""
         return None if self.model is None or self.state is None else linearise.linearise(self.state, inner=False)
 
+    def deflection(self, point: str) -> Array | None:
+        """Return the motion (6,) [m, rad] of a point from the unloaded to the loaded state; `None` if the change is not significant."""
+        if self.state is None:
+            return None
+        unloaded = equilibrium.equilibrium(self.state.model, weight=0.0, stated=0.0)
+        equilibrium.require_equilibrium(unloaded)
+        return self.state.twist(point) - unloaded.twist(point)
+
     @property
     def text(self) -> str:
         """Sentence on the effect; empty for stages without permanent load.

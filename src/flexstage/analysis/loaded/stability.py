@@ -101,7 +101,7 @@ class Stability:
                 f"that motion the loaded stage is {100.0 / dead:.2g} % less stiff than the nominal one, and its frequency "
                 f"{_lower(dead):.2g} % lower"
             )
-            advice = "Reduce results of the unloaded stage accordingly; stiffen the parts in compression, or put them in tension"
+            advice = "Results of the unloaded stage do not include this. Stiffen the parts in compression, or put them in tension"
             yield Finding("stage", what, advice)
         if worst < DOUBTFUL and worst < 0.99 * dead:
             what = f"load factor {worst:.3g} at the worst corner of the strokes"

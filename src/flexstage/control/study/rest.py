@@ -18,7 +18,6 @@ from flexstage.base.record import VIEW
 from flexstage.base.units.quantity import LENGTH
 from flexstage.control.compensation import StaticError, ideal_compensation, lost_motion_compensation, static_error
 from flexstage.control.study.resolve import ResolvedSetup
-from flexstage.mechanism.mechanism import PLATFORM
 from flexstage.models.theory import Model
 
 
@@ -68,10 +67,7 @@ def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
 
 def _load(given: ResolvedSetup) -> Array:
     """Platform deflection (6,) [m, rad] under permanent load; zero at an operating point, the reference of strokes there."""
-    if given.displaced:
-        return np.zeros(6)
-    sagged = None if given.loaded is None else given.loaded.state
-    return np.real(first_design(deflection(given.mechanism, given.model).total, 1)) if sagged is None else sagged.twist(PLATFORM)
+    return np.zeros(6) if given.displaced else np.real(first_design(deflection(given.mechanism, given.model).total, 1))
 
 
 def _other_gains(given: ResolvedSetup) -> tuple[LostMotion | None, Model]:
