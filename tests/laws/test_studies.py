@@ -132,6 +132,15 @@ def test_designs_that_fall_under_their_weight_have_no_values(tmp_path: Path, res
     assert "0.707 (mass 14 kg)" in loaded_findings(study)[0].what
 
 
+@pytest.mark.parametrize(("most", "words"), [(0.05, ""), (0.3, "Measures over a path"), (1.0, "Add to [limits]")])
+def test_a_study_warns_from_one_per_cent_of_stiffness(tmp_path: Path, most: float, words: str):
+    """The load factor is about 9.9 kg over the mass."""
+    mass = f'variables.mass = {{ address = "bodies.platform.mass", from = "1 g", to = "{most} kg", levels = 2 }}'
+    study = upright(tmp_path, 'responses.k = "stiffness.x"', mass)
+    assert words in " ".join(str(each) for each in loaded_findings(study))
+    assert bool(loaded_findings(study)) == bool(words)
+
+
 def test_variables_reach_the_numbers_they_name():
     study = loads_study(STUDY)
     changed = apply(study.design, study.variables, np.array([1.05, 0.9e-3]))

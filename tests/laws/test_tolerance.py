@@ -20,6 +20,7 @@ from flexstage.studies.tolerances.crosstalk import command, pose_measures, poses
 from flexstage.studies.tolerances.distribution import Distribution, Shape
 from flexstage.studies.tolerances.file import loads_tolerance
 from flexstage.studies.tolerances.run import Toleranced
+from flexstage.studies.tolerances.show.figures import distributions_figure
 from flexstage.studies.tolerances.slopes import Slopes, slopes
 from flexstage.studies.tolerances.summary import binomial, summary
 
@@ -66,6 +67,20 @@ def guide(tmp_path_factory):
 
     study.folder = folder
     return study
+
+
+def test_a_response_that_does_not_vary_has_no_deviation_and_a_figure(guide):
+    """Rounding errors are no distribution."""
+    study = guide('scatter.young = { address = "materials.steel.young", normal = "2 %", within = "5 %" }\nresponses.m = "mass"')
+    results, slope = told(study), slopes(study)
+    found = Toleranced(study, results, slope, summary(study, results, slope), None)
+    spread = found.summary.spread
+    column = spread.names.index("m")
+    assert spread.deviation[column] == 0.0
+    assert np.isnan(spread.by_sample[:, column]).all()
+    assert distributions_figure(found) is not None
+    assert [each.text(0.05) for each in study.variables] == ["+5 %"]
+    assert [each.nominal(study.design) for each in study.variables] == [0.0]
 
 
 def test_stiffness_has_the_moments_of_a_cube(guide):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexstage.analysis.linear_statics.lost_motion import LOADED
 from flexstage.analysis.loaded.load_effect import load_effect
 from flexstage.analysis.workspace.load import dead_loads
 from flexstage.base.arguments import check_arguments
@@ -37,7 +38,7 @@ class Deflection(Result):
 def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFORM) -> Deflection:
     """Compute the deflection of a platform point under gravity and specified forces, q = K^-1 f, with strokes fixed.
 
-    If the loads change a stiffness or frequency by 1 % or more, it is the motion from the unloaded to the loaded equilibrium, with large
+    If the model is that of the loaded stage (see `load_effect`), it is the motion from the unloaded to the loaded equilibrium, with large
     displacements. The loads then act together, as one cause.
 
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -46,7 +47,7 @@ def deflection(mechanism: Mechanism, model: LinearModel, *, point: str = PLATFOR
     >>> bool(deflection(stage, lumped(stage)).by_cause.at("platform.z", "own weight") < 0.0)
     True
     """
-    effect = None if model.designs else load_effect(mechanism)
+    effect = load_effect(mechanism) if LOADED in model.stiffness and not model.designs else None
     rows = tuple(f"{point}.{name}" for name in COMPONENTS)
     if effect is not None and (whole := effect.deflection(point)) is not None:
         unit = tuple((name,) for name in TWIST_UNITS)

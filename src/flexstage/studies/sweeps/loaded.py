@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexstage.analysis.loaded.load_effect import FELT
 from flexstage.analysis.loaded.stability import DOUBTFUL, stability
 from flexstage.analysis.loaded.standing import load_factors
 from flexstage.base.finding import DesignError, Finding, require
@@ -56,12 +57,17 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
     ()
     """
     least, values = _least(study)
-    if least >= DOUBTFUL:
+    if least >= 1.0 / FELT:
         return ()
     where = ", ".join(f"{each.name} {each.text(float(value))}" for each, value in zip(study.variables, values, strict=True))
     effect = f"computed stiffness is up to {100.0 / least:.2g} % too high" if least >= 1.0 else "designs below 1 are unstable and fail"
     what = f"weight, payloads and forces reduce stiffness: smallest load factor {least:.3g} ({where}); {effect}"
-    return (Finding("variables", what, 'Add to [limits] e.g. buckling = "at least 20"'),)
+    advice = (
+        'Add to [limits] e.g. buckling = "at least 20"'
+        if least < DOUBTFUL
+        else "Measures over a path include them, e.g. stiffness.x over NAME"
+    )
+    return (Finding("variables", what, advice),)
 
 
 def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:

@@ -13,6 +13,7 @@ from flexstage.analysis.assessment.sensitivities import override_level
 from flexstage.base.number import Array
 from flexstage.base.record import INNER, VIEW, Called
 from flexstage.base.units.quantity import Quantity
+from flexstage.base.units.unit import show
 from flexstage.mechanism.addresses.address import get, set_value
 from flexstage.mechanism.mechanism import Mechanism
 from flexstage.studies.sweeps.numbers import Numbers
@@ -74,6 +75,14 @@ class Deviation(Variable):
     def at(self, shares: Array) -> Array:
         """Compute deviations at given probabilities `shares` (n,)."""
         return self.distribution.quantile(shares)
+
+    def text(self, value: float) -> str:
+        """Format a deviation with its unit, or in percent of the design's value."""
+        return f"{100.0 * value:+.4g} %" if self.relative else show(value, self.quantity, digits=6)
+
+    def nominal(self, mechanism: Mechanism) -> float:  # noqa: ARG002 - of every variable
+        """Return the deviation of the nominal design, 0."""
+        return 0.0
 
     @property
     def deviation(self) -> float:

@@ -24,6 +24,8 @@ PERCENTILES = (1, 5, 50, 95, 99)
 CONFIDENCE = 0.95
 _ROUGH = 0.1
 _ERRORS = 4.0
+ROUNDING = 1e-12
+"""Relative range of values that counts as rounding errors of one value."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,11 +220,12 @@ def _spread(study: Tolerance, results: Results, slope: Slopes, values: Array) ->
     size = np.array([each.deviation for each in study.deviations])
     parts = (slope.gradient * size) ** 2
     linear = np.sqrt(np.sum(parts, axis=1))
-    deviation = np.std(values, axis=0, ddof=1) if len(values) > 1 else np.full(len(linear), np.nan)
+    constant = np.ptp(values, axis=0) <= ROUNDING * np.max(np.abs(values), axis=0) if len(values) else np.zeros(len(linear), dtype=bool)
+    deviation = np.where(constant, 0.0, np.std(values, axis=0, ddof=1)) if len(values) > 1 else np.full(len(linear), np.nan)
     allowed = max(_ROUGH, _ERRORS / np.sqrt(2.0 * max(len(values), 1)))
     owners = np.array(study.owners)
     by_slope = np.stack([np.sum(parts[:, owners == number], axis=1) for number in range(len(study.scatters))])
-    alone = squares_alone(study, results, centre=None)
+    alone = np.where(constant, 0.0, squares_alone(study, results, centre=None))
     percentiles = np.percentile(values, PERCENTILES, axis=0) if len(values) else np.full((len(PERCENTILES), len(linear)), np.nan)
     return Spread(
         names=tuple(study.columns),

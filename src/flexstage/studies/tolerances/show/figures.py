@@ -11,6 +11,7 @@ from flexstage.base.number import Array
 from flexstage.show.display import display_unit_of, number
 from flexstage.show.figures.style import FAIL, FULL, INK, SERIES, canvas, style_context
 from flexstage.studies.tolerances.run import Toleranced
+from flexstage.studies.tolerances.summary import ROUNDING
 
 _ACROSS = 3
 _BINS = 40
@@ -53,7 +54,10 @@ def _distribution(ax: Any, found: Toleranced, name: str) -> None:
     form = display_unit_of(found.study.measures[name].quantity.si, max(float(np.max(np.abs(values), initial=0.0)), abs(nominal)))
     limits = [line for own, line in found.study.lines if own == name]
     count = int(np.clip(np.sqrt(len(values)), _FEWEST, _BINS))
-    _, edges, bars = ax.hist(values * form.factor, bins=count, color=SERIES[0], linewidth=0.0)
+    low, high = float(np.min(values, initial=nominal)), float(np.max(values, initial=nominal))
+    aside = 1e-3 * abs(nominal) or 1.0 if high - low <= ROUNDING * abs(nominal) else 0.0  # equal values have no bins
+    drawn = ((low - aside) * form.factor, (high + aside) * form.factor)
+    _, edges, bars = ax.hist(values * form.factor, bins=count, range=drawn, color=SERIES[0], linewidth=0.0)
     for left, right, bar in zip(edges[:-1], edges[1:], bars, strict=True):
         if any(_misses(line, 0.5 * (left + right) / form.factor) for line in limits):
             bar.set_facecolor(FAIL)
