@@ -181,7 +181,9 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
         kinematics=kinematics,
         linear=linear,
         statics=stiff,
-        deflection=attempt.of_ground("deflection", None if hinged is None else weighed, _UNLUMPED, lambda known: deflection(mechanism, known)),
+        deflection=attempt.of_ground(
+            "deflection", None if hinged is None else weighed, _UNLUMPED, lambda known: deflection(mechanism, known)
+        ),
         buckling=attempt.of_ground("buckling", hinged, _UNLUMPED, lambda known: _buckling(mechanism, known, reach)),
         lost_motion=lost,
         modes=attempt.of_ground("modes", weighed, _RIGID, lambda known: platform_modes(mechanism, known)),

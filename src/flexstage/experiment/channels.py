@@ -20,6 +20,7 @@ _SCALED, _ALL_SCALED = 1.5, 3.0
 _LEAST = 0.02
 _BOTH_INVERTED = "look inverted relative to the other outputs", "with their signs changed"
 _ROUNDS = 5
+_ROUNDING = 1e-9
 _FEWEST = 3
 _MOST_OUTPUTS, _MOST_TOGETHER = 24, 8
 _COMPLETE = 0.95
@@ -262,6 +263,14 @@ def _nearest_median(ratios: Array) -> float:
 
 
 def normalise(residues: Residues) -> Residues:
-    """Divide the gains of model and test in each group by the norm of the model's gains, so that all modes have equal weight."""
-    size = np.maximum(np.linalg.norm(residues.theory, axis=(1, 2)), 1e-300)[:, None, None]
+    """Divide the gains of model and test in each group by the norm of the model's gains, so that all modes have equal weight.
+
+    Groups without gains in the model, apart from rounding errors, have no weight.
+
+    >>> theory, measured = np.array([[[2.0]], [[0.0]]]), np.array([[[2.2]], [[1.0]]])
+    >>> normalise(Residues(("S",), ("B",), theory, measured, *np.ones((2, 1), dtype=bool))).measured.ravel().tolist()
+    [1.1, 0.0]
+    """
+    norm = np.linalg.norm(residues.theory, axis=(1, 2))[:, None, None]
+    size = np.where(norm > _ROUNDING * np.max(norm, initial=0.0), norm, np.inf)
     return replace(residues, theory=residues.theory / size, measured=residues.measured / size)

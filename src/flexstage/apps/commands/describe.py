@@ -177,5 +177,8 @@ def catalogue(
     if json is not None:
         body = {"format": FORMAT, "kind": "catalogue", "version": __version__, **catalogue_body(known)}
         write(json, as_text(body) + "\n", "--json")
-    if json != STDOUT:
-        show(catalogue_tables(known))
+    tables = list(catalogue_tables(known))
+    if json != STDOUT and tables:
+        show(tables)
+    elif json != STDOUT:
+        typer.echo(f'No shipped {section}. A design file uses a catalogue of your own with catalogue = "lab.toml".')

@@ -314,9 +314,14 @@ def _amount(number: str, unit: str) -> Amount:
     return Amount(value, dimension)
 
 
+_POWER = re.compile(r"([A-Za-z]+)([2-9])")
+
+
 def _name_advice(name: str, scope: Scope) -> str:
     if is_unit(name):
         return f"{name} is a unit: write 1 {name}"
     if name in FUNCTIONS:
         return f"{name} is a function: {name}(...)"
+    if (power := _POWER.fullmatch(name)) is not None and is_unit(power[1]):
+        return f"Powers of units have the sign ^: {power[1]}^{power[2]}"
     return suggest_nearest(name, scope) if scope else f'Define it: [numbers] {name} = "26 mm"'

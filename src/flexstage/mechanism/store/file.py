@@ -108,4 +108,6 @@ def _not_toml(where: str, message: str) -> DesignError:
     at = ":".join([where, *re.findall(r"\d+", place)])
     if reason.startswith(("Cannot overwrite", "Cannot declare", "Cannot mutate", "Duplicate")):
         return refuse(at, f"duplicate name ({reason})", "Rename or remove one of the two")
-    return refuse(at, f"not TOML: {reason}", "Correct the line; put strings in quotes, and tables on one line in braces")
+    return refuse(
+        at, f"not TOML: {reason}", "Correct the line; put strings and values with units in quotes, and tables on one line in braces"
+    )
