@@ -133,6 +133,10 @@ def test_version_is_an_option_too(flexstage: Command) -> None:
     assert flexstage("--version").code == 0
 
 
+def test_a_section_of_the_catalogue_without_entries_says_so(flexstage: Command) -> None:
+    assert flexstage("catalogue", "coils").out.startswith("No shipped coils. A design file uses a catalogue of your own")
+
+
 def test_unknown_commands_suggest(flexstage: Command) -> None:
     ended = flexstage("analse")
     assert ended.code == 2

@@ -453,6 +453,7 @@ NUMBERS = TEXT.replace('length = "30 mm"         # as drawn', 'length = "long"')
     ("old", "new", "words"),
     [
         ('"long"', '"lnog"', ["parts.wire.length", 'unknown number "lnog"', "long"]),
+        ('"long"', '"2*arm*mm2"', ["parts.wire.length", 'unknown number "mm2"', "have the sign ^: mm^2"]),
         ('"long"', '"long + 3 N"', ["parts.wire.length", '"long + 3 N"', "a length and a force"]),
         ('"long"', '"long*arm"', ["parts.wire.length", "a quantity in m^2", "must be a length"]),
         ('"long"', '"sin(arm)*long"', ["parts.wire.length", '"sin(arm)"', "an angle", "a length"]),
