@@ -82,7 +82,7 @@ class LoadEffect:
         if self.model is not None:
             return (
                 f"{cause} change {self.figure} by {100.0 * self.change:+.3g} %: stiffness, modes, responses, lost motion, drift, "
-                "error budget, loops and their requirements are for the loaded stage, at large displacements; other results are nominal."
+                "error budget, deflection, loops and their requirements are for the loaded stage, at large displacements; other results are nominal."
             )
         if self.why and not self.change:
             return f"The effect of {self.cause} on the stage is unknown, as {self.why}; results are for the unloaded stage."
