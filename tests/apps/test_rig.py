@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -133,3 +134,55 @@ def test_an_interrupted_test_leaves_nothing(flexstage: Command, tmp_path: Path, 
     assert ended.err.startswith("Interrupted. Nothing was written.")
     assert (tmp_path / name).read_text() == "old"
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([name, "stage.toml"])
+
+
+UPRIGHT = """
+format = "flexstage 1"
+name = "upright"
+damping = { law = "modal", ratio = 0.01 }
+max_mode_frequency = "100 Hz"
+materials.steel = { young = "195 GPa", poisson = 0.3, density = "7900 kg/m^3", yield_stress = "1200 MPa" }
+parts.leaf = { kind = "leaf", material = "steel", length = "60 mm", thickness = "0.4 mm", width = "12 mm" }
+bodies.platform.mass = "400 g"
+bodies.platform.centre = ["0 mm", "0 mm", "70 mm"]
+bodies.platform.inertia = { xx = "1e-4 kg m^2", yy = "1e-4 kg m^2", zz = "1e-4 kg m^2" }
+[parts.coil]
+kind = "voice_coil"
+force_constant = "4 N/A"
+peak_current = "2 A"
+continuous_current = "0.5 A"
+resistance = "6 ohm"
+mass = "1 g"
+magnet_mass = "40 g"
+travel = "2 mm"
+[links]
+left = { joins = ["ground", "platform"], part = "leaf", at = ["-25 mm", "0 mm", "30 mm"], along = "z", bends = "y" }
+right = { joins = ["ground", "platform"], part = "leaf", at = ["25 mm", "0 mm", "30 mm"], along = "z", bends = "y" }
+drive = { joins = ["ground", "platform"], part = "coil", at = ["-50 mm", "0 mm", "67 mm"], along = "x" }
+[sensors.scale]
+kind = "encoder"
+range = "10 mm"
+period = "20 um"
+steps = 4000
+[gauges.S]
+gauge = "scale"
+body = "platform"
+pose = { at = ["0 mm", "-15 mm", "67 mm"], along = "x" }
+"""
+
+
+def test_a_significant_load_is_in_the_record_and_in_theory(flexstage: Command, tmp_path: Path) -> None:
+    """The weight lowers the first frequency by 3 %: record, comparison and `modes` have the lower one."""
+    (tmp_path / "upright.toml").write_text(UPRIGHT)
+    stage = fs.load(tmp_path / "upright.toml")
+    loaded = fs.analyse(stage).modes.frequencies[0]
+    assert loaded < 0.98 * fs.modes(fs.lumped(stage)).frequencies[0]
+    ended = flexstage("rig", "upright.toml", "-o", "r.h5", "--seconds", "120", "--rate", "400 Hz")
+    assert "are for the loaded stage" in ended.out
+    found = flexstage("compare", "upright.toml", "--record", "r.h5", "--json", "c.json")
+    assert "are for the loaded stage" in found.out
+    mode = json.loads((tmp_path / "c.json").read_text())["modes"][0]
+    assert mode["theory_hz"] == pytest.approx(loaded, rel=1e-9)
+    assert mode["experiment"]["frequency_hz"] == pytest.approx(loaded, rel=1e-3)
+    ended = flexstage("update", "upright.toml", "--parameters", "steel.young", "--record", "r.h5", "-o", "u.toml")
+    assert "the update uses the unloaded stage, but weight, payloads and forces change" in ended.err

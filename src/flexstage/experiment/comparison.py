@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 import scipy
 
-from flexstage.analysis.complete import platform_modes, read
+from flexstage.analysis.complete import felt, platform_modes
 from flexstage.analysis.dynamics.modes import Modes, clusters
 from flexstage.analysis.dynamics.pairing import RELIABLE, Moving, Pair, gyration, pair_modes
 from flexstage.analysis.dynamics.solid_modes import FeaModes
@@ -189,7 +189,8 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
     real part of measured shapes. Modes of the model within 1 % in frequency form one subspace. Measured modes are assigned to modes of the
     model so that the total MAC of all pairs is largest. Frequency differences have a small weight, which decides between shapes that the
     sensors cannot distinguish. Paired frequencies differ by less than a factor of 1.6; the MAC of a pair is at least 0.5. Measured modes
-    may also be paired with local modes of the model. Raises `DesignError` without a common output.
+    may also be paired with local modes of the model. Theory is the loaded stage if the permanent load is significant (see `load_effect`).
+    Raises `DesignError` without a common output.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.experiment.example import one_mode_record
@@ -199,7 +200,7 @@ def compare(mechanism: Mechanism, experiment: Identified, fea: FeaModes | None =
         ...
     flexstage.base.finding.DesignError: y: unknown output; ...
     """
-    linear = read(mechanism, model)
+    linear = felt(mechanism, model)
     require([] if linear is not None else [Finding("model", "rigid bodies have no modes", "Use the model lumped or mapped")])
     assert linear is not None  # noqa: S101  refused above
     theory = platform_modes(mechanism, linear)
@@ -359,11 +360,11 @@ def _residues(
     rows = [[channel.name for channel in experiment.outputs].index(name) for name in sensors]
     seen = np.array([si_factor(experiment.outputs[row]) for row in rows])[:, None] * experiment.shapes[rows]
     seen = seen if doubt is None else doubt.put_right(seen)
-    felt = (
+    drives = (
         4.0 * np.pi * experiment.frequencies[:, None] * 1j * experiment.participation[:, columns] / np.where(np.isfinite(sizes), sizes, 1.0)
     )
     own = [(sense @ shapes[:, modes]) @ (shapes[:, modes].T @ drive) for modes, _ in matched]
-    found = [np.real(seen[:, modes] @ felt[modes]) for _, modes in matched]
+    found = [np.real(seen[:, modes] @ drives[modes]) for _, modes in matched]
     direct = np.isfinite(sizes) & [not is_voltage(experiment.inputs[index].unit) for index in columns]
     return normalise(Residues(tuple(sensors), inputs, np.reshape(own, shape), np.reshape(found, shape), np.isfinite(sizes), direct))
 

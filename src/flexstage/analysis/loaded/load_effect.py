@@ -80,9 +80,10 @@ class LoadEffect:
         """
         cause, size = f"{self.cause[0].upper()}{self.cause[1:]}", f"{100.0 * abs(self.change):.2g} %"
         if self.model is not None:
+            what = f"{cause} change {self.figure} by {100.0 * self.change:+.3g} %"
             return (
-                f"{cause} change {self.figure} by {100.0 * self.change:+.3g} %: stiffness, modes, responses, lost motion, drift, "
-                "error budget, deflection, loops and their requirements are for the loaded stage, at large displacements; other results are nominal."
+                f"{what}: stiffness, deflection, modes, responses, lost motion, drift, error budget, loops and their requirements "
+                "are for the loaded stage, at large displacements; other results are nominal."
             )
         if self.why and not self.change:
             return f"The effect of {self.cause} on the stage is unknown, as {self.why}; results are for the unloaded stage."

@@ -15,7 +15,7 @@ from flexstage.experiment.show.report import compare_report
 from flexstage.experiment.show.sections import compare_tables
 from flexstage.models.theory import Model
 from flexstage.show.command.answer import CommandResult, command
-from flexstage.show.command.design import Lumped, elastic_model
+from flexstage.show.command.design import Lumped, elastic_model, load_notes
 from flexstage.show.command.models import Models
 from flexstage.show.command.options import FEA, ElasticModelName
 from flexstage.show.command.terminal import print_warning
@@ -39,7 +39,7 @@ def compare(
 
     FEA results are included if they are in the cache, or with --fea.
     """
-    linear = elastic_model(mechanism, model)
+    linear = elastic_model(mechanism, model, loaded=True)
     highest = platform_modes(mechanism, linear).highest
     seen = identify_records(record, replace(texts, excitation=excitation), linear, highest)
     models: Models = context.obj
@@ -50,7 +50,7 @@ def compare(
     return CommandResult(
         mechanism,
         lambda: found,
-        lambda: compare_tables(found)[:-1],
+        lambda: (*load_notes(mechanism, model), *compare_tables(found)[:-1]),
         lambda: compare_report(found, seen, mechanism, shapes_on(mechanism, seen)),
         model=model,
     )

@@ -18,7 +18,7 @@ from flexstage.experiment.virtual_rig.tables import rig_table
 from flexstage.models.theory import Model
 from flexstage.parts.amplifier import Amplifier
 from flexstage.show.command.answer import list_caveats, show
-from flexstage.show.command.design import elastic_model, open_design, with_elastic_bodies
+from flexstage.show.command.design import elastic_model, load_notes, open_design, with_elastic_bodies
 from flexstage.show.command.options import (
     AmplifierValues,
     Changes,
@@ -105,11 +105,11 @@ def rig(  # noqa: PLR0913  a test has that many knobs
         delay=values.value("--delay", delay, TIME) or 0.0,
     )
     require(values.findings)
-    linear = elastic_model(mechanism, model)
+    linear = elastic_model(mechanism, model, loaded=True)
     with progress_bar() as shown:
         test = simulate_test(mechanism, linear, setup)
         write(output, report_reading(as_record(test), lambda stop: shown.share("testing", stop / test.length)))
-    show((*list_caveats("rig", mechanism), rig_table(test)))
+    show((*load_notes(mechanism, model), *list_caveats("rig", mechanism), rig_table(test)))
     announce(f"Wrote {output}")
 
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 import scipy
 
+from flexstage.analysis.loaded.load_effect import load_effect
 from flexstage.base.arguments import check_arguments
 from flexstage.base.finding import Finding, refuse, require
 from flexstage.base.labelled import Matrix
@@ -407,7 +408,12 @@ def _as_result(data: _Data, found: Fitted[Design], compared: Compared, steps: in
 
 def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterator[str]:
     """Warnings for unreliable results, in addition to those of the comparison."""
-    freed, errors = data.freed, data.known
+    freed, errors, loaded = data.freed, data.known, load_effect(found.state.mechanism)
+    if loaded is not None and loaded.model is not None:
+        yield (
+            f"the update uses the unloaded stage, but {loaded.cause} change {loaded.figure} by {100.0 * loaded.change:+.3g} %: the updated "
+            "values include this change."
+        )
     if scipy.special.chdtrc(len(found.residuals), found.cost) < _IMPROBABLE:
         yield (
             f"chi-square is {found.cost:.3g} with {len(found.residuals)} data: model and test differ by more than the assumed "

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated, TypeAlias
 
 from flexstage.analysis.complete import felt, read
+from flexstage.analysis.loaded.load_effect import load_effect
 from flexstage.base.finding import DesignError, Finding, refuse, require, suggest_nearest
 from flexstage.base.units.expression import parse_expression
 from flexstage.mechanism.addresses.address import assign
@@ -110,6 +111,12 @@ def elastic_model(mechanism: Mechanism, model: Model, *, loaded: bool = False) -
     if linear is None:
         raise refuse("--model ideal", "rigid bodies have no stiffness, no lost motion and no modes", "Use --model lumped or mapped")
     return linear
+
+
+def load_notes(mechanism: Mechanism, model: Model) -> tuple[str, ...]:
+    """Return the sentence on the permanent load if it is significant for the lumped model; otherwise nothing."""
+    effect = load_effect(mechanism) if model is Model.LUMPED else None
+    return () if effect is None or effect.model is None else (effect.text,)
 
 
 def known_point(model: LinearModel, name: str, option: str) -> str:
