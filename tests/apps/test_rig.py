@@ -177,7 +177,7 @@ def test_a_significant_load_is_in_the_record_and_in_theory(flexstage: Command, t
     stage = fs.load(tmp_path / "upright.toml")
     loaded = fs.analyse(stage).modes.frequencies[0]
     assert loaded < 0.98 * fs.modes(fs.lumped(stage)).frequencies[0]
-    ended = flexstage("rig", "upright.toml", "-o", "r.h5", "--seconds", "120", "--rate", "400 Hz")
+    ended = flexstage("rig", "upright.toml", "-o", "r.h5", "--seconds", "60", "--rate", "400 Hz")
     assert "are for the loaded stage" in ended.out
     found = flexstage("compare", "upright.toml", "--record", "r.h5", "--json", "c.json")
     assert "are for the loaded stage" in found.out
