@@ -342,7 +342,7 @@ def _require_paths(graph: _Graph, idle_strokes: Array) -> None:
     require(
         Finding(
             link,
-            f"actuator {name} can move with the platform at rest: its stroke has no path to the platform",
+            f"actuator {name} can move with the platform at rest: the links do not transmit its stroke to the platform",
             "Join its unit to the platform, or lock the degree of freedom along which it slips",
         )
         for (name, link), slips in zip(graph.assembly.strokes.items(), moving, strict=True)

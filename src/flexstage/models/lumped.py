@@ -1,4 +1,4 @@
-"""Lumped model: rigid bodies with six degrees of freedom, joined by 6x6 links.
+"""Lumped model: rigid bodies with six degrees of freedom, joined by links with 6x6 stiffness.
 
 The stiffness is K = sum H^T k H, with H the relative twist at each link per coordinate. Bodies and parts contribute to the mass M. A stroke
 is an imposed deformation of its actuator. A force is a pair of opposite wrenches, H^T w, on the two bodies of its actuator.
@@ -102,7 +102,7 @@ class _Stage:
 
 @check_arguments
 def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
-    """Build the linear model of a stage: rigid bodies on 6x6 links.
+    """Build the linear model of a stage: rigid bodies joined by links with 6x6 stiffness.
 
     Valid for small displacements about the nominal position and for frequencies below the first resonance of the parts.
 
@@ -114,7 +114,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 
     - for a mechanism (K singular), naming the free bodies;
     - for a stroke that locked DOFs block;
-    - for a nominal position that negative stiffnesses make unstable. A later design of a batch that is unstable is NaN.
+    - for a nominal position that negative stiffnesses make unstable. If only later designs of a batch are unstable, their stiffness is NaN.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lumped(double_triangle()).coordinates)

@@ -57,7 +57,7 @@ def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int 
     With ground displacement as input, the states are eta + Phi^T M_b u, so that no input is differentiated.
 
     Modal damping is exact. Rayleigh damping is exact, except that the static term is undamped. Structural damping has no time-domain form;
-    each mode has its equivalent ratio, as `note` states.
+    each mode has its equivalent damping ratio, as `note` says.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.linear.port import ports

@@ -125,7 +125,7 @@ def failure_reason(status: int, share: float) -> str:
             f"at {share:.4g} of the loads the stage snaps or buckles: the equilibrium beyond is not the continuation of the unloaded stage"
         )
     if status == Status.NOT_FOLLOWED:
-        return f"equilibrium was followed to {share:.3g} of the path from the unloaded stage: a state beyond is not its continuation"
+        return f"the path of equilibria from the unloaded stage ends at {share:.3g} of the loads: states beyond are not on it"
     what = "the stiffness is singular" if status == Status.SINGULAR else "Newton's method does not converge"
     progress = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the load path"
     return f"{what} under the whole load; {progress}. The path may end there: see fs.continuation (by arc length) and fs.critical_load"
@@ -284,7 +284,7 @@ def corrected(
     """Correct a state for a slightly different model by two Newton steps; the result is correct to first order in the difference.
 
     One step is not sufficient, because the stiffness is the derivative of the residual only to 1e-6. The loads and fixed coordinates must
-    be those of `start`. Cases without a state in `start` have none in the result.
+    be the same as for `start`. Cases without a state in `start` remain without a state.
     """
     request = _request(model, loads or {}, hold or {}, weight, stated)
     pose = _first(model, start, request.hold, len(request.loads.inputs))

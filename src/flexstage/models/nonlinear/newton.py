@@ -116,7 +116,7 @@ def _by_steps(
 
 
 def merge(solution: EquilibriumSolution, cases: Array, other: EquilibriumSolution) -> EquilibriumSolution:
-    """Return a result in which some cases are replaced by those of another result."""
+    """Return a result in which some cases are replaced by the cases of another result."""
     return EquilibriumSolution(
         solution.pose.put(cases, other.pose), *(put(getattr(solution, name), cases, getattr(other, name)) for name in RESULT_FIELDS)
     )

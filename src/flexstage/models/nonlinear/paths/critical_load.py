@@ -30,7 +30,7 @@ _EQUAL = 1e-3
 
 
 class NoCriticalLoadError(DesignError):
-    """Error: no critical load up to the maximum load factor."""
+    """Error: there is no critical load up to the maximum load factor."""
 
 
 class Kind(Enum):
@@ -88,9 +88,9 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     """Compute the critical load: the factor on `load` at which equilibrium becomes unstable, with all other loads constant.
 
     The other loads are `rest`, weight and specified forces. Loads are named as in `equilibrium`. Coordinates in `hold` can be part of
-    `load`: their values then grow. The name `weight` in `load` is the weight of the stage; it requires the argument `weight` = 0. The name
-    `stated forces` is the forces and preloads of the description; it requires `stated` = 0. Other coordinates in `hold` keep their values.
-    For stability, coordinates that are not in `locked` (absent: all are) are free under their reactions.
+    `load`: their values then grow. The name `weight` in `load` stands for the weight of the stage; it requires the argument `weight` = 0.
+    The name `stated forces` stands for the forces and preloads of the description; it requires `stated` = 0. Other coordinates in `hold`
+    keep their values. For stability, coordinates that are not in `locked` (default: all) are free under their reactions.
 
     The path starts without load, or from the `known` state under the whole load. Arc-length steps resolve the path's curvature and the
     change of the lowest stiffness. The result is the first limit point or bifurcation, where the lowest stiffness is zero (relative
