@@ -50,7 +50,7 @@ else:
 KEPT = 48
 """Number of cached benches of single designs of a batch; each uses about a megabyte."""
 _TOGETHER = 3
-"""Largest number of required strokes for which all corners of their box are computed; with more, only the end of each is."""
+"""Largest number of required strokes for which all corners of their box are computed; with more, only the end of each stroke."""
 
 
 class StageResults:
@@ -165,7 +165,7 @@ class StageResults:
 
     @cached_property
     def felt(self) -> StageResults:
-        """Bench of the loaded stage (stiffness, modes, lost motion, drift) if its permanent load is significant; else this bench."""
+        """Bench of the loaded stage (stiffness, modes, lost motion, drift) if the permanent load is significant; else this bench."""
         if self.loaded is None or self.loaded.model is None:
             return self
         other = self.with_model(self.loaded.model)
@@ -195,7 +195,7 @@ class StageResults:
 
     @cached_property
     def modes(self) -> Modes:
-        """Modes, including those of the platform."""
+        """Modes, including the platform modes."""
         return modes(self.model)
 
     @cached_property
@@ -222,7 +222,7 @@ class StageResults:
         return self.force_workspace(PLATFORM).per_motion if self.forced else self.lost.correction
 
     def corners(self) -> tuple[tuple[str, ...], Array]:
-        """Axes and corners (c, k) of the box of required strokes; for more than three axes, only the end of each stroke."""
+        """Axes and corners (c, k) of the box of required strokes; for more than three axes, only the end of each single stroke."""
         box = self._driven_box()
         half = np.array(list(box.values()))
         alone = np.concatenate([np.diag(half), -np.diag(half)])

@@ -77,7 +77,7 @@ class Caveats:
 
 @SESSION.keep(8)
 def caveats(mechanism: Mechanism) -> Caveats:
-    """Return warnings and defaults of a description. Cached for the last descriptions.
+    """Return warnings and defaults of a description; results of the last descriptions are cached.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [each.where for each in caveats(double_triangle()).warnings]

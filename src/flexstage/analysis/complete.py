@@ -140,7 +140,7 @@ def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
 @check_arguments
 @one_thread
 def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = True) -> Analysis:
-    """Return all analyses of one model; without `whole`, only those of the short form, in half the time.
+    """Return all analyses of one model; without `whole`, only the analyses of the short form, in half the time.
 
     The short form omits responses, isolated units and most of the workspace. Impossible results (lost motion of an under-actuated stage)
     are `None`, with the reason in `missing`. Raises `DesignError` if the model is refused.

@@ -46,9 +46,9 @@ def budget(
 ) -> ErrorBudget:
     """Compute the error budget at a platform point for a box of displacements (half widths [m, rad]) and a temperature change [K].
 
-    Lost motion and drift (strokes fixed) are computed by the lumped model; if the permanent load is significant, for the loaded stage.
-    Drift includes the ground material of the description (`ground_of`), unless `drifted` is specified. A temperature change of `None` means
-    1 K if drift is known. If expansion coefficients are missing, a change of 0 or `None` omits drift, as noted in `reasons`.
+    Lost motion and drift (strokes fixed) are computed by the lumped model, for the loaded stage if the permanent load is significant. Drift
+    includes the ground material of the description (`ground_of`), unless `drifted` is specified. A temperature change of `None` means 1 K
+    if drift is known. If expansion coefficients are missing, a change of 0 or `None` omits drift, as noted in `reasons`.
 
     All errors are largest absolute values:
 

@@ -108,7 +108,7 @@ class Modes(Result):
 
     @property
     def listed(self) -> Annotated[int, VIEW]:
-        """Number of listed modes: those below the limit, at least 24, and up to the last platform mode or local mode near it."""
+        """Number of listed modes: all below the limit, at least 24, and all up to the last platform mode or local mode near one."""
         below = int(np.sum(first_design(self.frequencies, 1) < self.limit)) if np.isfinite(self.limit) else 0
         last = max((*self.local, *self.platform), default=-1) + 1
         return min(len(self.names), max(below, last, _LISTED))
@@ -139,7 +139,7 @@ class Modes(Result):
 
     @property
     def highest(self) -> float:
-        """Highest platform frequency of the first design below the limit; without one below, its lowest [Hz]."""
+        """Highest platform frequency below the limit, of the first design [Hz]; without one below the limit, the lowest."""
         frequencies = first_design(self.platform_frequencies, 1)
         return float(max(frequencies[frequencies < self.limit], default=frequencies[0]))
 

@@ -104,7 +104,7 @@ class Stability:
             advice = "Results of the unloaded stage do not include this. Stiffen the parts in compression, or put them in tension"
             yield Finding("stage", what, advice)
         if worst < DOUBTFUL and worst < 0.99 * dead:
-            what = f"load factor {worst:.3g} at the worst corner of the strokes"
+            what = f"load factor {worst:.3g} at the worst corner of the stroke range"
             if worst >= 1.0:
                 what += (
                     f": there the stage is up to {100.0 / worst:.2g} % less stiff than printed, and a frequency "
@@ -196,7 +196,7 @@ def is_large(mechanism: Mechanism, model: LinearModel) -> bool:
 
 
 def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
-    """Return the lumped model with the `geometric` stiffness of its permanent load in the nominal position. Only one design.
+    """Return the lumped model with the `geometric` stiffness of its permanent load in the nominal position. Only for a single design.
 
     Internal bending of parts is massless.
 

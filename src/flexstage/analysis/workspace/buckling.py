@@ -1,4 +1,4 @@
-"""Buckling of the whole stage, and Euler load of every slender part, at the worst corner of the strokes."""
+"""Buckling of the whole stage, and Euler load of every slender part, at the worst corner of the stroke range."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stress at every hinge at the worst corner of the strokes, compared with yield stress, fatigue limit or allowable stress."""
+"""Stress at every hinge at the worst corner of the stroke range, compared with yield stress, fatigue limit or allowable stress."""
 
 from __future__ import annotations
 
@@ -119,8 +119,8 @@ def hinge_stress(
     - `stroke_limits(mechanism).from_zero` for a stage assembled without voltage, whose hinges are also bent by the bias;
     - `stroke_limits(mechanism)` for a stage that is stress-free at its bias.
 
-    With a `command`, `limits` are those of its coordinates. `condition` describes the limits in words. The stress is by linear beam theory,
-    with the maxima of a section added (see `beams.stress`).
+    With a `command`, `limits` are the limits of its coordinates. `condition` describes the limits in words. The stress is by linear beam
+    theory, with the maxima of a section added (see `beams.stress`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
