@@ -1,4 +1,4 @@
-"""Parts with a specified 6x6 matrix (given, measured or computed by FEA), and ideal joints."""
+"""Parts with a specified 6x6 compliance matrix (given, measured or computed by FEA), and ideal joints."""
 
 from __future__ import annotations
 

@@ -35,9 +35,9 @@ _About: TypeAlias = Annotated[Number, ROTATIONAL_STIFFNESS]
 class Spring(Elastic):
     """Spring along x without a drawn shape, with a specified stiffness.
 
-    Specify exactly one of `stiffness` along x, `diagonal` (x, y, z, rx, ry, rz), and `matrix`, a symmetric 6x6 about the centre. With
-    `stiffness`, the other degrees of freedom have zero stiffness. The stiffness may be negative (magnets); only the whole stage must be
-    stable. `free` lists the free degrees of freedom of the ideal model (default: all).
+    Specify exactly one of `stiffness` along x, `diagonal` (x, y, z, rx, ry, rz), and `matrix`, a symmetric 6x6 stiffness about the centre.
+    With `stiffness`, the other degrees of freedom have zero stiffness. The stiffness may be negative (magnets); only the whole stage must
+    be stable. `free` lists the free degrees of freedom of the ideal model (default: all).
 
     With a `length` L, the spring pivots at both ends: a tension F adds the transverse stiffness F / L. Without a length, it acts at one
     point. `preload` is the initial force that pushes the ends apart (negative: pulls). With `free_length`, the preload is k (free_length -
@@ -105,7 +105,7 @@ class Spring(Elastic):
         stated = [name for name in ("stiffness", "diagonal", "matrix") if getattr(self, name) is not None]
         if len(stated) != 1:
             what = f"both {' and '.join(stated)} specified" if stated else "stiffness missing"
-            yield Finding("", what, "Specify one of stiffness (along its axis), diagonal (six) and matrix (6x6)")
+            yield Finding("", what, "Specify one of stiffness (along its axis), diagonal (six stiffnesses) and matrix (6x6 stiffness)")
         if self.matrix is not None:
             yield from symmetry_findings("matrix", self.whole)
         if self.free_length is not None and self.preload is not None:
