@@ -79,7 +79,7 @@ class StageResults:
 
     @staticmethod
     def all_along(benches: Sequence[StageResults], name: str, at: float | None = None) -> None:
-        """Compute `along` for the benches of several designs of one structure, in one run."""
+        """Compute `along` for the benches of several designs of the same structure together."""
         new = [each for each in benches if (name, at) not in each._points]  # noqa: SLF001
         if not new:
             return
@@ -150,7 +150,7 @@ class StageResults:
 
     @cached_property
     def model(self) -> LinearModel:
-        """Linear model: the lumped one, or the one linearised about a state."""
+        """Linear model: the lumped model, or the model linearised about a state."""
         return self.drawn
 
     @cached_property

@@ -103,7 +103,7 @@ class Analysis(InNotebook):
 
     @property
     def felt(self) -> LinearModel | None:
-        """Model of statics, modes and responses: `linear`, or the one linearised about the loaded state."""
+        """Model of statics, modes and responses: `linear`, or the model linearised about the loaded state."""
         return self.linear if self.loaded is None or self.loaded.model is None else self.loaded.model
 
 
@@ -228,7 +228,7 @@ def _errors(mechanism: Mechanism, command: Mapping[str, float] | None, reach: Wo
 
 
 def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
-    """Return the required platform strokes by coordinate [m, rad], which form a box; `None` without any.
+    """Return the required platform strokes by coordinate [m, rad], which form a box; `None` if no stroke is required.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> required_command(double_triangle())["z"]

@@ -210,7 +210,7 @@ class Field:
 
     @property
     def along(self) -> str | None:
-        """Name of the field with the names of the array's last axis; `None` without one."""
+        """Name of the field with the names of the array's last axis; `None` if there is none."""
         along = self.annotation(Along)
         return along.names if along else None
 

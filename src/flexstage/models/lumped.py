@@ -213,7 +213,7 @@ class _Idle:
 
 @dataclass(frozen=True, eq=False)
 class _RetainedMotions:
-    """z = `basis` q + `driven` u: the retained motions (absent: all), and motions imposed by inputs on locked DOFs (absent: none)."""
+    """z = `basis` q + `driven` u: the retained motions (default: all), and motions imposed by inputs on locked DOFs (default: none)."""
 
     basis: Array | None
     driven: Array | None

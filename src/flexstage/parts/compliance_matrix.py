@@ -97,7 +97,7 @@ class Joint(Description):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Ideal degrees of freedom: the free ones."""
+        """Ideal degrees of freedom, as specified in `free`."""
         return self.free
 
     @property

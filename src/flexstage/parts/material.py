@@ -99,7 +99,7 @@ class Material(Description):
 
     @property
     def limit(self) -> Number | None:
-        """Least specified stress limit [Pa]; `None` without any.
+        """Least specified stress limit [Pa]; `None` if none is specified.
 
         >>> Material(young=200e9, poisson=0.3, density=7750.0, yield_stress=1e9, fatigue_limit=4e8).limit.item()
         400000000.0

@@ -58,7 +58,7 @@ class Spring(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Ideal degrees of freedom: the free ones."""
+        """Ideal degrees of freedom, as specified in `free`."""
         return self.free
 
     @property

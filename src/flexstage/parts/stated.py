@@ -138,7 +138,7 @@ def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
 
 
 def negative_part(matrix: Array, lengths: Array) -> Array:
-    """Return the negative part of a stiffness (..., 6, 6) as a positive semidefinite matrix (6, 6), of the first design.
+    """Return the negative part of a stiffness (..., 6, 6) as a positive semidefinite matrix (6, 6), for the first design.
 
     `lengths` (6,) scale the coordinates.
 

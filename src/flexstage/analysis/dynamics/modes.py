@@ -139,7 +139,7 @@ class Modes(Result):
 
     @property
     def highest(self) -> float:
-        """Highest platform frequency below the limit, of the first design [Hz]; without one below the limit, the lowest."""
+        """Highest platform frequency below the limit, for the first design [Hz]; if none is below the limit, the lowest."""
         frequencies = first_design(self.platform_frequencies, 1)
         return float(max(frequencies[frequencies < self.limit], default=frequencies[0]))
 

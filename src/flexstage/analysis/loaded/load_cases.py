@@ -117,7 +117,7 @@ class CaseFactors(Result):
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Warnings for cases with a factor below 1 or below the required one."""
+        """Warnings for cases with a factor below 1 or below the required factor."""
         return tuple(self._doubts())
 
     def _doubts(self) -> Iterator[Finding]:

@@ -128,7 +128,7 @@ def failure_reason(status: int, share: float) -> str:
         return f"the path of equilibria from the unloaded stage ends at {share:.3g} of the loads: states beyond are not on it"
     what = "the stiffness is singular" if status == Status.SINGULAR else "Newton's method does not converge"
     progress = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the load path"
-    return f"{what} under the whole load; {progress}. The path may end there: see fs.continuation (by arc length) and fs.critical_load"
+    return f"{what} under the full load; {progress}. The path may end there: see fs.continuation (by arc length) and fs.critical_load"
 
 
 def require_equilibrium(solution: State) -> None:
@@ -172,7 +172,7 @@ def equilibrium(
     a component of the rotation vector [rad]. Their reactions are computed. `weight` is the fraction of gravity, `stated` the fraction of
     specified forces and preloads. Wrenches keep their directions in space.
 
-    Every case is solved from the nominal position, or from `start`, under its whole load. If this fails, the load is increased in steps,
+    Every case is solved from the nominal position, or from `start`, under its full load. If this fails, the load is increased in steps,
     then by arc length up to a limit point. A case without a result is NaN, with the reason in `status`.
 
     From the nominal position, an unstable state is also NaN. So is a state that is not on the path of equilibria from the unloaded stage,
@@ -203,7 +203,7 @@ def equilibria(
     stated: Number = 1.0,
     options: SolverOptions = USUAL,
 ) -> list[State]:
-    """Compute the states of several designs of one structure under the same loads, each as `equilibrium` does.
+    """Compute the states of several designs of the same structure under the same loads, each as `equilibrium` does.
 
     `hold` applies to all designs, or has one entry per design.
 

@@ -64,7 +64,7 @@ def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Ar
 
     It is the number of negative eigenvalues of the stage stiffness and of each flexure's own system (without its six multipliers).
 
-    Fixed coordinates in `locked` remain fixed (absent: all). Other fixed coordinates are released under their reactions.
+    Fixed coordinates in `locked` remain fixed (default: all). Other fixed coordinates are released under their reactions.
     """
     whole = assemble(state.model, state.pose, state.loads, state.hold)
     count = count_descents(state.model, whole, kept_rows(state.model, state.held, state.held if locked is None else locked))
@@ -92,7 +92,7 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     The name `stated forces` stands for the forces and preloads of the description; it requires `stated` = 0. Other coordinates in `hold`
     keep their values. For stability, coordinates that are not in `locked` (default: all) are free under their reactions.
 
-    The path starts without load, or from the `known` state under the whole load. Arc-length steps resolve the path's curvature and the
+    The path starts without load, or from the `known` state under the full load. Arc-length steps resolve the path's curvature and the
     change of the lowest stiffness. The result is the first limit point or bifurcation, where the lowest stiffness is zero (relative
     `tolerance` of the factor).
 
