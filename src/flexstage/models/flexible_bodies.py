@@ -112,7 +112,7 @@ def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     """
     assembly = expand(mechanism)
     if _is_varied(mechanism):
-        return BodyEstimates((), dict.fromkeys(assembly.bodies, "one of several designs"))
+        return BodyEstimates((), dict.fromkeys(assembly.bodies, "not computed for several designs"))
     if len(assembly.bodies) > _MOST:
         return BodyEstimates((), dict.fromkeys(assembly.bodies, f"the stage has more than {_MOST} bodies"))
     found: list[BodyFlexibility] = []

@@ -480,7 +480,7 @@ def _inertial_modes_of_batch(mass: Array, largest: Array) -> tuple[int, ...]:
     first, *others = map(_inertial_modes, masses, np.broadcast_to(largest, (*batch, count)).reshape(-1, count))
     for number, heavy in enumerate(others, 1):
         if heavy != first:
-            raise unlike(number, "has inertia in other free internal modes than the first")
+            raise unlike(number, "has inertia in other free internal modes than the first design")
     return first
 
 
@@ -557,7 +557,7 @@ def _require_same_loose(stage: _Stage, basis: Array | None, independent: tuple[i
             values, loose = _softest(designs[number])
             steady = np.min(values, initial=0.0) >= -SINGULAR  # other designs are NaN: `_stable`
             if steady and (loose.shape[1] != len(named) or _moves_platform(loose, independent) or not _are_distinguishable(loose, named)):
-                raise unlike(number, "has other motions without stiffness than the first")
+                raise unlike(number, "has other motions without stiffness than the first design")
 
 
 def _unstable(stage: _Stage, strains: Contributions, motion: Array) -> DesignError:
@@ -588,9 +588,10 @@ def _least_entry(diagonal: Array, share: float) -> str:
     """The most negative stiffness of a part by DOF, rotations over 0.1 m, and its stable fraction."""
     place = int(np.argmin(diagonal / _OVER**2))
     if diagonal[place] >= 0.0:
-        return f"a negative stiffness with coupled degrees of freedom (stable limit {share:.4g} times that)"
+        return f"a negative stiffness with coupled degrees of freedom (stable limit {share:.4g} times this stiffness)"
     unit = "N/m" if place < len(_OVER) // 2 else "N m/rad"
-    return f"{diagonal[place]:.6g} {unit} in {ALL[place].value} (stable limit {share * diagonal[place]:.6g} {unit}, {share:.4g} times that)"
+    limit = f"stable limit {share * diagonal[place]:.6g} {unit}, {share:.4g} times this stiffness"
+    return f"{diagonal[place]:.6g} {unit} in {ALL[place].value} ({limit})"
 
 
 def _largest_coordinate(stage: _Stage, motion: Array) -> str:

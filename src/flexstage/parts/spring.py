@@ -109,7 +109,7 @@ class Spring(Elastic):
         if self.matrix is not None:
             yield from symmetry_findings("matrix", self.whole)
         if self.free_length is not None and self.preload is not None:
-            yield Finding("free_length", "preload specified too", "Remove one of both: free_length determines the preload")
+            yield Finding("free_length", "preload specified too", "Remove one of the two: free_length determines the preload")
         if self.length is None and (self.free_length is not None or self.preload is not None):
             what = "length missing: with a preload, the stiffness across the axis is preload over length"
             yield Finding("length", what, 'Add the length between the ends, e.g. length = "20 mm"')

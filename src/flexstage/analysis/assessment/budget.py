@@ -75,7 +75,7 @@ def budget(
         raise refuse(at, "unknown point", suggest_nearest(at, (PLATFORM, *assembly.points)))
     body, point = (PLATFORM, assembly.bodies[PLATFORM].reference) if at == PLATFORM else assembly.points[at]
     if body != PLATFORM:
-        raise refuse(at, f"it is a point of {body}", "Use a point of the platform")
+        raise refuse(at, f"a point of {body}, not of the platform", "Use a point of the platform")
     kinematics, model = ideal(mechanism), felt_links(mechanism)
     forced = bool(kinematics.thrusts) and not kinematics.actuated
     warmed, reasons = (drifted, {}) if drifted is not None else _drift(mechanism, model, asked=bool(np.any(temperature)))

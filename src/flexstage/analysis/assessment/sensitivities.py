@@ -147,9 +147,8 @@ def sensitivities(
 def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Finding]:
     """Return errors for addresses that are not a single number in the description.
 
-    >>> from flexstage.cases.double_triangle import double_triangle
-    >>> [str(each) for each in not_numbers(double_triangle(), ("bodies.platform.mass",))]
-    ['bodies.platform.mass: not specified in the description. Specify it, or choose another number.']
+    >>> from flexstage.cases.double_triangle import double_triangle >>> [str(each) for each in not_numbers(double_triangle(),
+    ("bodies.platform.mass",))] ['bodies.platform.mass: not specified in the description. Specify its value, or choose another number.']
     """
     for name in names:
         place = locate(mechanism, name)
@@ -161,7 +160,7 @@ def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findin
                 f"Use one of its numbers. {suggest_nearest(name, inner)}" if inner else "Use the address of a number",
             )
         elif get(mechanism, name) is None:
-            yield Finding(name, "not specified in the description", "Specify it, or choose another number")
+            yield Finding(name, "not specified in the description", "Specify its value, or choose another number")
 
 
 def override_level(mechanism: Mechanism, name: str) -> int:

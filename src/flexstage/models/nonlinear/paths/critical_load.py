@@ -116,7 +116,7 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     followed = follow_to_event(loading, begin, most, tolerance, reserve=lambda point: law_reserve(state_at(loading, point, ())))
     if followed.event is None or followed.factor > most:
         what = f"no critical point up to {most:g} times the load"
-        raise NoCriticalLoadError([Finding("load", what, "Use a larger load, or another one")])
+        raise NoCriticalLoadError([Finding("load", what, "Use a larger load, or another load")])
     return _critical(loading, followed, start.held)
 
 
