@@ -538,8 +538,9 @@ _STIFF = "Least stiffness along the drive of a path, at large displacements."
 path_stiffness = _worst_along("stiffness", "stiffness", STIFFNESS, _STIFF, TWISTING)
 path_stress = _worst_along("stress", "stress", PRESSURE, "Largest stress of a flexure over a path, at large displacements.")
 path_strain = _worst_along("strain", "strain", RATIO, "Largest strain of a flexure over a path, at large displacements.")
-_LOWEST = "Lowest natural frequency along a path, with the drive coordinate free under its holding force."
-path_frequency = _worst_along("frequency", "f1", FREQUENCY, _LOWEST)
+path_frequency = _worst_along(
+    "frequency", "f1", FREQUENCY, "Lowest natural frequency along a path, with the drive coordinate free under its holding force."
+)
 
 
 @partial(MeasureKind, "buckling.factor", RATIO)

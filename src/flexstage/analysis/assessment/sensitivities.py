@@ -147,8 +147,9 @@ def sensitivities(
 def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Finding]:
     """Return errors for addresses that are not a single number in the description.
 
-    >>> from flexstage.cases.double_triangle import double_triangle >>> [str(each) for each in not_numbers(double_triangle(),
-    ("bodies.platform.mass",))] ['bodies.platform.mass: not specified in the description. Specify its value, or choose another number.']
+    >>> from flexstage.cases.double_triangle import double_triangle
+    >>> [str(each) for each in not_numbers(double_triangle(), ("bodies.platform.mass",))]
+    ['bodies.platform.mass: not specified in the description. Specify its value, or choose another number.']
     """
     for name in names:
         place = locate(mechanism, name)

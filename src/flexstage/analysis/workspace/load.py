@@ -35,7 +35,7 @@ class LoadRange(Result):
         "Axial forces of the stacks over all strokes",
         "min_force max_force usage pull",
         notes=(
-            "Strokes from zero voltage, with permanent load, without preload. Tension is negative; preload plus tensile limit is its bound.",
+            "Strokes from zero voltage, with permanent load, without preload. Tension (negative) is limited by preload plus tensile limit.",
         ),
     )
 
