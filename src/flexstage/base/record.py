@@ -91,7 +91,7 @@ class Mark(Enum):
 
 @dataclass(frozen=True)
 class Graded:
-    """Grade of a number by its size: `best` up to `good`, warning up to `poor`, failed beyond.
+    """Grade of a number by its size: `best` up to `good`, warning up to `poor`, failed beyond `poor`.
 
     If `good` exceeds `poor`, larger values are better.
     """

@@ -389,13 +389,13 @@ def total_mass(bench: StageResults, _: Measure) -> Array:
 
 @partial(MeasureKind, "envelope.<dimension>", LENGTH)
 def size(bench: StageResults, asked: Measure) -> Array:
-    """Edge of the bounding box."""
+    """Length of the bounding box along one axis."""
     return bench.size[..., COMPONENTS.index(asked.name)]
 
 
 @partial(MeasureKind, "height", LENGTH)
 def height(bench: StageResults, _: Measure) -> Array:
-    """Edge of the bounding box along z."""
+    """Height of the bounding box, along z."""
     return bench.size[..., 2]
 
 

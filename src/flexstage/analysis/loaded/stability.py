@@ -132,7 +132,7 @@ def _lower(factor: float) -> float:
 
 @SESSION.keep(2)
 def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
-    """Compute linearised buckling load factors of the stage; with `limits`, also for the worst strokes within the limits. Cached.
+    """Compute linearised buckling load factors of the stage; with `limits`, also for the worst strokes within the limits.
 
     `model` must be the lumped model. The worst strokes are at a corner of the limits, because the reciprocal of the factor is a convex
     function of the strokes. Raises `DesignError` for stages with superelements, whose geometric stiffness is unknown.

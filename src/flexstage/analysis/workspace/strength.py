@@ -30,12 +30,12 @@ FROM_ZERO = "of all strokes from zero voltage"
 
 
 class HingeStress(Result):
-    """Largest stress in every hinge over the corners of the strokes, (..., L) each.
+    """Largest stress in every hinge over the corners of the stroke range, (..., L) each.
 
     `nominal` and `peak` (with the notch factor) are von Mises stresses [Pa]. `yield_stress` [Pa] is NaN if unspecified. `strokes` (..., L,
-    n) [m] are at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts).
-    `limit` [Pa] is the least of yield stress, fatigue limit and allowable stress (NaN if none is specified; `None`: the yield stress).
-    `governing` names this limit in the first design.
+    n) [m] is the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts). `limit`
+    [Pa] is the least of yield stress, fatigue limit and allowable stress (NaN if none is specified; `None`: the yield stress). `governing`
+    names this limit in the first design.
 
     `places` are the ends and faces with the largest stress (empty for a batch). `condition` describes the range of strokes in words.
     `actuators` with their `units` may be stroke or force actuators, or coordinates of the platform.

@@ -60,7 +60,7 @@ class Critical:
 
 
 def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Array:
-    """Return the number (...) of independent motions that decrease the potential of each case: 0 if stable, -1 without a state.
+    """Return the number (...) of independent motions that decrease the potential energy of each case: 0 if stable, -1 without a state.
 
     It is the number of negative eigenvalues of the stage stiffness and of each flexure's own system (without its six multipliers).
 
