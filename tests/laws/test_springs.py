@@ -91,7 +91,7 @@ def test_a_stage_bears_as_much_negative_stiffness_as_it_has(stage, share):
         np.testing.assert_allclose(softer, (1.0 - share) * held, rtol=1e-6)
         return
     with pytest.raises(
-        DesignError, match=rf"magnet: the nominal position is unstable: .* in x \(stable limit .*, {1.0 / share:.4g} times that\)"
+        DesignError, match=rf"magnet: the nominal position is unstable: .* in x \(stable limit .*, {1.0 / share:.4g} times this stiffness\)"
     ):
         lumped(magnet)
 

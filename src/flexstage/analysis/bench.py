@@ -50,7 +50,7 @@ else:
 KEPT = 48
 """Number of cached benches of single designs of a batch; each uses about a megabyte."""
 _TOGETHER = 3
-"""Largest number of required strokes for which all corners of their box are computed; with more, only the end of each is."""
+"""Largest number of required strokes for which all corners of their box are computed; with more, only both ends of each stroke."""
 
 
 class StageResults:
@@ -79,7 +79,7 @@ class StageResults:
 
     @staticmethod
     def all_along(benches: Sequence[StageResults], name: str, at: float | None = None) -> None:
-        """Compute `along` for the benches of several designs of one structure, in one run."""
+        """Compute `along` for the benches of several designs of the same structure together."""
         new = [each for each in benches if (name, at) not in each._points]  # noqa: SLF001
         if not new:
             return
@@ -150,7 +150,7 @@ class StageResults:
 
     @cached_property
     def model(self) -> LinearModel:
-        """Linear model: the lumped one, or the one linearised about a state."""
+        """Linear model: the lumped model, or the model linearised about a state."""
         return self.drawn
 
     @cached_property
@@ -165,7 +165,7 @@ class StageResults:
 
     @cached_property
     def felt(self) -> StageResults:
-        """Bench of the loaded stage (stiffness, modes, lost motion, drift) if its permanent load is significant; else this bench."""
+        """Bench of the loaded stage (stiffness, modes, lost motion, drift) if the permanent load is significant; else this bench."""
         if self.loaded is None or self.loaded.model is None:
             return self
         other = self.with_model(self.loaded.model)
@@ -195,7 +195,7 @@ class StageResults:
 
     @cached_property
     def modes(self) -> Modes:
-        """Modes, including those of the platform."""
+        """Modes, including the platform modes."""
         return modes(self.model)
 
     @cached_property
@@ -222,7 +222,7 @@ class StageResults:
         return self.force_workspace(PLATFORM).per_motion if self.forced else self.lost.correction
 
     def corners(self) -> tuple[tuple[str, ...], Array]:
-        """Axes and corners (c, k) of the box of required strokes; for more than three axes, only the end of each stroke."""
+        """Axes and corners (c, k) of the box of required strokes; for more than three axes, only both ends of each stroke."""
         box = self._driven_box()
         half = np.array(list(box.values()))
         alone = np.concatenate([np.diag(half), -np.diag(half)])
@@ -232,7 +232,7 @@ class StageResults:
         """Box of the required strokes; refuses those that no actuator drives."""
         box, driven = {name: value for name, value in self.box().items() if value > 0.0}, self.per_motion.columns
         for name in box.keys() - set(driven):
-            raise refuse(f"stroke.{name}", "no actuator moves the platform along it", f"Require strokes along {', '.join(driven)}")
+            raise refuse(f"stroke.{name}", "no actuator moves the platform along this axis", f"Require strokes along {', '.join(driven)}")
         return box
 
     @cached_property
@@ -281,7 +281,7 @@ class StageResults:
             return np.zeros(3)
         body, position = self.assembly.points[point]
         if body != PLATFORM:
-            raise refuse(point, f"it is a point of {body}", "Use a point of the platform")
+            raise refuse(point, f"a point of {body}, not of the platform", "Use a point of the platform")
         return position - self.assembly.bodies[PLATFORM].reference
 
     def box(self) -> Mapping[str, float]:

@@ -77,7 +77,7 @@ class Caveats:
 
 @SESSION.keep(8)
 def caveats(mechanism: Mechanism) -> Caveats:
-    """Return warnings and defaults of a description. Cached for the last descriptions.
+    """Return warnings and defaults of a description; results of the last descriptions are cached.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [each.where for each in caveats(double_triangle()).warnings]
@@ -404,7 +404,7 @@ def _not_straight(mechanism: Mechanism) -> Iterator[Finding]:
     """Flexures not straight when free, straight in linear models."""
     for name, part in mechanism.parts.items():
         if getattr(part, "is_bent", False):
-            what = "not straight when free; all models except the one for large displacements assume a straight, stress-free flexure"
+            what = "not straight when free; all models except the model for large displacements assume a straight, stress-free flexure"
             yield Finding(f"parts.{name}", what, "Run flexstage stroke, or modes --at, to compute the effect")
 
 

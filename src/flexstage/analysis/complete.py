@@ -103,7 +103,7 @@ class Analysis(InNotebook):
 
     @property
     def felt(self) -> LinearModel | None:
-        """Model of statics, modes and responses: `linear`, or the one linearised about the loaded state."""
+        """Model of statics, modes and responses: `linear`, or the model linearised about the loaded state."""
         return self.linear if self.loaded is None or self.loaded.model is None else self.loaded.model
 
 
@@ -140,7 +140,7 @@ def read(mechanism: Mechanism, model: Model) -> LinearModel | None:
 @check_arguments
 @one_thread
 def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = True) -> Analysis:
-    """Return all analyses of one model; without `whole`, only those of the short form, in half the time.
+    """Return all analyses of one model; without `whole`, only the analyses of the short form, in half the time.
 
     The short form omits responses, isolated units and most of the workspace. Impossible results (lost motion of an under-actuated stage)
     are `None`, with the reason in `missing`. Raises `DesignError` if the model is refused.
@@ -228,7 +228,7 @@ def _errors(mechanism: Mechanism, command: Mapping[str, float] | None, reach: Wo
 
 
 def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
-    """Return the required platform strokes by coordinate [m, rad], which form a box; `None` without any.
+    """Return the required platform strokes by coordinate [m, rad], which form a box; `None` if no stroke is required.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> required_command(double_triangle())["z"]

@@ -1,4 +1,4 @@
-"""Conversion and validation of arguments by the annotation of their field or parameter.
+"""Conversion and validation of arguments according to the annotation of their field or parameter.
 
 The annotations are the same as for files and schemas. `section: LeafSection` accepts a member or its spelling in files ("beam").
 `Annotated[Number, LENGTH]` accepts a finite number or an array. Other values raise an error with the name of the argument.
@@ -113,7 +113,7 @@ def check_arguments(function: Callable[P, T]) -> Callable[P, T]:
 def convert_arguments(
     function: Callable[..., Any], args: tuple[Any, ...], kwargs: Mapping[str, Any]
 ) -> tuple[tuple[Any, ...], dict[str, Any]]:
-    """Convert positional and keyword arguments of a call by the function's annotations.
+    """Convert positional and keyword arguments of a call according to the function's annotations.
 
     >>> def bend(ends: tuple[str, ...], *, load: float = 1.0) -> float:
     ...     return load

@@ -90,7 +90,7 @@ def refuse(where: str, what: str, advice: str) -> DesignError:
 
 
 def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Merge equal errors of several objects of one file (`file: name`) into one with all names.
+    """Merge equal errors of several objects of one file (`file: name`) into one error with all names.
 
     >>> print(*join_findings([Finding("a.csv: S1", "no unit", "Add it"), Finding("a.csv: S2", "no unit", "Add it")]))
     a.csv: S1, S2: no unit. Add it.
@@ -104,7 +104,7 @@ def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def combine_warnings(warnings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Merge warnings that differ only in object and value into one: the worst value, and the number of warnings.
+    """Merge warnings that differ only in object and value into one with the worst value and the number of warnings.
 
     >>> large = [Finding(f"B{each}", f"stress too large (got {each} MPa, expected 1 MPa or less)", "Reduce it") for each in (2, 4, 3)]
     >>> print(*combine_warnings(large))

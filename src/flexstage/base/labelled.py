@@ -67,7 +67,7 @@ class Matrix(InNotebook):
         return xarray.DataArray(self.values, dims=(*batch, "row", "column"), coords=coords, attrs={"unit": self.unit})
 
     def __str__(self) -> str:
-        """Return a string with names, units and six digits; for a batch, of the first design.
+        """Return a string with names, units and six digits; for a batch, for the first design.
 
         >>> import numpy as np
         >>> print(Matrix(np.array([[1.0, -0.025]]), ("B1",), ("x", "rx"), (("1", "m/rad"),)))

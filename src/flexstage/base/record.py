@@ -2,8 +2,8 @@
 
 The key of a field is its name; for a number, the SI unit is appended: `natural: Annotated[Array, FREQUENCY]` has the key `natural_hz`. For
 an array, `Along` can name another field with the names of the last axis: `Annotated[Array, LENGTH, Along("actuators")]`. Such an array is
-written name by name. A property is included if its type is annotated with a quantity or `VIEW`. Arrays without annotation, `INNER` fields
-and descriptions are omitted. Absent values are None; `reasons` gives the reason by field.
+written as one value per name. A property is included if its type is annotated with a quantity or `VIEW`. Arrays without annotation, `INNER`
+fields and descriptions are omitted. Absent values are None; `reasons` gives the reason by field.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ class Mark(Enum):
 
 @dataclass(frozen=True)
 class Graded:
-    """Grade of a number by its size: `best` up to `good`, warning up to `poor`, failed beyond.
+    """Grade of a number by its size: `best` up to `good`, warning up to `poor`, failed beyond `poor`.
 
     If `good` exceeds `poor`, larger values are better.
     """
@@ -132,11 +132,12 @@ class Heading:
 
 @dataclass(frozen=True)
 class Layout:
-    """Table layout of a result class, in its attribute `TABLE`: title, fields in order, head over names, notes.
+    """Table layout of a result class, in its attribute `TABLE`: title, fields in order, heading of the name column, notes.
 
-    Default fields: all that fit in a cell. A field may be a path (`requirement.key`), also to an `INNER` field. A labelled matrix is shown
-    by columns; fields without any value are omitted. Title and notes may contain attributes of the result, as `{self.point}`. For several
-    results, the title uses the first result; different notes are listed by name. A property `notes` of the result adds notes on its values.
+    By default, all fields that fit in a cell are shown. A field may be a path (`requirement.key`), also to an `INNER` field. Each column of
+    a labelled matrix is a table column; fields without any value are omitted. Title and notes may contain attributes of the result, as
+    `{self.point}`. For several results, the title uses the first result; different notes are listed by name. A property `notes` of the
+    result adds notes on its values.
     """
 
     title: str
@@ -209,7 +210,7 @@ class Field:
 
     @property
     def along(self) -> str | None:
-        """Name of the field with the names of the array's last axis; `None` without one."""
+        """Name of the field with the names of the array's last axis; `None` if there is none."""
         along = self.annotation(Along)
         return along.names if along else None
 
@@ -347,12 +348,12 @@ def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
 
 
 def by_name(value: Any) -> Any:
-    """Return the values of a field by its last axis, one item per name."""
+    """Return the values of a field along its last axis, one item per name."""
     return np.moveaxis(value, -1, 0) if isinstance(value, np.ndarray) else value
 
 
 def paths(kind: type, before: str = "") -> Iterator[tuple[str, str, str]]:
-    """Yield (path, kind, explanation) of all document fields of a result class, also of nested results."""
+    """Yield (path, kind, explanation) of all document fields of a result class, including nested results."""
     kinds = walked_fields(kind)
     named = {each.along for each in kinds}
     for each in kinds:

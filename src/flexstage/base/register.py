@@ -41,7 +41,7 @@ class Register(Generic[Entry]):
         return self.own[kind] if kind in self.own else _load(offers[0]) if offers else None
 
     def offer(self, kind: str) -> str:
-        """Return name and version of the package that provides a kind; empty for own kinds."""
+        """Return name and version of the package that provides a kind; an empty string for own kinds."""
         return ", ".join(_distribution(offer) for offer in _offered(self.group) if offer.name == kind)
 
     @property
@@ -52,7 +52,7 @@ class Register(Generic[Entry]):
 
 
 def origin(module: str) -> str:
-    """Return name and version of the installed package that contains a module; empty for flexstage and scripts.
+    """Return name and version of the installed package that contains a module; an empty string for flexstage and scripts.
 
     Digests include this string, because results of a class may change with its package's version.
 

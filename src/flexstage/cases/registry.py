@@ -68,7 +68,7 @@ def _as_shipped(name: str) -> Mechanism:
 
 
 def shipped_case(name: str) -> Case:
-    """Return the shipped case of that name. Raises `DesignError` with the nearest name for an unknown case.
+    """Return the shipped case with this name. Raises `DesignError` with the nearest name for an unknown case.
 
     >>> shipped_case("hexapod").summary
     'six axes: six flexure struts in three pairs'

@@ -49,7 +49,7 @@ def as_drawn(mechanism: Mechanism, link: PlacedLink) -> PlacedLink:
 
 
 def calibrated_parts(mechanism: Mechanism) -> tuple[str, ...]:
-    """Return the names of parts with a 6x6 from FEA. A theory that uses these parts is not independent of FEA.
+    """Return the names of parts with a 6x6 compliance from FEA. A theory that uses these parts is not independent of FEA.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> calibrated_parts(double_triangle())

@@ -244,9 +244,10 @@ class Aperture(Description):
 class Mechanism(InNotebook, Description):
     """Description of a stage, for all models.
 
-    A graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`placements`), with `gauges`. The body
-    `ground` exists implicitly, the body `platform` is the moving part. `overrides` replace values of the shared part for single links, by
-    address (`horizontal/front.thickness`, `B2/front.thickness`). `max_mode_frequency` is the frequency limit of listed modes.
+    The stage is a graph of rigid `bodies` and elastic `links`, drawn directly or in `units` placed by pattern (`placements`), with
+    `gauges`. The body `ground` exists implicitly, the body `platform` is the moving part. `overrides` replace values of the shared part for
+    single links, by address (`horizontal/front.thickness`, `B2/front.thickness`). `max_mode_frequency` is the frequency limit of listed
+    modes.
 
     `stops` limit strokes; `paths` are load paths for requirements. `ground` names the ground's material, for its expansion (`none`: no
     expansion). `temperatures` are temperature changes since manufacture, by body (including `ground`); the entry `all` is for all other

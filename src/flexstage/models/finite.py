@@ -54,7 +54,7 @@ class FinitePose(CheckedFields):
 class FiniteMotion:
     """Solution of finite kinematics.
 
-    - `strokes` (..., n) [m] by `actuators`;
+    - `strokes` (..., n) [m] in the order of `actuators`;
     - `pose` of the platform at its reference point;
     - `bodies`: poses of all bodies at their reference points. Bodies with a free internal mode have the smallest rotation; this pose does
       not determine the reading of a gauge on such a body (see `Kinematics.sensing`).

@@ -97,7 +97,7 @@ class BodyEstimates:
 def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     """Estimate the flexibility of every body of one design from its outlines.
 
-    There is a reason instead of an estimate for:
+    No estimate exists for the following bodies; the reason is returned instead:
 
     - bodies without outlines, or with imported outlines;
     - bodies on superelements, ideal joints or locked DOFs;
@@ -112,7 +112,7 @@ def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     """
     assembly = expand(mechanism)
     if _is_varied(mechanism):
-        return BodyEstimates((), dict.fromkeys(assembly.bodies, "one of several designs"))
+        return BodyEstimates((), dict.fromkeys(assembly.bodies, "not computed for several designs"))
     if len(assembly.bodies) > _MOST:
         return BodyEstimates((), dict.fromkeys(assembly.bodies, f"the stage has more than {_MOST} bodies"))
     found: list[BodyFlexibility] = []
@@ -144,7 +144,7 @@ def with_estimated_bodies(model: LinearModel, mechanism: Mechanism) -> LinearMod
     True
     """
     if _is_varied(mechanism):
-        raise refuse("elastic_bodies", "not supported for several designs", "Remove this key, or compute the designs one by one")
+        raise refuse("elastic_bodies", "not supported for several designs", "Remove elastic_bodies, or compute the designs one by one")
     return with_flexible_bodies(model, mechanism, body_flexibilities(mechanism).found)
 
 

@@ -342,7 +342,7 @@ def _require_paths(graph: _Graph, idle_strokes: Array) -> None:
     require(
         Finding(
             link,
-            f"actuator {name} can move with the platform at rest: its stroke has no path to the platform",
+            f"actuator {name} can move with the platform at rest: the links do not transmit its stroke to the platform",
             "Join its unit to the platform, or lock the degree of freedom along which it slips",
         )
         for (name, link), slips in zip(graph.assembly.strokes.items(), moving, strict=True)
@@ -390,7 +390,7 @@ def _sees_in_batch(name: str, row: Array, motions: Array) -> bool:
     """`_sees`, required to be equal in all designs of a batch."""
     flags = np.ravel(_sees(row, motions))
     if np.any(flags != flags[0]):
-        raise unlike(int(np.argmax(flags != flags[0])), f"differs from the first in whether {name} sees a free internal mode")
+        raise unlike(int(np.argmax(flags != flags[0])), f"differs from the first design in whether {name} sees a free internal mode")
     return bool(flags[0])
 
 
@@ -425,7 +425,7 @@ def _split_batch(energy: Array) -> tuple[list[int], Array]:
     stored = splits[0][0]
     for number, (other, _) in enumerate(splits):
         if other != stored:
-            raise unlike(number, "has other free internal modes with elastic resistance than the first")
+            raise unlike(number, "has other free internal modes with elastic resistance than the first design")
     loose = np.stack([each for _, each in splits])
     return stored, loose.reshape(*energy.shape[:-2], *loose.shape[-2:])
 

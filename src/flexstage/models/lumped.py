@@ -1,4 +1,4 @@
-"""Lumped model: rigid bodies with six degrees of freedom, joined by 6x6 links.
+"""Lumped model: rigid bodies with six degrees of freedom, joined by links with 6x6 stiffness.
 
 The stiffness is K = sum H^T k H, with H the relative twist at each link per coordinate. Bodies and parts contribute to the mass M. A stroke
 is an imposed deformation of its actuator. A force is a pair of opposite wrenches, H^T w, on the two bodies of its actuator.
@@ -102,7 +102,7 @@ class _Stage:
 
 @check_arguments
 def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
-    """Build the linear model of a stage: rigid bodies on 6x6 links.
+    """Build the linear model of a stage: rigid bodies joined by links with 6x6 stiffness.
 
     Valid for small displacements about the nominal position and for frequencies below the first resonance of the parts.
 
@@ -114,7 +114,7 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 
     - for a mechanism (K singular), naming the free bodies;
     - for a stroke that locked DOFs block;
-    - for a nominal position that negative stiffnesses make unstable. A later design of a batch that is unstable is NaN.
+    - for a nominal position that negative stiffnesses make unstable. If only later designs of a batch are unstable, their stiffness is NaN.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lumped(double_triangle()).coordinates)
@@ -213,7 +213,7 @@ class _Idle:
 
 @dataclass(frozen=True, eq=False)
 class _RetainedMotions:
-    """z = `basis` q + `driven` u: the retained motions (absent: all), and motions imposed by inputs on locked DOFs (absent: none)."""
+    """z = `basis` q + `driven` u: the retained motions (default: all), and motions imposed by inputs on locked DOFs (default: none)."""
 
     basis: Array | None
     driven: Array | None
@@ -480,7 +480,7 @@ def _inertial_modes_of_batch(mass: Array, largest: Array) -> tuple[int, ...]:
     first, *others = map(_inertial_modes, masses, np.broadcast_to(largest, (*batch, count)).reshape(-1, count))
     for number, heavy in enumerate(others, 1):
         if heavy != first:
-            raise unlike(number, "has inertia in other free internal modes than the first")
+            raise unlike(number, "has inertia in other free internal modes than the first design")
     return first
 
 
@@ -557,7 +557,7 @@ def _require_same_loose(stage: _Stage, basis: Array | None, independent: tuple[i
             values, loose = _softest(designs[number])
             steady = np.min(values, initial=0.0) >= -SINGULAR  # other designs are NaN: `_stable`
             if steady and (loose.shape[1] != len(named) or _moves_platform(loose, independent) or not _are_distinguishable(loose, named)):
-                raise unlike(number, "has other motions without stiffness than the first")
+                raise unlike(number, "has other motions without stiffness than the first design")
 
 
 def _unstable(stage: _Stage, strains: Contributions, motion: Array) -> DesignError:
@@ -588,9 +588,10 @@ def _least_entry(diagonal: Array, share: float) -> str:
     """The most negative stiffness of a part by DOF, rotations over 0.1 m, and its stable fraction."""
     place = int(np.argmin(diagonal / _OVER**2))
     if diagonal[place] >= 0.0:
-        return f"a negative stiffness with coupled degrees of freedom (stable limit {share:.4g} times that)"
+        return f"a negative stiffness with coupled degrees of freedom (stable limit {share:.4g} times this stiffness)"
     unit = "N/m" if place < len(_OVER) // 2 else "N m/rad"
-    return f"{diagonal[place]:.6g} {unit} in {ALL[place].value} (stable limit {share * diagonal[place]:.6g} {unit}, {share:.4g} times that)"
+    limit = f"stable limit {share * diagonal[place]:.6g} {unit}, {share:.4g} times this stiffness"
+    return f"{diagonal[place]:.6g} {unit} in {ALL[place].value} ({limit})"
 
 
 def _largest_coordinate(stage: _Stage, motion: Array) -> str:

@@ -145,7 +145,7 @@ def _broadcast(*arrays: Array) -> list[Array]:
 def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinematics | None = None) -> dict[str, Number]:
     """Return the stiffness of every actuator's unit in actuator coordinates [N/m], specified or computed.
 
-    For a unit that is not a straight strut or a lever, the stiffness is that of the chain of links that carry its load
+    For a unit that is not a straight strut or a lever, the stiffness is computed for the chain of links that carry its load
     (`chain_compliance`). This requires the `kinematics`, and a chain that is statically determinate.
 
     >>> from flexstage.cases.double_triangle import double_triangle

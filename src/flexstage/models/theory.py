@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Model(Enum):
-    """Models: ideal kinematics, axial springs (the paper's mapped model), lumped 6x6 hinges."""
+    """Models: ideal kinematics, axial springs (the paper's mapped model), hinges with 6x6 stiffness matrices (lumped model)."""
 
     IDEAL = "ideal"
     MAPPED = "mapped"

@@ -95,7 +95,7 @@ class BetweenFaces(StrokeActuator):
         stated = [name for name in ("diagonal", "matrix", "compliance") if getattr(self, name) is not None]
         if len(stated) != 1:
             result = f"both {' and '.join(stated)} specified" if stated else "6x6 stiffness missing"
-            yield Finding("", result, "Specify one of diagonal (six stiffnesses), matrix (6x6 stiffness) or compliance (6x6)")
+            yield Finding("", result, "Specify one of diagonal (six stiffnesses), matrix (6x6 stiffness) or compliance (6x6 compliance)")
             return
         if stated[0] != "diagonal":
             yield from definite_findings(stated[0], stack(getattr(self, stated[0])))

@@ -412,7 +412,7 @@ class PlacedSolid:
 
 
 def pierce(solids: Mapping[str, PlacedSolid]) -> dict[str, PlacedSolid]:
-    """Return the solids of one body by name; solids with `subtract` become holes in the others of equal material.
+    """Return the solids of one body by name; solids with `subtract` become holes in the others of the same material.
 
     >>> plate, bolt = Block("steel", (0.1, 0.1, 0.01)), Cylinder("steel", 0.005, 0.02, subtract=True)
     >>> placed = {"plate": PlacedSolid(plate, plate.frame), "bolt": PlacedSolid(bolt, bolt.frame)}

@@ -1,4 +1,4 @@
-"""Parts with a specified 6x6 matrix (given, measured or computed by FEA), and ideal joints."""
+"""Parts with a specified 6x6 compliance matrix (given, measured or computed by FEA), and ideal joints."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class Joint(Description):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Ideal degrees of freedom: the free ones."""
+        """Ideal degrees of freedom, as specified in `free`."""
         return self.free
 
     @property

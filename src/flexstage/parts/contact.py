@@ -84,7 +84,7 @@ class Contact(Elastic):
         if self.seat is Seat.GROOVE and self.half_angle is None:
             yield Finding("half_angle", "half angle of the groove missing", 'Specify the angle between a wall and x: half_angle = "45 deg"')
         if self.seat is Seat.FLAT and self.half_angle is not None:
-            yield Finding("half_angle", "only a groove has a half angle (got a flat seat)", 'Remove it, or use seat = "groove"')
+            yield Finding("half_angle", "only a groove has a half angle (got a flat seat)", 'Remove half_angle, or use seat = "groove"')
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,7 +30,7 @@ ROTATIONS = (Freedom.RX, Freedom.RY, Freedom.RZ)
 
 
 def others(freedoms: tuple[Freedom, ...]) -> tuple[Freedom, ...]:
-    """Return all degrees of freedom except the given ones, in the order of `ALL`.
+    """Return all other degrees of freedom, in the order of `ALL`.
 
     >>> [freedom.value for freedom in others(ROTATIONS)]
     ['x', 'y', 'z']

@@ -99,7 +99,7 @@ class Material(Description):
 
     @property
     def limit(self) -> Number | None:
-        """Least specified stress limit [Pa]; `None` without any.
+        """Least specified stress limit [Pa]; `None` if none is specified.
 
         >>> Material(young=200e9, poisson=0.3, density=7750.0, yield_stress=1e9, fatigue_limit=4e8).limit.item()
         400000000.0
@@ -139,7 +139,9 @@ class Material(Description):
             return
         double = [name for name in ("young", "poisson", "shear_modulus") if getattr(self, name) is not None]
         if double:
-            yield Finding(double[0], "redundant: c11, c12 and c44 determine it for each direction", "Remove it, or remove c11, c12 and c44")
+            yield Finding(
+                double[0], "redundant: c11, c12 and c44 determine it for each direction", f"Remove {double[0]}, or remove c11, c12 and c44"
+            )
         c11, c12, _ = (np.real(each) for each in self._constants)
         if np.any(c11 <= np.abs(c12)) or np.any(c11 + 2.0 * c12 <= 0.0):
             yield Finding("c11", "unstable crystal (expected c11 > |c12| and c11 + 2 c12 > 0)", "Check c11, c12 and c44")

@@ -86,7 +86,7 @@ def _version_findings(part: Superelement) -> Iterator[Finding]:
         yield Finding("sha256", f"digest of {named} missing", f'To accept the current version, add sha256 = "{result}"')
     elif result != part.sha256.lower():
         what = f"wrong digest of {named} (got sha256 {result[:12]}..., expected {part.sha256[:12]}...)"
-        yield Finding("sha256", what, f'Restore the expected version, or accept this one with sha256 = "{result}"')
+        yield Finding("sha256", what, f'Restore the expected version, or accept this version with sha256 = "{result}"')
 
 
 def _missing_findings(path: Path, names: tuple[str, ...], result: Mapping[str, MatrixLike]) -> Iterator[Finding]:

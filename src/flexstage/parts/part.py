@@ -30,7 +30,7 @@ class Restricted(Description):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Ideal degrees of freedom of the part, without the locked ones."""
+        """Ideal degrees of freedom of the part that are not locked."""
         left = self.elastic + self.free
         return tuple(freedom for freedom in self.part.intended if freedom in left)
 

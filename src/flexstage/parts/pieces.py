@@ -23,7 +23,7 @@ MOST = 96
 
 
 def solid_pieces(form: Solid) -> tuple[Convex, ...]:
-    """Return the convex pieces of a solid in its frame, of the first design; none for an imported solid.
+    """Return the convex pieces of a solid in its frame, for the first design; none for an imported solid.
 
     Holes cut by other solids are ignored.
 

@@ -38,7 +38,7 @@ def _dense_expansion(material: Material) -> Any:
 
 
 def _noise_steps(gauge: Gauge) -> Any:
-    """Standard deviation of the noise within the bandwidth, in steps of the resolution; `None` without one."""
+    """Standard deviation of the noise within the bandwidth, in steps of the resolution; `None` if there is none."""
     if gauge.noise_density is None or gauge.bandwidth is None:
         return None
     noise, step = np.broadcast_arrays(np.real(gauge.noise_density * gauge.bandwidth**0.5), np.real(gauge.resolution))

@@ -78,11 +78,11 @@ class Contour(Description):
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """Boundaries [m] of the smooth pieces of the profile, from the middle to an end, of the first design; both are included."""
+        """Boundaries [m] of the smooth pieces of the profile, from the middle to an end, for the first design; both are included."""
         return 0.0, 0.5 * single(self.span)
 
     def height(self, station: Array) -> Array:
-        """Return the height of the cuts [m] at stations [m] from the middle, of the first design; zero beyond the ends."""
+        """Return the height of the cuts [m] at stations [m] from the middle, for the first design; zero beyond the ends."""
         raise NotImplementedError
 
 
@@ -346,7 +346,7 @@ def closing(profile: Profile, thickness: Number) -> float:
 
 
 def stations_of(profile: Profile) -> tuple[Array, Array]:
-    """Return stations x (s,) from end to end and the added height w (s,) on each side [m], of the first design.
+    """Return stations x (s,) from end to end and the added height w (s,) on each side [m], for the first design.
 
     >>> stations, heights = stations_of(Circular(0.005))
     >>> float(stations[0]), heights.round(6).tolist()

@@ -163,18 +163,18 @@ class Shaped(Elastic):
 
     @property
     def closing(self) -> float:
-        """Angle [rad] at which the faces of its cuts touch, of the first design; infinite without a cut."""
+        """Angle [rad] at which the faces of its cuts touch, for the first design; infinite without a cut."""
         return np.inf
 
     @property
     def silhouette(self) -> tuple[tuple[float, Section], ...]:
-        """Stations x [m] from end to end, at least two, with the section at each station, of the first design."""
+        """Stations x [m] from end to end, at least two, with the section at each station, for the first design."""
         half = 0.5 * single(self.span)
         ends = ((-half, self.end.first), (half, self.end.first))
         return ends if self.is_prismatic else (ends[0], (0.0, self.throat.first), ends[1])
 
     def section_at(self, stations: Array) -> Section:
-        """Return the section at stations [m], linearly interpolated between the sections of `silhouette`, of the first design."""
+        """Return the section at stations [m], linearly interpolated between the sections of `silhouette`, for the first design."""
         places, sections = zip(*self.silhouette, strict=True)
         names = [item.name for item in fields(sections[0])]
         return replace(sections[0], **{name: np.interp(stations, places, [getattr(each, name) for each in sections]) for name in names})

@@ -36,7 +36,7 @@ class ShearPiezo(ChargedActuator):
 
     The block has `length` L along x, `width` along y and `depth` along z. `stiffness` k is the stiffness along y with parallel faces,
     `axial_stiffness` k_a the stiffness along x. They determine the modulus E = k_a L / A and the shear compliance 1/k - L^3 / (12 E I_z).
-    The other stiffness terms are those of a uniform block. The blocked force is stroke x stiffness. Half of `mass` is at each face.
+    The other stiffness terms are as for a uniform block. The blocked force is stroke x stiffness. Half of `mass` is at each face.
     """
 
     kind: ClassVar[str] = "shear_piezo"

@@ -35,9 +35,9 @@ _About: TypeAlias = Annotated[Number, ROTATIONAL_STIFFNESS]
 class Spring(Elastic):
     """Spring along x without a drawn shape, with a specified stiffness.
 
-    Specify exactly one of `stiffness` along x, `diagonal` (x, y, z, rx, ry, rz), and `matrix`, a symmetric 6x6 about the centre. With
-    `stiffness`, the other degrees of freedom have zero stiffness. The stiffness may be negative (magnets); only the whole stage must be
-    stable. `free` lists the free degrees of freedom of the ideal model (default: all).
+    Specify exactly one of `stiffness` along x, `diagonal` (x, y, z, rx, ry, rz), and `matrix`, a symmetric 6x6 stiffness about the centre.
+    With `stiffness`, the other degrees of freedom have zero stiffness. The stiffness may be negative (magnets); only the whole stage must
+    be stable. `free` lists the free degrees of freedom of the ideal model (default: all).
 
     With a `length` L, the spring pivots at both ends: a tension F adds the transverse stiffness F / L. Without a length, it acts at one
     point. `preload` is the initial force that pushes the ends apart (negative: pulls). With `free_length`, the preload is k (free_length -
@@ -58,7 +58,7 @@ class Spring(Elastic):
 
     @property
     def intended(self) -> tuple[Freedom, ...]:
-        """Ideal degrees of freedom: the free ones."""
+        """Ideal degrees of freedom, as specified in `free`."""
         return self.free
 
     @property
@@ -105,11 +105,11 @@ class Spring(Elastic):
         stated = [name for name in ("stiffness", "diagonal", "matrix") if getattr(self, name) is not None]
         if len(stated) != 1:
             what = f"both {' and '.join(stated)} specified" if stated else "stiffness missing"
-            yield Finding("", what, "Specify one of stiffness (along its axis), diagonal (six) and matrix (6x6)")
+            yield Finding("", what, "Specify one of stiffness (along its axis), diagonal (six stiffnesses) and matrix (6x6 stiffness)")
         if self.matrix is not None:
             yield from symmetry_findings("matrix", self.whole)
         if self.free_length is not None and self.preload is not None:
-            yield Finding("free_length", "preload specified too", "Remove one of both: free_length determines the preload")
+            yield Finding("free_length", "preload specified too", "Remove one of the two: free_length determines the preload")
         if self.length is None and (self.free_length is not None or self.preload is not None):
             what = "length missing: with a preload, the stiffness across the axis is preload over length"
             yield Finding("length", what, 'Add the length between the ends, e.g. length = "20 mm"')

@@ -85,7 +85,7 @@ def is_even(freedoms: tuple[Freedom, ...]) -> bool:
 
 
 def turns_into_itself(matrix: Array) -> bool:
-    """Return whether a 6x6 (..., 6, 6) is invariant under a quarter turn about x.
+    """Return whether a 6x6 matrix (..., 6, 6) is invariant under a quarter turn about x.
 
     >>> turns_into_itself(np.eye(6)), turns_into_itself(np.diag([1.0, 2.0, 3.0, 1.0, 1.0, 1.0]))
     (True, False)
@@ -94,7 +94,7 @@ def turns_into_itself(matrix: Array) -> bool:
 
 
 def mirror_rows(rows: tuple[tuple[Number, ...], ...]) -> tuple[tuple[Number, ...], ...]:
-    """Return the mirror image of a 6x6 in the x-z plane: entries that couple y, rx or rz with x, z or ry change sign.
+    """Return the mirror image of a 6x6 matrix in the x-z plane: entries that couple y, rx or rz with x, z or ry change sign.
 
     >>> mirror_rows(tuple(map(tuple, np.ones((6, 6)).tolist())))[0]
     (1.0, -1.0, 1.0, -1.0, 1.0, -1.0)
@@ -104,7 +104,7 @@ def mirror_rows(rows: tuple[tuple[Number, ...], ...]) -> tuple[tuple[Number, ...
 
 
 def symmetry_findings(where: str, matrix: Array) -> Iterator[Finding]:
-    """Return an error if a 6x6 (..., 6, 6) is not symmetric; the message contains entries of the first design.
+    """Return an error if a 6x6 matrix (..., 6, 6) is not symmetric; the message contains entries of the first design.
 
     >>> [each.what for each in symmetry_findings("parts.a.matrix", np.eye(6) + np.eye(6, k=1))]
     ['not symmetric: 1 and 0 SI']
@@ -122,7 +122,7 @@ def symmetry_findings(where: str, matrix: Array) -> Iterator[Finding]:
 
 
 def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
-    """Return an error if a 6x6 is not symmetric, or not positive definite.
+    """Return an error if a 6x6 matrix is not symmetric, or not positive definite.
 
     >>> [each.what[:28] for each in definite_findings("matrix", np.diag([1.0, 1.0, 1.0, 1.0, 1.0, -1.0]))]
     ['not positive definite: the l']
@@ -138,7 +138,7 @@ def definite_findings(where: str, matrix: Array) -> Iterator[Finding]:
 
 
 def negative_part(matrix: Array, lengths: Array) -> Array:
-    """Return the negative part of a stiffness (..., 6, 6) as a positive semidefinite matrix (6, 6), of the first design.
+    """Return the negative part of a stiffness (..., 6, 6) as a positive semidefinite matrix (6, 6), for the first design.
 
     `lengths` (6,) scale the coordinates.
 

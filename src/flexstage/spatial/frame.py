@@ -99,7 +99,7 @@ def cross_matrix(vector: Array) -> Array:
 
 
 def transport(arm: Array) -> Array:
-    """Build the 6x6 X that moves a twist from a point P to the point P + arm: v' = v + w x arm.
+    """Build the 6x6 matrix X that moves a twist from a point P to the point P + arm: v' = v + w x arm.
 
     Wrenches transform in the opposite direction: w_P = X^T w_(P + arm).
 
@@ -114,7 +114,7 @@ def transport(arm: Array) -> Array:
 
 
 def mirror(axis: int) -> Array:
-    """Build the 6x6 that mirrors a twist in the plane through the origin normal to an axis (0, 1, 2).
+    """Build the 6x6 matrix that mirrors a twist in the plane through the origin normal to an axis (0, 1, 2).
 
     It reverses the translation along the axis and the rotations about the two other axes.
 
@@ -126,7 +126,7 @@ def mirror(axis: int) -> Array:
 
 
 def spatial_rotation(rotation: Array) -> Array:
-    """Build the 6x6 diag(R, R) that rotates twists and wrenches from a frame with the axes R (columns) to the outer axes.
+    """Build the 6x6 matrix diag(R, R) that rotates twists and wrenches from a frame with the axes R (columns) to the outer axes.
 
     >>> spatial_rotation(np.eye(3)).shape
     (6, 6)
@@ -138,7 +138,7 @@ def spatial_rotation(rotation: Array) -> Array:
 
 
 def twist_transform(frame: Frame, reference: Array) -> Array:
-    """Build the 6x6 that transforms a body's twist at the point `reference`, in outer axes, to the frame's origin and axes.
+    """Build the 6x6 matrix that transforms a body's twist at the point `reference`, in outer axes, to the frame's origin and axes.
 
     >>> twist_transform(identity(), np.zeros(3)).tolist() == np.eye(6).tolist()
     True

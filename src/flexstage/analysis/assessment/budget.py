@@ -46,9 +46,9 @@ def budget(
 ) -> ErrorBudget:
     """Compute the error budget at a platform point for a box of displacements (half widths [m, rad]) and a temperature change [K].
 
-    Lost motion and drift (strokes fixed) are computed by the lumped model; if the permanent load is significant, for the loaded stage.
-    Drift includes the ground material of the description (`ground_of`), unless `drifted` is specified. A temperature change of `None` means
-    1 K if drift is known. If expansion coefficients are missing, a change of 0 or `None` omits drift, as noted in `reasons`.
+    Lost motion and drift (strokes fixed) are computed by the lumped model, for the loaded stage if the permanent load is significant. Drift
+    includes the ground material of the description (`ground_of`), unless `drifted` is specified. A temperature change of `None` means 1 K
+    if drift is known. If expansion coefficients are missing, a change of 0 or `None` omits drift, as noted in `reasons`.
 
     All errors are largest absolute values:
 
@@ -75,7 +75,7 @@ def budget(
         raise refuse(at, "unknown point", suggest_nearest(at, (PLATFORM, *assembly.points)))
     body, point = (PLATFORM, assembly.bodies[PLATFORM].reference) if at == PLATFORM else assembly.points[at]
     if body != PLATFORM:
-        raise refuse(at, f"it is a point of {body}", "Use a point of the platform")
+        raise refuse(at, f"a point of {body}, not of the platform", "Use a point of the platform")
     kinematics, model = ideal(mechanism), felt_links(mechanism)
     forced = bool(kinematics.thrusts) and not kinematics.actuated
     warmed, reasons = (drifted, {}) if drifted is not None else _drift(mechanism, model, asked=bool(np.any(temperature)))

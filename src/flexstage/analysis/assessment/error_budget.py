@@ -1,4 +1,4 @@
-"""Error budget: every source of pose error for a command and temperature change, with a row per axis."""
+"""Error budget: every source of pose error for a box of displacements and a temperature change, with a row per axis."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, TWIST_UNITS
 
 STEPS = "actuator steps"
 PARASITIC = "parasitic motion"
-"""Source name for the parasitic motion of a force-driven stage, which replaces lost motion and crosstalk."""
+"""Source name for the parasitic motion of a force-driven stage; this source replaces lost motion and crosstalk."""
 NOISES = ("actuator noise", "floor vibration")
 SOURCES = ("lost motion", "crosstalk", "linear map", "gauge noise", "quantisation", "drift")
 
@@ -30,7 +30,7 @@ class ErrorBudget(Result):
 
     `missing` names unknown sources (e.g. unspecified gauge noise), which are NaN and omitted from the sums. `ground` is the ground material
     assumed for drift, `coverage` the number of standard deviations of gauge noise. `reasons` explain unknown sources. For a force-driven
-    stage, both matrices are for the forces computed by the elastic model.
+    stage, the forces in both cases are computed by the elastic model.
     """
 
     ideal: Matrix

@@ -42,7 +42,7 @@ def judge(mechanism: Mechanism, bench: StageResults | None = None) -> tuple[Verd
 
 
 def measure_all(mechanism: Mechanism, measures: tuple[Measure, ...]) -> tuple[Array | str, ...]:
-    """Compute SI values (...) of measures by the lumped model, for one design or a batch. A missing value is replaced by its reason.
+    """Compute SI values (...) of measures by the lumped model, for one design or a batch. A missing value is replaced by the reason.
 
     Measures of simultaneous required strokes (corner, gauge.range) use the strokes in the `[requirements]` lines.
 

@@ -80,7 +80,7 @@ class Extreme(Enum):
 
 @dataclass(frozen=True, eq=False)
 class MeasureKind:
-    """Kind of measure: the `form` of its key, its `quantity` (`about`: for rotations), and the function `work` for its SI value.
+    """Kind of measure: the `form` of its key, its `quantity` (`about`: for rotations), and the function `work` that computes its SI value.
 
     The first sentence of the docstring of `work` is the meaning. `pointed`: a point may be specified. `extreme`: `work` returns pieces
     (..., m), and the measure is the least or largest; an optimiser uses all pieces (every actuator, hinge, stack). `softening`: at worst, a
@@ -113,7 +113,7 @@ class MeasureKind:
         return found[..., None] if self.extreme is None else found
 
     def value(self, bench: StageResults, asked: Measure) -> Array:
-        """Value (...). Raises `DesignError` if the stage has none."""
+        """Value (...). Raises `DesignError` if the stage has no such value."""
         found = np.asarray(self.work(bench, asked))
         return found if self.extreme is None else self.extreme.of(found)
 
@@ -184,13 +184,13 @@ def _nth(frequencies: Array, asked: Measure) -> Array:
 
 @partial(MeasureKind, "safety", RATIO, extreme=Extreme.LEAST, over_strokes=True)
 def safety(bench: StageResults, _: Measure) -> Array:
-    """Stress limit over peak stress in the worst hinge, at the worst corner of the strokes from zero voltage, or at peak current."""
+    """Stress limit over peak stress in the worst hinge, at the worst corner of the stroke range from zero voltage, or at peak current."""
     return _known_safety(bench.stress)
 
 
 @partial(MeasureKind, "safety.at_strokes", RATIO, extreme=Extreme.LEAST)
 def safety_at_strokes(bench: StageResults, _: Measure) -> Array:
-    """Stress limit over peak stress in the worst hinge, at the worst corner of the required strokes."""
+    """Stress limit over peak stress in the worst hinge, at the worst corner of the range of required strokes."""
     return _known_safety(bench.stress_at_strokes)
 
 
@@ -203,7 +203,7 @@ def _known_safety(found: HingeStress) -> Array:
 
 @partial(MeasureKind, "buckling", RATIO, over_strokes=True)
 def buckling(bench: StageResults, _: Measure) -> Array:
-    """Critical load over compression in the worst part at the worst corner of the strokes."""
+    """Critical load over compression in the worst part, at the worst corner of the stroke range."""
     return bench.buckling.min_factor
 
 
@@ -389,13 +389,13 @@ def total_mass(bench: StageResults, _: Measure) -> Array:
 
 @partial(MeasureKind, "envelope.<dimension>", LENGTH)
 def size(bench: StageResults, asked: Measure) -> Array:
-    """Edge of the bounding box."""
+    """Length of the bounding box along one axis."""
     return bench.size[..., COMPONENTS.index(asked.name)]
 
 
 @partial(MeasureKind, "height", LENGTH)
 def height(bench: StageResults, _: Measure) -> Array:
-    """Edge of the bounding box along z."""
+    """Height of the bounding box, along z."""
     return bench.size[..., 2]
 
 
@@ -418,19 +418,19 @@ def resolution(bench: StageResults, asked: Measure) -> Array:
 
 @partial(MeasureKind, "gauge.range", RATIO, extreme=Extreme.LARGEST)
 def gauge_range(bench: StageResults, _: Measure) -> Array:
-    """Largest ratio of gauge reading to half its range, with all required strokes at once."""
+    """Largest ratio of a gauge's reading to half the gauge's range, with all required strokes at once."""
     return gauge_swing(bench.kinematics, bench.box()) / half_ranges(bench.assembly)
 
 
 @partial(MeasureKind, "gauge.range.<gauge>", RATIO)
 def own_gauge_range(bench: StageResults, asked: Measure) -> Array:
-    """Ratio of the gauge reading to half its range, with all required strokes at once."""
+    """Ratio of the gauge's reading to half the gauge's range, with all required strokes at once."""
     return gauge_range.pieces(bench, asked)[..., bench.kinematics.gauges.index(asked.name)]
 
 
 @partial(MeasureKind, "load", RATIO, extreme=Extreme.LARGEST, over_strokes=True)
 def load(bench: StageResults, _: Measure) -> Array:
-    """Largest ratio of stack load to its limit, in compression or tension, at the worst corner."""
+    """Largest ratio of a stack's load to its limit, in compression or tension, at the worst corner of the stroke range."""
     share, limits = bench.load_share, bench.limits.from_zero
     use = share.use(limits)
     if np.any(np.isnan(use)) or np.any(np.isnan(share.maximum)):
@@ -442,7 +442,7 @@ def load(bench: StageResults, _: Measure) -> Array:
 
 @partial(MeasureKind, "load.<actuator>", FORCE, over_strokes=True)
 def own_load(bench: StageResults, asked: Measure) -> Array:
-    """Largest compression of the stack at the worst corner of the strokes, including permanent load."""
+    """Largest compression of the stack at the worst corner of the stroke range, including permanent load."""
     share = bench.load_share
     return share.range(bench.limits.from_zero)[1][..., share.actuators.index(asked.name)]
 
@@ -531,14 +531,16 @@ def _largest(values: Array) -> Any:
 
 
 _LEAST = {"stiffness", "frequency"}
-_MOVED = "Largest motion of the platform along that axis on a path, relative to the static equilibrium."
+_MOVED = "Largest motion of the platform along one axis on a path, relative to the static equilibrium."
 _FORCED = "Largest holding force of the drive of a path, at large displacements."
 path_force = _worst_along("force", "force", FORCE, _FORCED, MOMENT)
 _STIFF = "Least stiffness along the drive of a path, at large displacements."
 path_stiffness = _worst_along("stiffness", "stiffness", STIFFNESS, _STIFF, TWISTING)
 path_stress = _worst_along("stress", "stress", PRESSURE, "Largest stress of a flexure over a path, at large displacements.")
 path_strain = _worst_along("strain", "strain", RATIO, "Largest strain of a flexure over a path, at large displacements.")
-path_frequency = _worst_along("frequency", "f1", FREQUENCY, "Lowest natural frequency along a path, drive free under its holding force.")
+path_frequency = _worst_along(
+    "frequency", "f1", FREQUENCY, "Lowest natural frequency along a path, with the drive coordinate free under its holding force."
+)
 
 
 @partial(MeasureKind, "buckling.factor", RATIO)

@@ -43,8 +43,9 @@ class Sensitivities(Result):
 
     `frequency` (P, k) is in Hz per SI unit of the parameter; for the modes of a cluster, it is the derivative of the mean frequency.
     `clusters` lists the groups of modes. For each cluster of c modes, `one_sided` has the eigenvalues (P, c) of Phi^T (dK - lambda dM) Phi,
-    converted to frequency slopes. They are valid for changes of a single parameter and cannot be added. `gain` and `loss` (P, n) are for
-    the n actuators; n = 0 if the strokes do not determine the platform's motion. `missing` has the reasons for absent results.
+    converted to frequency slopes. They are valid for changes of a single parameter and cannot be added. `gain` and `loss` (P, n) are the
+    derivatives of each actuator's gain and lost motion; n = 0 if the strokes do not determine the platform's motion. `missing` has the
+    reasons for absent results.
     """
 
     parameters: tuple[str, ...]
@@ -62,7 +63,7 @@ class Sensitivities(Result):
 
     @property
     def frequency_slopes(self) -> Annotated[Matrix, VIEW]:
-        """Change of each frequency per unit of each parameter; for a cluster of modes, of their mean frequency."""
+        """Change of each frequency per unit of each parameter; for a cluster of modes, the change of its mean frequency."""
         return self._slopes(self.frequency, self._modes, "Hz")
 
     @property
@@ -148,7 +149,7 @@ def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findin
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [str(each) for each in not_numbers(double_triangle(), ("bodies.platform.mass",))]
-    ['bodies.platform.mass: not specified in the description. Specify it, or choose another number.']
+    ['bodies.platform.mass: not specified in the description. Specify its value, or choose another number.']
     """
     for name in names:
         place = locate(mechanism, name)
@@ -160,7 +161,7 @@ def not_numbers(mechanism: Mechanism, names: tuple[str, ...]) -> Iterator[Findin
                 f"Use one of its numbers. {suggest_nearest(name, inner)}" if inner else "Use the address of a number",
             )
         elif get(mechanism, name) is None:
-            yield Finding(name, "not specified in the description", "Specify it, or choose another number")
+            yield Finding(name, "not specified in the description", "Specify its value, or choose another number")
 
 
 def override_level(mechanism: Mechanism, name: str) -> int:

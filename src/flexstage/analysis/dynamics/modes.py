@@ -34,7 +34,7 @@ _NUMBERED = re.compile(r"([^\d/]+)(0|[1-9]\d*)(|/.*| \(link\))")
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """One mode: a `platform` mode, a `local` mode near a platform mode, or another one. `platform_share` is a kinetic-energy fraction.
+    """One mode: a `platform` mode, a `local` mode near a platform mode, or another mode. `platform_share` is a kinetic-energy fraction.
 
     `compliance_share` is the mode's fraction of the platform's static compliance along its platform motion. `energy_share` lists the bodies
     and links with a kinetic-energy fraction of at least 1 %, largest first.
@@ -108,7 +108,7 @@ class Modes(Result):
 
     @property
     def listed(self) -> Annotated[int, VIEW]:
-        """Number of listed modes: those below the limit, at least 24, and up to the last platform mode or local mode near it."""
+        """Number of listed modes: all below the limit, at least 24, and all up to the last platform mode or local mode near one."""
         below = int(np.sum(first_design(self.frequencies, 1) < self.limit)) if np.isfinite(self.limit) else 0
         last = max((*self.local, *self.platform), default=-1) + 1
         return min(len(self.names), max(below, last, _LISTED))
@@ -119,7 +119,7 @@ class Modes(Result):
         return len(self.names)
 
     def dominant_bodies(self, index: int) -> tuple[str, float]:
-        """Return the body or link (several if equal) with the largest kinetic-energy fraction in a mode, and the fraction; first design."""
+        """Return the body or link (several if equal) with the largest kinetic-energy fraction in a mode, and its value (first design)."""
         shares = first_design(self.energies, 2)[:, index]
         most = np.flatnonzero(shares >= np.max(shares) - _EQUAL)
         return _set([self.bodies[place] for place in most]), float(np.sum(shares[most]))
@@ -139,7 +139,7 @@ class Modes(Result):
 
     @property
     def highest(self) -> float:
-        """Highest platform frequency of the first design below the limit; without one below, its lowest [Hz]."""
+        """Highest platform frequency below the limit, for the first design [Hz]; if none is below the limit, the lowest."""
         frequencies = first_design(self.platform_frequencies, 1)
         return float(max(frequencies[frequencies < self.limit], default=frequencies[0]))
 
@@ -159,10 +159,11 @@ class Modes(Result):
 def modes(model: LinearModel, *, limit: float = np.inf, cluster: float = _REPEATED) -> Modes:
     """Compute the undamped natural modes of a model (Eq. 28 of Shin & Moon).
 
-    At a platform mode, the modes up to it reach a tenth of the platform's static compliance in a further direction (`models.batch.choice`).
-    Modes closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that shapes align with the platform's axes.
-    Shapes without platform motion align with the coordinates that move most. Modes below `limit` [Hz] are listed. Displacements are small.
-    For a large stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes are computed.
+    At a platform mode, all modes up to this mode together reach a tenth of the platform's static compliance in one more direction
+    (`models.batch.choice`). Modes closer than `cluster` (relative) form a cluster. The basis of a cluster is rotated so that shapes align
+    with the platform's axes. Shapes without platform motion align with the coordinates that move most. Modes below `limit` [Hz] are listed.
+    Displacements are small. For a large stage (`LinearModel.is_sparse`, above 900 degrees of freedom), only about 30 of the lowest modes
+    are computed.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -107,10 +107,10 @@ def random_response(
 ) -> RandomResponse:
     """Compute densities S_yy = sum_j |H_ij|^2 S_j and rms = (integral of S_yy over `band`)^(1/2) for uncorrelated inputs.
 
-    `spectra` maps input names to one-sided densities. The names are those of single channels in `response` (`ground.z` is floor motion).
-    `band` is (low, high) in Hz, with low > 0. The integration is by Gauss-Legendre quadrature with 8 nodes per panel. Panels end at
-    multiples of each resonance's half width, at the points of tables and six times per decade. Every peak is thus resolved (error 1e-8,
-    compared with the Lyapunov equation). Raises `DesignError` for unknown names, an empty band, or non-positive densities.
+    `spectra` maps input names to one-sided densities. The names are single channels of `response` (`ground.z` is floor motion). `band` is
+    (low, high) in Hz, with low > 0. The integration is by Gauss-Legendre quadrature with 8 nodes per panel. Panels end at multiples of each
+    resonance's half width, at the points of tables and six times per decade. Every peak is thus resolved (error 1e-8, compared with the
+    Lyapunov equation). Raises `DesignError` for unknown names, an empty band, or non-positive densities.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

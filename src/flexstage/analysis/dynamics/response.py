@@ -79,7 +79,7 @@ def default_frequencies(model: LinearModel, band: tuple[float, float] | None = N
     """Return a frequency grid (f,) in Hz: 40 points per decade, and 25 additional points across every resonance.
 
     The points across a resonance are f_r (1 + zeta_r tan theta), |theta| < 83 degrees. The default `band` is from f_1/50 to twice the
-    twelfth natural frequency. Resonances are those of the first design of a batch; repeated modes are at their mean frequency.
+    twelfth natural frequency. The resonances of the first design of a batch are used; repeated modes have their mean frequency.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

@@ -95,5 +95,7 @@ def body_findings(effects: Sequence[BodyEffect]) -> Iterator[Finding]:
         worst = [each for each in large if each.body == body][:2]
         values = " and ".join(f"{each.quantity} by {100.0 * each.change:.0f} %" for each in worst)
         yield Finding(
-            body, f"modelled as rigid, but its flexibility changes {values}", "Make the body stiffer, or include it: --elastic-bodies"
+            body,
+            f"modelled as rigid, but its flexibility changes {values}",
+            "Make the body stiffer, or include its flexibility: --elastic-bodies",
         )

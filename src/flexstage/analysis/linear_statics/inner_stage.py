@@ -24,7 +24,7 @@ def amplified(mechanism: Mechanism) -> Amplified:
 
     The lumped model gives the platform's compliance at its reference point with the stroke fixed, and its motion at full stroke. The part's
     centre is the platform's reference point, and its axes are the stage's axes. A link with this part has `along` in the stage's x and
-    `bends` in the stage's z direction. Voltages, bias and capacitance are those of the stage's single actuator. Half of the mass of all
+    `bends` in the stage's z direction. Voltages, bias and capacitance are taken from the stage's single actuator. Half of the mass of all
     bodies and links is at each face.
 
     The part is exact in statics. It has no internal modes, so it is valid well below the first internal mode with both faces fixed. Loads

@@ -66,7 +66,7 @@ class LostMotion(Result):
     """Lost motion of a stage with n strokes and f ideal motions.
 
     `gain` is the elastic T = dx/da (..., 6, n). `transfer` is R_a V^+ T (..., n, n), with the transmission of each actuator on its
-    diagonal. `loss` is Lambda = I - transfer. `parasitic` is the part of T outside the ideal motions. `budget` has the contribution of
+    diagonal. `loss` is Lambda = I - transfer. `parasitic` is the component of T outside the ideal motions. `budget` has the contribution of
     every link and axis to each entry of Lambda; their sum is Lambda. `correction` has the gains of the corrected strokes, a = (R_a V^+
     T)^-1 R_a xi. `energy` is the strain energy by part, per squared stroke.
     """

@@ -30,8 +30,8 @@ class MassMatrix(Result):
 
     `rigid` (..., 6, 6) is for the isolated `body` of the point with its payloads. `reduced` (..., 6, 6) is for the whole stage: all other
     masses follow quasi-statically with strokes fixed (static condensation, Guyan, AIAA J. 3, 380, 1965). With the stiffness at the same
-    point, `reduced` gives natural frequencies that are never below those of the whole model, and close to them if there are no local modes
-    nearby. `reasons` explain unknown masses.
+    point, `reduced` gives natural frequencies that are never below the frequencies of the whole model, and close to them if there are no
+    local modes nearby. `reasons` explain unknown masses.
     """
 
     point: str

@@ -138,7 +138,7 @@ class FreedomStiffness(Result):
 
     @property
     def reasons(self) -> Mapping[str, str]:
-        """Reasons for null entries."""
+        """Reasons for missing entries."""
         return {name: _LOCKED for name in ("motions", "constraints") if np.isnan(getattr(self, name).values).any()}
 
 

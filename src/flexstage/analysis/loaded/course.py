@@ -72,7 +72,7 @@ class DrivePath:
         return result
 
     def points_of_designs(self, models: Sequence[nonlinear.Nonlinear], values: Array | None = None) -> list[strokes.Points]:
-        """Return the points of the path for several designs of one structure, solved together."""
+        """Return the points of the path for several designs of the same structure, solved together."""
         rests = [_resting(each) for each in equilibrium.equilibria(models, self.loads, weight=self.weight)]
         requested = [self._wanted(model, rest, values) for model, rest in zip(models, rests, strict=True)]
         target, hold = [each for each, _ in requested], [each for _, each in requested]

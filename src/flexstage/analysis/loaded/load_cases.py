@@ -111,13 +111,13 @@ class CaseFactors(Result):
 
     @property
     def least_bound(self) -> CaseFactor | None:
-        """Case whose load path ends first without buckling; None if all paths are complete."""
+        """Case whose load path ends at the least factor without buckling; None if all paths are complete."""
         unknown = [case for case in self.cases if np.isnan(case.factor) and case.bound > 0.0]
         return min(unknown, key=lambda case: case.bound, default=None)
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Warnings for cases with a factor below 1 or below the required one."""
+        """Warnings for cases with a factor below 1 or below the required factor."""
         return tuple(self._doubts())
 
     def _doubts(self) -> Iterator[Finding]:
@@ -149,8 +149,8 @@ def buckling_factors(
     design without paths, they are both stroke ends of every actuator (of at most eight), and the worst corner of the strokes by linearised
     buckling.
 
-    At an operating point, a constant-direction force displaces a coordinate, as for `--at`; a stroke is fixed. Load factors are computed up
-    to `most`.
+    At an operating point, a constant-direction force displaces a coordinate, as for `--at`; a stroke is held at its value. Load factors are
+    computed up to `most`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [case.place for case in buckling_factors(parallelogram(), most=2.0).cases]

@@ -29,7 +29,7 @@ from flexstage.models.nonlinear.state import SolverOptions
 from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, TWIST_UNITS, WRENCH, WRENCH_UNITS
 
 _MOST = 0.1
-"""Largest misalignment computed [rad, or relative to the flexures' length]."""
+"""Largest misalignment that is computed [rad, or relative to the flexures' length]."""
 _FREQUENCIES = 3
 _HELD = tuple(f"{SEAT}.{name}" for name in COMPONENTS)
 

@@ -203,7 +203,7 @@ def _how_far(requested: Conditions) -> tuple[str, str]:
     units = [WRENCH.unit(name.rpartition(".")[2]) for name in requested.coordinates]
     force = ", ".join(f"{each:.4g} {unit}" for each, unit in zip(tried.reactions[count - 1], units, strict=True))
     reached = ", ".join(f"{name} = {share * value:.4g}" for name, value in requested.at.items())
-    what = f"no equilibrium found; the last one is at {share:.0%} of the displacement ({reached})"
+    what = f"no equilibrium found; the last equilibrium is at {share:.0%} of the displacement ({reached})"
     return (
         f"{what}{f', held by a force of {force}' if force else ''}, with a largest strain of {most:.2%}",
         "Use a displacement below that value",

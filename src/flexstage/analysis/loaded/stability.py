@@ -104,7 +104,7 @@ class Stability:
             advice = "Results of the unloaded stage do not include this. Stiffen the parts in compression, or put them in tension"
             yield Finding("stage", what, advice)
         if worst < DOUBTFUL and worst < 0.99 * dead:
-            what = f"load factor {worst:.3g} at the worst corner of the strokes"
+            what = f"load factor {worst:.3g} at the worst corner of the stroke range"
             if worst >= 1.0:
                 what += (
                     f": there the stage is up to {100.0 / worst:.2g} % less stiff than printed, and a frequency "
@@ -132,7 +132,7 @@ def _lower(factor: float) -> float:
 
 @SESSION.keep(2)
 def stability(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits | None = None) -> Stability:
-    """Compute linearised buckling load factors of the stage; with `limits`, also for the worst strokes within the limits. Cached.
+    """Compute linearised buckling load factors of the stage; with `limits`, also for the worst strokes within the limits.
 
     `model` must be the lumped model. The worst strokes are at a corner of the limits, because the reciprocal of the factor is a convex
     function of the strokes. Raises `DesignError` for stages with superelements, whose geometric stiffness is unknown.
@@ -196,7 +196,7 @@ def is_large(mechanism: Mechanism, model: LinearModel) -> bool:
 
 
 def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
-    """Return the lumped model with the `geometric` stiffness of its permanent load in the nominal position. Only one design.
+    """Return the lumped model with the `geometric` stiffness of its permanent load in the nominal position. Only for a single design.
 
     Internal bending of parts is massless.
 

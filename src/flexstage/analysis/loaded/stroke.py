@@ -69,7 +69,7 @@ class PostBuckling:
 def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics | None = None) -> Stroke:
     """Compute the characteristics over a stroke, point by point (docs/nonlinear.md, 25 to 28).
 
-    Frequencies are NaN if the free stage is unstable. Loads and weight are those of the path. The drive and displacements are relative to
+    Frequencies are NaN if the free stage is unstable. Loads and weight are as on the path. The drive and displacements are relative to
     `rest`, if specified. With the ideal `kinematics` of the stage, the lost motion of a driven stack is 1 - R_a V^+ (t - t_rest) / a. Here
     t is the platform's displacement and rotation vector, and a the stroke. R_a and V are for the nominal position (`lost_motion`).
 

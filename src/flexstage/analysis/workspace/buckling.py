@@ -1,4 +1,4 @@
-"""Buckling of the whole stage, and Euler load of every slender part, at the worst corner of the strokes."""
+"""Buckling of the whole stage, and Euler load of every slender part, at the worst corner of the stroke range."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Ends(Enum):
 
 
 class Buckling(Result):
-    """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst corner (negative if always in tension), `length` [m].
+    """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst stroke corner (negative: always in tension), `length` [m].
 
     `ends` lists the assumed end conditions of each column. `stage` is the buckling of the whole stage: its end conditions are exact, and
     columns and bodies can buckle together.

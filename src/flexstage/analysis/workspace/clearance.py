@@ -66,7 +66,7 @@ class Clearance(Result):
 
     @property
     def reached_by(self) -> Annotated[tuple[str, ...], INNER]:
-        """The outlines at both ends of each axis."""
+        """Outermost outlines at both ends of each axis."""
         return tuple(f"{low}, {high}" for low, high in zip(self.extreme[:3], self.extreme[3:], strict=True))
 
     @property

@@ -43,8 +43,9 @@ class ForceWorkspace(Result):
 
     `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate. The other ideal
     coordinates are zero if `alone`, else free. `bounds` (coordinates x causes) [m, rad] are the continuous motion limits by cause, `short`
-    the limits for short use (a coil's `duty`); NaN if unspecified. `current`, `voltage`, `power` and `rise` (coordinates x coils) hold a
-    unit motion: i, R i, i^2 R, and i^2 R times the thermal resistance [K]. `unmoved` are ideal motions that no input drives.
+    the limits for short use (a coil's `duty`); NaN if unspecified. `current`, `voltage`, `power` and `rise` (coordinates x coils) are the
+    values for holding a unit motion: i, R i, i^2 R, and i^2 R times the thermal resistance [K]. `unmoved` are ideal motions that no input
+    drives.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -113,7 +113,7 @@ def gauge_inverse(kinematics: Kinematics) -> Matrix:
     if rank < kinematics.mobility:
         raise refuse(
             "gauges",
-            f"{len(kinematics.telling)} gauges determine {rank} of the platform's {kinematics.mobility} ideal motions",
+            f"{len(kinematics.telling)} gauges determine only {rank} of the platform's {kinematics.mobility} ideal motions",
             "Add gauges, or turn them so that every motion changes a reading",
         )
     values = kinematics.motion @ (scale[..., None] * _pseudo_inverse(scaled) * even[..., None, :, 0])

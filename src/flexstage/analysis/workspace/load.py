@@ -35,7 +35,7 @@ class LoadRange(Result):
         "Axial forces of the stacks over all strokes",
         "min_force max_force usage pull",
         notes=(
-            "Strokes from zero voltage, with permanent load, without preload. Tension is negative; preload and tensile limit bound it.",
+            "Strokes from zero voltage, with permanent load, without preload. Tension (negative) is limited by preload plus tensile limit.",
         ),
     )
 
@@ -121,7 +121,7 @@ class LoadShare(Result):
         for place, name in enumerate(self.actuators):
             if share[place] <= 1.0 or -first[place] <= _ROUNDING * scale:
                 continue
-            what = f"tension of {-first[place]:.4g} N in the stack at the worst corner of the strokes"
+            what = f"tension of {-first[place]:.4g} N in the stack at the worst corner of the stroke range"
             if np.isinf(share[place]):
                 yield Finding(name, f"{what}, preload and tensile limit missing", 'Add e.g. preload = "200 N"')
             else:

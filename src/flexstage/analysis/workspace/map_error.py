@@ -51,7 +51,7 @@ class MapError(Result):
 
     @property
     def errors_and_strokes(self) -> Annotated[Matrix, INNER]:
-        """Worst errors and strokes; no strokes for rounding errors."""
+        """Worst errors and their strokes; no strokes if all errors are rounding errors."""
         result = self.table
         rounding = (np.arange(result.values.shape[-1]) > 0) & (self.worst[..., None] == 0.0)
         return replace(result, values=np.where(rounding, np.nan, result.values))

@@ -34,7 +34,7 @@ _ATOM = 1e-10
 class SecondOrder:
     """Second-order error of linear kinematics over a box of motions: largest relative `error`, in the part `link`, with the cause `why`.
 
-    `shortening` is the foreshortening [m] of the bent leaf or rod `shortened` (empty without one), which displaces a guide sideways.
+    `shortening` is the foreshortening [m] of the bent leaf or rod `shortened` (empty if there is none), which displaces a guide sideways.
     `held_twice` is true if redundant constraints may also stretch flexures.
     """
 

@@ -1,4 +1,4 @@
-"""Stress at every hinge at the worst corner of the strokes, compared with yield stress, fatigue limit or allowable stress."""
+"""Stress at every hinge at the worst corner of the stroke range, compared with yield stress, fatigue limit or allowable stress."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ FROM_ZERO = "of all strokes from zero voltage"
 
 
 class HingeStress(Result):
-    """Largest stress in every hinge over the corners of the strokes, (..., L) each.
+    """Largest stress in every hinge over the corners of the stroke range, (..., L) each.
 
     `nominal` and `peak` (with the notch factor) are von Mises stresses [Pa]. `yield_stress` [Pa] is NaN if unspecified. `strokes` (..., L,
-    n) [m] are at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts).
-    `limit` [Pa] is the least of yield stress, fatigue limit and allowable stress (NaN without any; `None`: yield stress). `governing` names
-    this limit in the first design.
+    n) [m] is the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts). `limit`
+    [Pa] is the least of yield stress, fatigue limit and allowable stress (NaN if none is specified; `None`: the yield stress). `governing`
+    names this limit in the first design.
 
     `places` are the ends and faces with the largest stress (empty for a batch). `condition` describes the range of strokes in words.
     `actuators` with their `units` may be stroke or force actuators, or coordinates of the platform.
@@ -119,8 +119,8 @@ def hinge_stress(
     - `stroke_limits(mechanism).from_zero` for a stage assembled without voltage, whose hinges are also bent by the bias;
     - `stroke_limits(mechanism)` for a stage that is stress-free at its bias.
 
-    With a `command`, `limits` are those of its coordinates. `condition` describes the limits in words. The stress is by linear beam theory,
-    with the maxima of a section added (see `beams.stress`).
+    With a `command`, `limits` are the limits of its coordinates. `condition` describes the limits in words. The stress is by linear beam
+    theory, with the maxima of a section added (see `beams.stress`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -28,7 +28,7 @@ from flexstage.spatial.frame import COMPONENTS, MOTION, Frame
 class StrokeLimits:
     """Stroke limits `low` to `high` (..., n) [m] of each actuator, relative to its bias (or mid-range).
 
-    `zero` (..., n) is the stroke at zero voltage, relative to the bias (absent: equal to `low`).
+    `zero` (..., n) is the stroke at zero voltage, relative to the bias (default: equal to `low`).
     """
 
     actuators: tuple[str, ...]

@@ -180,7 +180,7 @@ def move_all(files: Iterable[PendingFile]) -> None:
 
 
 def _keep_aside(waiting: PendingFile) -> Path | None:
-    """Backup of the file to be replaced; `None` without one."""
+    """Backup of the file to be replaced; `None` if there is none."""
     target = waiting.target
     if not target.exists():
         return None

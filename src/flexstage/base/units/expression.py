@@ -274,7 +274,7 @@ def unit_end(text: str, at: int) -> int:
 
 
 def _unit(text: str, at: int) -> int | None:
-    """End of a product or quotient of unit names; `None` without one."""
+    """End of a product or quotient of unit names; `None` if there is none."""
     end = _factor(text, at)
     while end is not None:
         between = _BETWEEN.match(text, end)

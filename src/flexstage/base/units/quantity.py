@@ -133,10 +133,10 @@ DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
 """Named directions in files."""
 
 COMPLIANCE_MATRIX = Quantity("compliance matrix", "mixed", "mixed", "2.91 um/N")
-"""Quantity of a 6x6 with blocks `COMPLIANCE`, `COUPLING` and `ROTATIONAL_COMPLIANCE`."""
+"""Quantity of a 6x6 matrix with blocks `COMPLIANCE`, `COUPLING` and `ROTATIONAL_COMPLIANCE`."""
 
 ANY = Quantity("number", "mixed", "mixed", "26 mm")
 """Quantity of a number whose actual quantity is specified in another field."""
 
 STIFFNESS_MATRIX = Quantity("stiffness matrix", "mixed", "mixed", "17 N/um")
-"""Quantity of a 6x6 with blocks `STIFFNESS`, `COUPLING_STIFFNESS` and `ROTATIONAL_STIFFNESS`."""
+"""Quantity of a 6x6 matrix with blocks `STIFFNESS`, `COUPLING_STIFFNESS` and `ROTATIONAL_STIFFNESS`."""

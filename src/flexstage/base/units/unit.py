@@ -90,7 +90,7 @@ def missing_unit(found: Any, quantity: Quantity, *, where: str) -> DesignError:
 
 
 def number_with_unit(number: str, unit: str) -> tuple[float, Dimension]:
-    """Convert the strings of a number and its unit to a value in coherent SI units and a dimension. Without a unit: a ratio.
+    """Convert the strings of a number and its unit to a value in coherent SI units and a dimension. A number without a unit is a ratio.
 
     >>> number_with_unit("26", "mm")[0], number_with_unit("5", "%")[0], number_with_unit("3", "kN")[0]
     (0.026, 0.05, 3000.0)

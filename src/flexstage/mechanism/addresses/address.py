@@ -1,14 +1,16 @@
 """Addresses of values: one scheme for files, `--set`, messages, studies and sensitivities.
 
-    parts.neck.thickness               a shared part bodies.platform.mass               a value in the tree of the description, name by name
-    units.horizontal.links.front.at.x  a link's placement in all instances of its unit; short: `horizontal/front.at.x`
-    horizontal/front.thickness         the part of one link of a unit, in all instances: an override, in `overrides` B2/front.thickness
-    the same in one instance: takes precedence over the override of all instances links.strut.thickness              the part of a link of
-    the stage: also an override numbers.arm                        a named number: results of formulas change with it B2.shift.x,
-    S1.rotation.z          misalignment of a unit instance or a gauge relative to its pattern: an override, default zero
+- `parts.neck.thickness`: a shared part.
+- `bodies.platform.mass`: a value in the tree of the description, name by name.
+- `units.horizontal.links.front.at.x`, short `horizontal/front.at.x`: a link's placement in all instances of its unit.
+- `horizontal/front.thickness`: the part of one link of a unit, in all instances. The value is an override, in `overrides`.
+- `B2/front.thickness`: the same in one instance; it takes precedence over the override of all instances.
+- `links.strut.thickness`: the part of a link of the stage; also an override.
+- `numbers.arm`: a named number; results of formulas change with it.
+- `B2.shift.x`, `S1.rotation.z`: misalignment of a unit instance or a gauge relative to its pattern; an override, default zero.
 
 Levels may be omitted if the result is unique: `horizontal/front.radius` for `horizontal/front.profile.radius`, `neck.thickness` for
-`parts.neck.thickness`. An ambiguous or misspelt address is an error that lists the candidates.
+`parts.neck.thickness`. The error for an ambiguous or misspelt address lists the candidates.
 """
 
 from __future__ import annotations
@@ -66,8 +68,8 @@ def _holder(mechanism: Mechanism, place: Place) -> Any:
 def set_value(mechanism: Mechanism, address: str, value: Any) -> Mechanism:
     """Return the mechanism with a new value (SI number, array, or name) at an address; the tag of the old value is removed.
 
-    An override is written to `overrides`. An entry of a 6x6 is set together with its symmetric entry. If a named number changes, formulas
-    that use it are recomputed. The formula of a replaced value is removed.
+    An override is written to `overrides`. An entry of a 6x6 matrix is set together with its symmetric entry. If a named number changes,
+    formulas that use it are recomputed. The formula of a replaced value is removed.
 
     >>> from flexstage.parts.rod import Rod
     >>> stage = Mechanism("", parts={"wire": Rod("steel", 0.03, 0.001)})

@@ -23,7 +23,7 @@ MATRICES = ("compliance", "matrix")
 
 
 def with_mirror(path: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
-    """Return the path and, for an off-diagonal entry of a symmetric 6x6, also the path of its symmetric entry.
+    """Return the path and, for an off-diagonal entry of a symmetric 6x6 matrix, also the path of its symmetric entry.
 
     >>> with_mirror(("compliance", "x", "rz"))
     (('compliance', 'x', 'rz'), ('compliance', 'rz', 'x'))
@@ -34,7 +34,7 @@ def with_mirror(path: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
 
 
 def member(value: Any, name: str) -> Any:
-    """Return the field, entry or component of that name.
+    """Return the field, entry or component with this name.
 
     >>> member((1.0, 2.0, 3.0), "y")
     2.0
@@ -56,7 +56,7 @@ def follow(value: Any, path: Iterable[str]) -> Any:
 
 
 def has_member(value: Any, name: str) -> bool:
-    """Whether the value has a field, entry or component of that name.
+    """Return whether the value has a field, entry or component with this name.
 
     >>> has_member((1.0, 2.0, 3.0), "w")
     False
@@ -81,7 +81,7 @@ def _field_names(kind: type) -> Mapping[str, str]:
 
 
 def completions(value: Any, name: str) -> tuple[tuple[str, ...], ...]:
-    """Return the paths to every member of that name: directly in the value, else in its nested descriptions and tables.
+    """Return the paths to every member with this name: directly in the value, else in its nested descriptions and tables.
 
     >>> completions((1.0, 2.0), "y")
     (('y',),)

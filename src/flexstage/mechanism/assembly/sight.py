@@ -140,7 +140,7 @@ def _place_findings(where: str, key: str, place: Probe | LinkProbe, gauge: Instr
         yield Finding(where, "positive missing", 'Use e.g. positive = "opens"')
     elif not gauge.gap and place.positive is not None:
         what = f"{place.gauge} measures no gap that {place.positive.value}, but motion along or about its x axis"
-        yield Finding(f"{where}.positive", what, "Remove it; for the other sign, reverse the x axis")
+        yield Finding(f"{where}.positive", what, "Remove positive; to change the sign, reverse the x axis of the gauge")
 
 
 def _link_findings(where: str, key: str, place: LinkProbe, links: Collection[str]) -> Iterator[Finding]:

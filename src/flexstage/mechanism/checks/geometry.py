@@ -140,7 +140,7 @@ def _orders(where: str, orders: Iterable[Order]) -> Iterator[Finding]:
 def _body(where: str, body: Body) -> Iterator[Finding]:
     stated = [name for name in ("mass", "centre", "inertia") if getattr(body, name) is not None]
     if stated and body.solids:
-        yield Finding(where, f"both solids and {', '.join(stated)} specified", "Remove one of both")
+        yield Finding(where, f"both solids and {', '.join(stated)} specified", "Remove one of the two")
     elif stated and body.mass is None:
         yield Finding(where, f"{', '.join(stated)} without a mass", "Specify the mass too")
     if body.inertia is not None:

@@ -40,7 +40,7 @@ def graph_findings(mechanism: Mechanism) -> Iterator[Finding]:
     for edge in edges:
         if imposes_stroke(mechanism.parts[edge.part]) and edge.name not in used and set(edge.joins) <= reached:
             what = f"the actuator between {edge.joins[0]} and {edge.joins[1]} is not in a chain of links from ground to platform"
-            yield Finding(edge.name, what, "Connect one end to the ground and the other to the platform, or remove it")
+            yield Finding(edge.name, what, "Connect one end to the ground and the other to the platform, or remove the actuator")
 
 
 def _graph(mechanism: Mechanism) -> tuple[list[str], list[_Edge]]:

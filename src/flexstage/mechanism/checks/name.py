@@ -113,7 +113,7 @@ def _owners(mechanism: Mechanism) -> Iterator[Finding]:
             yield Finding(f"{where}.of", "the platform cannot belong to another body", 'Set of = "platform" for the other body')
         elif owner is not None and owner.of is not None:
             what = f'"{body.of}" belongs to another body, "{owner.of}"'
-            yield Finding(f"{where}.of", what, f'Use of = "{owner.of}"' if owner is not body else "Use another body, or remove it")
+            yield Finding(f"{where}.of", what, f'Use of = "{owner.of}"' if owner is not body else "Use another body, or remove 'of'")
 
 
 def _bodies(mechanism: Mechanism) -> Iterator[Finding]:

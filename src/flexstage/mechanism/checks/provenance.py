@@ -36,7 +36,7 @@ def override_findings(mechanism: Mechanism) -> Iterator[Finding]:
         prefixes = [".".join((*place.owners[-1:], *place.path[:depth])) for depth in range(1, len(place.path) + 1)]
         other = inside.get(place.address) or next((made[prefix] for prefix in prefixes if prefix in made), None)
         if other is not None:
-            yield Finding(where, f'it overrides the same value as "{other}"', "Remove one of them")
+            yield Finding(where, f'overrides the same value as "{other}"', "Remove one of them")
         made[place.address] = key
         inside.update(dict.fromkeys(prefixes, key))
 

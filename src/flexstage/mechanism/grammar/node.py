@@ -168,7 +168,7 @@ class Node:
         return iter(())
 
     def child(self, value: Any, name: str) -> Node:
-        """Return the node of the member of that name (see `path.member`); `value` selects an alternative."""
+        """Return the node of the member with this name (see `path.member`); `value` selects an alternative."""
         raise KeyError(name)
 
     def key(self, value: Any, name: str) -> Any:
@@ -321,7 +321,7 @@ class NamedNode(Node):
     shown: ClassVar[str] = '"26 mm"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Return the number of that name, which was read before all other values."""
+        """Return the number with this name, which was read before all other values."""
         return reader.numbers.values.get(where.partition(".")[2], BAD) if reader.numbers is not None else BAD
 
     def write(self, value: Any, where: str, writer: Writer) -> Any:
@@ -569,7 +569,7 @@ class ChoiceNode(Node):
         return f'"{next(iter(self.words))}"'
 
     def read(self, raw: Any, where: str, reader: Reader) -> Any:
-        """Return the member of that name."""
+        """Return the member with this name."""
         if isinstance(raw, str) and raw in self.words:
             return self.words[raw]
         return reader.refuse(

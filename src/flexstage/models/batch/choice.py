@@ -1,4 +1,4 @@
-"""Platform frequencies: at each, the modes reach a tenth of the platform's static compliance in one more direction.
+"""Platform frequencies: at each of them, the modes up to it reach a tenth of the static compliance in one more direction.
 
 The platform twist in a mass-normalised mode is phi. The platform's static compliance is C = sum phi phi^T / omega^2. H(f) is the sum over
 the modes up to frequency f of C^-1/2 phi phi^T C^-1/2 / omega^2. Platform frequency k is the lowest f at which k eigenvalues of H exceed
@@ -38,7 +38,7 @@ class Choice:
 
 @dataclass(frozen=True, eq=False)
 class ModeSelection:
-    """Selected modes of b designs: `mask` (b, k) of the platform modes; `exact` (b,) is true if their number is as requested.
+    """Selected modes of b designs: `mask` (b, k) of the platform modes; `exact` (b,) is true if the number of modes is as requested.
 
     If only some modes of a cluster are platform modes, the modes with the largest participation are selected.
     """

@@ -42,7 +42,7 @@ class Status(IntEnum):
     WHOLE = 1
     """Solved by dense matrices."""
     NONE = 2
-    """No result: fewer platform frequencies than requested, or an invalid design. Solve this design alone for the reason."""
+    """No result: fewer platform frequencies than requested, or an invalid design. To get the reason, solve this design alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None
     """Plan a family of designs, which differ in the numbers at the addresses.
 
     With `ranges`, the kernel's input is fitted once by polynomials (in seconds), if their error is at most 1e-10. For a design within the
-    ranges, the input then takes less time than the solution. Without a fit, or outside the ranges, the input is computed from the
+    ranges, computing the input then takes less time than the solution. Without a fit, or outside the ranges, the input is computed from the
     description.
 
     Raises `DesignError` for unknown addresses, and for a mechanism whose nominal stiffness is singular.
@@ -101,7 +101,7 @@ def plan_family(family_: Family, choice: Choice | None = None, ranges: Ranges | 
     """
     choice = choice or Choice()
     if family_.mechanism.elastic_bodies:
-        raise refuse("elastic_bodies", "not supported for several designs", "Remove this key, or compute the designs one by one")
+        raise refuse("elastic_bodies", "not supported for several designs", "Remove elastic_bodies, or compute the designs one by one")
     model = lumped(family_.mechanism)  # raises `DesignError` for free motions of bodies
     if family_.topology.locked:
         return Plan(family_, choice, {})

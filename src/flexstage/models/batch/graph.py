@@ -106,7 +106,7 @@ def topology(assembly: Assembly) -> Topology:
 class Elimination:
     """Elimination order of bodies, with the kept body last. `edges` are the pairs (first, later) of the filled graph, sorted by first.
 
-    The numbers in edges are positions in this order.
+    The numbers in `edges` are positions in this order.
     """
 
     order: tuple[int, ...]

@@ -37,7 +37,7 @@ class Place:
 class Motions:
     """Matrices (..., 6, n) that give the twists of bodies from n model coordinates.
 
-    There is one for each body at its reference point. The function `at` returns one for a body at a frame.
+    `bodies` has one for each body at its reference point. The function `at` returns the matrix of a body at a frame.
     """
 
     bodies: Mapping[str, Array]
@@ -155,7 +155,7 @@ def reading(gauge: PlacedGauge, at: Callable[[str, Frame], Array]) -> Array:
 
 
 def see(sight: Sight, at: Callable[[str, Frame], Array]) -> Array:
-    """Compute the contribution (..., 1, n) of one term (`Sight`) to the reading of a gauge, or the motion at a stop."""
+    """Compute the contribution (..., 1, n) of one term (`Sight`) to the reading of a gauge or to the motion at a stop."""
     rows = slice(sight.component, sight.component + 1)
     motion = at(sight.body, sight.frame)[..., rows, :] - at(sight.base, sight.foot)[..., rows, :]
     return np.asarray(sight.weight)[..., None, None] * motion

@@ -89,7 +89,7 @@ def eigenvalues(model: LinearModel) -> Array:
 def lowest_modes(model: LinearModel) -> Eigen:
     """Compute all modes; for a large sparse model, only about 30 of the lowest modes.
 
-    The last cluster of these is omitted, because it may be incomplete.
+    The last cluster of these modes is omitted, because it may be incomplete.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped
@@ -152,7 +152,7 @@ def _massive(inverse_values: Array, lower: Array, inertia: Array) -> Array:
     if np.any(others := (counts != first) & sound):
         ranks = np.ravel(np.broadcast_to(_rank(inertia), inverse_values.shape[:-1]))
         if np.any(unequal := others & (ranks != ranks[np.argmax(sound)])):
-            raise unlike(int(np.argmax(unequal)), "has another number of modes than the first")
+            raise unlike(int(np.argmax(unequal)), "has another number of modes than the first design")
         first = int(np.max(counts[sound]))
     kept = inverse_values[..., :first]
     return np.where(kept > 0.0, kept, np.nan)

@@ -212,7 +212,7 @@ def _direct(stiffness: Array, inertia: Array, chosen: Ports, omega: Array, dampe
 
 
 def superpose(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
-    """Compute H (..., f, p, m) by modal superposition: as `transfer`, but with equivalent modal ratios for structural damping.
+    """Compute H (..., f, p, m) by modal superposition: as `transfer`, but with equivalent modal damping ratios for structural damping.
 
     This agrees with the time-domain model (`state_space`).
 

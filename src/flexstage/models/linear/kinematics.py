@@ -167,7 +167,7 @@ class Kinematics(Result):
 
     @property
     def telling(self) -> tuple[str, ...]:
-        """Gauges and sums of gauges that determine the pose: all that are not part of a sum."""
+        """Gauges and sums of gauges that determine the pose: all that are not members of a sum."""
         taken = {member for members in self.sums.values() for member in members}
         return tuple(name for name in self.gauges if name not in taken)
 

@@ -54,7 +54,7 @@ def symmetric_factor(matrix: Any) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Quadratic:
-    """Sum of contributions G^T k G: all operators stacked in G (R, n), all laws in the block-diagonal k (R, R), both sparse."""
+    """Sum of contributions G^T k G: all operators stacked in G (R, n), all stiffness laws in the block-diagonal k (R, R), both sparse."""
 
     rows: Any
     law: Any
@@ -222,7 +222,7 @@ def _refine(load: Array, solve: Any, missing: Any, first: int = 0) -> tuple[Arra
 
 
 def surely_definite(laws: Iterable[Array], joins: Iterable[tuple[int, int]], bodies: int) -> bool:
-    """Return whether K is certainly definite: every law (6, 6) is positive definite, and links connect every body to the ground.
+    """Return whether K is certainly definite: every 6x6 link stiffness is positive definite, and links connect every body to the ground.
 
     `joins` are the pairs of body numbers; the ground has the number `bodies`.
     """

@@ -55,7 +55,7 @@ class LinearModel(InNotebook, CheckedFields):
     - `rigid` (..., n, 6): motion of all coordinates if the stage moves rigidly with the ground, per ground twist at the platform's
       reference point; `rigid_output` (..., p, 6): the outputs in this motion.
     - `base_inertia` (..., n, 6): inertial force per unit base acceleration.
-    - `inertial` (..., n, m): M_u, inertial forces due to motions that inputs impose (absent: zero).
+    - `inertial` (..., n, m): M_u, inertial forces due to motions that inputs impose (default: zero).
     - `unknown`: outputs that the model does not determine, i.e. forces of locked DOFs.
 
     Batch axes come first. An array without batch axes is valid for every design. `viscous` are the dampers (..., d, d) [N s/m] of parts, by
@@ -64,9 +64,9 @@ class LinearModel(InNotebook, CheckedFields):
 
     `idle` names coordinates without stiffness (free internal modes), which are removed. The kept coordinates are M-orthogonal to the
     removed modes. Frequencies and shapes thus do not depend on the choice of coordinates. `idle_output` (..., p, k) are the outputs of the
-    k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground acceleration (both absent: none).
+    k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground acceleration (default of both: none).
 
-    `floating` (n, k) are the mass-normalised motions without stiffness of a force-driven platform (absent: none). K is then singular, and
+    `floating` (n, k) are the mass-normalised motions without stiffness of a force-driven platform (default: none). K is then singular, and
     `solve` returns the elastic displacement without momentum in these motions (inertia relief).
 
     The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`). `solve` and `momenta` use no dense

@@ -125,10 +125,10 @@ def failure_reason(status: int, share: float) -> str:
             f"at {share:.4g} of the loads the stage snaps or buckles: the equilibrium beyond is not the continuation of the unloaded stage"
         )
     if status == Status.NOT_FOLLOWED:
-        return f"equilibrium was followed to {share:.3g} of the path from the unloaded stage: a state beyond is not its continuation"
+        return f"the path of equilibria from the unloaded stage ends at {share:.3g} of the loads: states beyond are not on it"
     what = "the stiffness is singular" if status == Status.SINGULAR else "Newton's method does not converge"
     progress = f"equilibrium was followed to {share:.3g} of the load" if share else "no equilibrium was found on the load path"
-    return f"{what} under the whole load; {progress}. The path may end there: see fs.continuation (by arc length) and fs.critical_load"
+    return f"{what} under the full load; {progress}. The path may end there: see fs.continuation (by arc length) and fs.critical_load"
 
 
 def require_equilibrium(solution: State) -> None:
@@ -172,7 +172,7 @@ def equilibrium(
     a component of the rotation vector [rad]. Their reactions are computed. `weight` is the fraction of gravity, `stated` the fraction of
     specified forces and preloads. Wrenches keep their directions in space.
 
-    Every case is solved from the nominal position, or from `start`, under its whole load. If this fails, the load is increased in steps,
+    Every case is solved from the nominal position, or from `start`, under its full load. If this fails, the load is increased in steps,
     then by arc length up to a limit point. A case without a result is NaN, with the reason in `status`.
 
     From the nominal position, an unstable state is also NaN. So is a state that is not on the path of equilibria from the unloaded stage,
@@ -203,7 +203,7 @@ def equilibria(
     stated: Number = 1.0,
     options: SolverOptions = USUAL,
 ) -> list[State]:
-    """Compute the states of several designs of one structure under the same loads, each as `equilibrium` does.
+    """Compute the states of several designs of the same structure under the same loads, each as `equilibrium` does.
 
     `hold` applies to all designs, or has one entry per design.
 
@@ -284,7 +284,7 @@ def corrected(
     """Correct a state for a slightly different model by two Newton steps; the result is correct to first order in the difference.
 
     One step is not sufficient, because the stiffness is the derivative of the residual only to 1e-6. The loads and fixed coordinates must
-    be those of `start`. Cases without a state in `start` have none in the result.
+    be the same as for `start`. Cases without a state in `start` remain without a state.
     """
     request = _request(model, loads or {}, hold or {}, weight, stated)
     pose = _first(model, start, request.hold, len(request.loads.inputs))

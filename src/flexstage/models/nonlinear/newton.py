@@ -46,7 +46,7 @@ class EquilibriumSolution:
 
 
 def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: FixedCoordinates, options: SolverOptions = USUAL) -> EquilibriumSolution:
-    """Compute the equilibrium of every case under its whole load. If this fails for a case, its load is applied in steps."""
+    """Compute the equilibrium of every case under its full load. If this fails for a case, its load is applied in steps."""
     cases = np.arange(len(loads.inputs))
     most = _STREAM if _all_compiled(model, hold) else _CHUNK
     chunks = [search(model, start.of(part), loads.of(part), hold.of(part), options) for part in _split(cases, most)]
@@ -55,7 +55,7 @@ def equilibrate(model: Nonlinear, start: Pose, loads: Loads, hold: FixedCoordina
 
 
 def equilibrate_designs(tasks: Sequence[Task], options: SolverOptions = USUAL) -> list[EquilibriumSolution]:
-    """Compute the equilibria of several designs of one structure, several designs at a time."""
+    """Compute the equilibria of several designs of the same structure, several designs at a time."""
     several = min(_DESIGNS, max(1, _CHUNK // len(tasks[0].loads.inputs)))
     if several == 1:
         return [equilibrate(*_parts(each), options) for each in tasks]
@@ -116,7 +116,7 @@ def _by_steps(
 
 
 def merge(solution: EquilibriumSolution, cases: Array, other: EquilibriumSolution) -> EquilibriumSolution:
-    """Return a result in which some cases are replaced by those of another result."""
+    """Return a result in which some cases are replaced by the cases of another result."""
     return EquilibriumSolution(
         solution.pose.put(cases, other.pose), *(put(getattr(solution, name), cases, getattr(other, name)) for name in RESULT_FIELDS)
     )
@@ -183,7 +183,7 @@ class _Step:
 
 
 def search_designs(tasks: Sequence[Task], options: SolverOptions) -> list[EquilibriumSolution]:
-    """Iterate several designs of one structure, each with its cases. Elements other than flexures are evaluated for all together."""
+    """Iterate several designs of the same structure, each with its cases. Elements except flexures are evaluated together."""
     first = tasks[0]
     if _all_compiled(first.model, first.hold):
         return [_search_compiled(task, options) for task in tasks]
@@ -256,7 +256,7 @@ def _together(tasks: list[Task], design: Array) -> Task:
 
 
 def iterate(model: Nonlinear, pose: Pose, loads: Loads, hold: FixedCoordinates, options: SolverOptions) -> tuple[Pose, Array, Array]:
-    """Compute one step: the new pose, the size of the step and the flexure residuals before it (b,)."""
+    """Compute one step: the new pose, the size of the step (b,), and the flexure residuals before the step (b,)."""
     system = assemble(model, pose, loads, hold)
     step = system.solved(-system.residual)
     size = motion(model, step, model.size)

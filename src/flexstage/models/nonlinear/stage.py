@@ -40,7 +40,7 @@ class Flexures:
     """Group of l flexures whose tables have the same shape.
 
     `first` and `second` (l,) are body numbers, `turn` (l, 3, 3) the nominal frames of the starts. `arm_first` (l, 3) is from the first
-    body's reference point to the start, `arm_second` from the second body's to the end.
+    body's reference point to the start, `arm_second` from the second body's reference point to the end.
     """
 
     names: tuple[str, ...]
@@ -157,19 +157,20 @@ class _NominalBodies:
 def nonlinear(mechanism: Mechanism, *, resolution: Resolution = DEFAULT, temperature: float = 0.0, ground: str | None = None) -> Nonlinear:
     """Build the nonlinear model of a stage: one spectral element per flexure, finite motions of bodies (docs/nonlinear.md).
 
-    Leaves, rods, notches and necks are flexures that bend. All other links have a 6x6 stiffness, and superelements their matrices, in a
-    corotated frame. The model is valid for small strains in the flexures. Batches of designs raise `DesignError`.
+    Leaves, rods, notches and necks are flexures that bend. All other links have a 6x6 stiffness, and superelements have their matrices, in
+    a corotated frame. The model is valid for small strains in the flexures. Batches of designs raise `DesignError`.
 
     `temperature` is a uniform change [K] in addition to the `temperatures` of the description. Bodies and parts expand freely; a part has
-    the mean temperature of its ends. The ground expands about the origin; `ground` names its material (absent: as in `drift`). Incompatible
-    expansion bends the parts. Moduli are constant. With a temperature change, every material must have an expansion coefficient.
+    the mean temperature of its ends. The ground expands about the origin; `ground` names its material (by default as in `drift`).
+    Incompatible expansion bends the parts. Moduli are constant. With a temperature change, every material must have an expansion
+    coefficient.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> [group.names for group in nonlinear(parallelogram()).flexures]
     [('left', 'right'), ('B/back', 'B/front')]
     """
     if mechanism.elastic_bodies:
-        raise refuse("elastic_bodies", "bodies are rigid at large displacements", "Remove this key")
+        raise refuse("elastic_bodies", "bodies are rigid at large displacements", "Remove elastic_bodies")
     assembly = expand(mechanism)
     bodies = layout(assembly).bodies
     reference = np.stack([*(_one(assembly.bodies[name].reference, name) for name in bodies), np.zeros(3)])

@@ -52,7 +52,7 @@ def condense(tangent: Tangent, gap: Array) -> FlexureResponse:
 
 
 def relax_fields(law: FlexureLaw, strain: Array) -> Array:
-    """Replace the amplitudes (..., b, q) of plate fields by those of least energy for the given curvatures.
+    """Replace the amplitudes (..., b, q) of plate fields by the amplitudes of least energy for the given curvatures.
 
     The energy is quadratic in the fields. A joint Newton iteration on fields and curvatures would overshoot in thin leaves, where
     stretching depends on the square of their product.

@@ -83,11 +83,11 @@ def strains(state: State) -> Strains:
 
 
 def law_reserve(state: State) -> tuple[float, str]:
-    """Return the remaining range of the link laws at a state (1 undeformed, 0 at the limit), and a clause with the limiting link.
+    """Return the remaining validity range of the link laws at a state (1 undeformed, 0 at the limit), and a clause on the limiting link.
 
-    The strain limit of flexures is 5 %. The limit of the 6x6 stiffness of a link or superelement is a 10 % error of a law of small motions:
-    a relative rotation of its ends of 0.46 rad, or a relative displacement of 0.3 of the diagonal of the stage (for a superelement, of its
-    ports). For a spring with a length, the displacement limit is this length. Links without stiffness have no limit.
+    The strain limit of flexures is 5 %. The limit of the 6x6 stiffness of a link or superelement is a 10 % error of a law for small
+    motions: a relative rotation of its ends of 0.46 rad, or a relative displacement of 0.3 of the diagonal of the stage (for a
+    superelement, of its ports). For a spring with a length, the displacement limit is this length. Links without stiffness have no limit.
     """
     model, pose, hinges = state.model, state.pose, state.model.hinges
     used = [(float(np.max(strains(state).largest, initial=0.0)) / _STRAIN, f"a flexure has a strain of {_STRAIN:.0%} there")]

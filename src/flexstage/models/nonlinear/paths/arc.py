@@ -89,7 +89,7 @@ class Point:
 
     - `along` (n,): unit tangent of the path in scaled body motion; `slope`: change of the factor along the tangent; `steepest`: maximum
       slope up to this point.
-    - `motions`: number of independent motions that decrease the potential.
+    - `motions`: number of independent motions that decrease the potential energy.
     - `stiffness`: product of the lowest stiffness of the stage and the stiffness of the weakest flexure between fixed ends, relative to the
       `reference`. Where the flexure's stiffness is zero, the stage's stiffness has a pole, but the product has none. It is negative for
       unstable states, and NaN without a reference.

@@ -30,7 +30,7 @@ _EQUAL = 1e-3
 
 
 class NoCriticalLoadError(DesignError):
-    """Error: no critical load up to the maximum load factor."""
+    """Error: there is no critical load up to the maximum load factor."""
 
 
 class Kind(Enum):
@@ -60,11 +60,11 @@ class Critical:
 
 
 def unstable_motions(state: State, *, locked: Sequence[str] | None = None) -> Array:
-    """Return the number (...) of independent motions that decrease the potential of each case: 0 if stable, -1 without a state.
+    """Return the number (...) of independent motions that decrease the potential energy of each case: 0 if stable, -1 without a state.
 
     It is the number of negative eigenvalues of the stage stiffness and of each flexure's own system (without its six multipliers).
 
-    Fixed coordinates in `locked` remain fixed (absent: all). Other fixed coordinates are released under their reactions.
+    Fixed coordinates in `locked` remain fixed (default: all). Other fixed coordinates are released under their reactions.
     """
     whole = assemble(state.model, state.pose, state.loads, state.hold)
     count = count_descents(state.model, whole, kept_rows(state.model, state.held, state.held if locked is None else locked))
@@ -88,11 +88,11 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     """Compute the critical load: the factor on `load` at which equilibrium becomes unstable, with all other loads constant.
 
     The other loads are `rest`, weight and specified forces. Loads are named as in `equilibrium`. Coordinates in `hold` can be part of
-    `load`: their values then grow. The name `weight` in `load` is the weight of the stage; it requires the argument `weight` = 0. The name
-    `stated forces` is the forces and preloads of the description; it requires `stated` = 0. Other coordinates in `hold` keep their values.
-    For stability, coordinates that are not in `locked` (absent: all are) are free under their reactions.
+    `load`: their values then grow. The name `weight` in `load` stands for the weight of the stage; it requires the argument `weight` = 0.
+    The name `stated forces` stands for the forces and preloads of the description; it requires `stated` = 0. Other coordinates in `hold`
+    keep their values. For stability, coordinates that are not in `locked` (default: all) are free under their reactions.
 
-    The path starts without load, or from the `known` state under the whole load. Arc-length steps resolve the path's curvature and the
+    The path starts without load, or from the `known` state under the full load. Arc-length steps resolve the path's curvature and the
     change of the lowest stiffness. The result is the first limit point or bifurcation, where the lowest stiffness is zero (relative
     `tolerance` of the factor).
 
@@ -116,7 +116,7 @@ def critical_load(  # noqa: PLR0913 (what stays, one by one)
     followed = follow_to_event(loading, begin, most, tolerance, reserve=lambda point: law_reserve(state_at(loading, point, ())))
     if followed.event is None or followed.factor > most:
         what = f"no critical point up to {most:g} times the load"
-        raise NoCriticalLoadError([Finding("load", what, "Use a larger load, or another one")])
+        raise NoCriticalLoadError([Finding("load", what, "Use a larger load, or another load")])
     return _critical(loading, followed, start.held)
 
 

@@ -178,7 +178,7 @@ def equilibria_of_designs(
     hold: Sequence[Mapping[str, float]],
     weight: float = 1.0,
 ) -> list[State]:
-    """Compute the states of `equilibria_along` for several designs of one structure.
+    """Compute the states of `equilibria_along` for several designs of the same structure.
 
     `values` has an array (k,) and `hold` a mapping for each design.
 
@@ -225,7 +225,7 @@ def continuation(
     path. The path has the length `points` times `step`, and ends earlier if there is no further equilibrium. Coordinates in `hold` are
     fixed at their values.
 
-    The method is that of E. Riks (Int. J. Solids Structures 15, 1979), with corrections normal to the first step.
+    The method is by E. Riks (Int. J. Solids Structures 15, 1979), with corrections normal to the first step.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
@@ -292,7 +292,7 @@ def beyond(
     `critical` is the result of `critical_load` for the load. `side`, `step` and `points` are as in `post_buckling_path`. Past a limit point
     or a bend, only one side exists.
 
-    Raises `DesignError` for a side that does not exist, for a flexure that buckles between fixed ends, and without an equilibrium.
+    Raises `DesignError` for a side that does not exist, for a flexure that buckles between fixed ends, and if there is no equilibrium.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear
