@@ -64,7 +64,7 @@ def solids(ways: Ways = STANDARD_WAYS) -> Solids:
 
 
 def remember(reduce: Solids) -> Solids:
-    """Return the same function with stored results. A reduction with `raised` components is combined from stored results of two orders.
+    """Return a function that stores the results of `reduce`. Reductions with `raised` components combine stored ones of two orders.
 
     >>> remember(solids())(Mechanism("nothing"), Reduction())
     ()

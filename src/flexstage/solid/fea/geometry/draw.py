@@ -44,7 +44,7 @@ Curve = list[occ.TopoDS_Shape]
 
 
 def draw_form(form: Form) -> occ.Solid:
-    """A form as a CAD solid at the origin [mm]: links are along x, with their thickness along y and their width along z.
+    """Draw a form as a CAD solid at the origin [mm]: links are along x, with their thickness along y and their width along z.
 
     >>> from flexstage.parts.body import Block
     >>> round(draw_form(Block("steel", (0.01, 0.02, 0.03))).mass, 6)  # mm^3

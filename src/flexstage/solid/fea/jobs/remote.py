@@ -68,7 +68,7 @@ class Pool:
             self.end(worker)
 
     def worker(self, job: Job) -> Worker:
-        """A process for a job: an idle one, preferably after a similar job, else a new one. Raises `OSError` if no process can start."""
+        """Return a process for a job: an idle one, preferably after a similar job, else a new one. Raises `OSError` if none can start."""
         for each in self.idle:
             if each.process.poll() is not None:
                 self.end(each)
@@ -115,7 +115,7 @@ def _ignore(_step: Step) -> None:
 
 
 def workers(limits: Limits) -> int:
-    """Number of simultaneous jobs.
+    """Return the number of simultaneous jobs.
 
     >>> workers(Limits(workers=1))
     1
