@@ -102,4 +102,4 @@ def _texts(texts: tuple[str, ...]) -> Any:
 
 
 HDF5 = Format((".h5", ".hdf5", ".hdf"), is_hdf, read_hdf, write_hdf)
-"""HDF5 format: numbers keep all bits, any size."""
+"""HDF5 format: numbers keep all bits; files may have any size."""

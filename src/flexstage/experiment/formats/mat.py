@@ -26,7 +26,7 @@ _REFERENCES = "#refs#/"
 
 
 def is_mat(start: bytes, suffix: str) -> bool:
-    """Recognise the signature of MAT files of version 5 and 7.3; version 4 has only its file ending.
+    """Recognise MAT files: versions 5 and 7.3 by their signature, version 4 by its file ending.
 
     >>> is_mat(b"MATLAB 5.0 MAT-file", ".dat"), is_mat(b"time,u1", ".csv")
     (True, False)

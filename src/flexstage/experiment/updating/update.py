@@ -69,7 +69,7 @@ _REMAINING = Heading("remaining variance", digits=2, unit="%")
 class Residual:
     """Frequency [Hz] or static gain: measured, and by the model before and after the update, with its relative standard deviation.
 
-    The deviation is relative to `scale`: the frequency itself, or the largest gain of the gain's actuator.
+    The standard deviation is relative to `scale`: the frequency itself, or the largest gain of the same actuator.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -416,7 +416,7 @@ def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
         )
     for name, moved, prior in zip(freed.names, found.parameters, freed.deviations, strict=True):
         if abs(moved) > _FAR:
-            yield f"{name} changed by {abs(moved):.2g} prior deviations of {100.0 * prior:.2g} %: another parameter may be wrong."
+            yield f"{name} changed by {abs(moved):.2g} prior standard deviations of {100.0 * prior:.2g} %: another parameter may be wrong."
     for group in compared.repeated:
         if 0 < group.seen < len(group.numbers):
             yield f"the test shows {group.seen} of the repeated modes {' and '.join(map(str, group.numbers))}; their mean represents all."
