@@ -164,11 +164,12 @@ class Combination:
 class Updated(InNotebook):
     """Result of an update: parameters before and after a test, in SI, with standard deviations of their logarithms.
 
-    Small deviations of logarithms equal relative deviations. `addresses` (P) are full addresses. `prior` (P,) are prior deviations and
-    `covariance` (P, P) is the posterior covariance of the logarithms. The columns of `directions` (P, P) are parameter combinations in
-    prior standard deviations, best identified first. With the combination's singular value s in `singular` (P,), 1/(1 + s^2) of its prior
-    variance remains. `chi_square` is the sum over data and priors at the result; `freedoms` is the number of data. `chi_square_before` is
-    the sum over data before the update. `mechanism` is the updated description. `data_warnings` lists unreliable results.
+    If small, the standard deviation of a logarithm equals the relative standard deviation of the value. `addresses` (P) are full addresses.
+    `prior` (P,) are prior standard deviations and `covariance` (P, P) is the posterior covariance of the logarithms. The columns of
+    `directions` (P, P) are parameter combinations in prior standard deviations, best identified first. With the combination's singular
+    value s in `singular` (P,), 1/(1 + s^2) of its prior variance remains. `chi_square` is the sum over data and priors at the result;
+    `freedoms` is the number of data. `chi_square_before` is the sum over data before the update. `mechanism` is the updated description.
+    `data_warnings` lists unreliable results.
     """
 
     addresses: Annotated[tuple[str, ...], INNER]
@@ -262,7 +263,7 @@ class Updated(InNotebook):
 
     @property
     def probability(self) -> Annotated[float, VIEW]:
-        """Probability of a chi-squared value this large or larger, if deviations, priors and model are correct."""
+        """Probability of a chi-squared value this large or larger, if standard deviations, priors and model are correct."""
         return float(scipy.special.chdtrc(self.freedoms, self.chi_square))
 
     def _verdict(self, index: int, grade: Identifiability) -> str:

@@ -40,7 +40,7 @@ SOUND = Kind(".sound", "record of checked outlines")
 
 @dataclass(frozen=True)
 class Cache(CheckedFields):
-    """Folder of superelements and hinges, and size `limit` [bytes] of each kind of file: the least recently used are removed first.
+    """Folder of superelements and hinges, and size `limit` [bytes] of each kind of file: the least recently used files are removed first.
 
     The default `folder` is that of the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.
     """

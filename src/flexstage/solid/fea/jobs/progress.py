@@ -1,4 +1,4 @@
-"""Stages of a solid model: the computing process reports them, and the waiting process sums them over all components."""
+"""Stages of the computation of a solid model: the computing process reports them, and the waiting process sums them over all components."""
 
 from __future__ import annotations
 

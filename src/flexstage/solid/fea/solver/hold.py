@@ -40,7 +40,7 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """Motions for unit twists of `faces` (n, 6 m), for their unit `warps` (n, w), and for loads `within` with fixed faces; the solver."""
+    """Motions for unit twists of `faces` (n, 6 m), for their unit `warps` (n, w), for loads `within` with fixed faces; and `solve`."""
 
     faces: Columns
     warps: Columns
