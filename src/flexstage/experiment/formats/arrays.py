@@ -82,7 +82,7 @@ def held_array(name: str, values: Array) -> Variable:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """Contents of a file, named `where` in messages: arrays (`variables`), and strings, lists of strings and numbers by name (`said`).
+    """Contents of a file, named `where` in messages: the arrays `variables`, and by name, in `said`, strings, lists of strings and numbers.
 
     `objects` maps names to classes of objects that only the program that wrote the file can read.
     """

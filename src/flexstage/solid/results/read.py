@@ -46,7 +46,7 @@ class SolidRead:
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Number of unknowns of every distinct component, by the keys that `Reduction.raised` contains."""
+        """Number of unknowns of every distinct component, with the same keys as in `Reduction.raised`."""
         return {content_in_stage(item.component): item.element.freedoms for item in self._distinct}
 
     @property

@@ -40,7 +40,7 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Converged(Generic[_Result]):
-    """A result with the estimated relative error of each figure. It is an estimate, not a bound; absent errors are unknown.
+    """A result with the estimated relative error of each figure. Errors are estimates, not bounds; absent errors are unknown.
 
     The error is the change from the previous order; at order two it is a quarter of this change. The errors of the `unestimated` figures,
     which changed by more than half, are unknown. `stopped` is the reason why the order was not raised further, although the required

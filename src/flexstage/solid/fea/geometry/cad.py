@@ -83,8 +83,8 @@ def mirrors_of(component: Component) -> Mirrors:
     """Return the planes normal to y and z about which a component of one medium is symmetric and can be cut.
 
     Every joint, link and body must be its own mirror image. Leaves are cut only if thin, and only across their width: otherwise their flat
-    elements would become flatter, or fewer across the leaf, with larger error estimates. Stacks, rods, cylinders, spheres and round holes
-    are not cut either, except round plates. Their curvature sets the size of elements, and the mesher divides arcs less finely than
+    elements would become flatter, or fewer across the leaf, with larger error estimates. Stacks, rods, cylinders (except round plates),
+    spheres and round holes are not cut either. Their curvature sets the size of elements, and the mesher divides arcs less finely than
     circles, which would reduce their mass.
 
     >>> from flexstage.solid.fea.meshing.bar import bar

@@ -56,7 +56,7 @@ def draw_form(form: Form) -> occ.Solid:
 def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
     """Draw a hinge with stubs of these lengths [m] at its first and second end; elements at the neck are `size` times its thickness.
 
-    It is thin along y and wide along z. Raises `DesignError` for a kind without a shape.
+    The hinge is thin along y and wide along z. Raises `DesignError` for a kind without a shape.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> bar = specimen(Leaf("steel", 1e-3, 1e-3, 2e-3), (0.0, 0.0), 1.0)

@@ -7,7 +7,7 @@ from enum import Enum
 
 
 class Stage(Enum):
-    """Stage of a component's computation, in this order."""
+    """Stages of a component's computation, in this order."""
 
     STARTING = "starting"
     DRAWING = "drawing"

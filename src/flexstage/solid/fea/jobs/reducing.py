@@ -110,7 +110,7 @@ class Reduce(ComponentJob):
 
     @property
     def columns(self) -> int:
-        """Upper bound of the number of coordinates of its superelement."""
+        """Upper bound of the number of coordinates of the component's superelement."""
         part = self.component
         stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
         warps = WARPS * sum(item.yields for item in part.interfaces)
