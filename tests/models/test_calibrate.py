@@ -185,9 +185,9 @@ def test_what_cannot_be_told_from_the_blocks_keeps_beam_theory() -> None:
 def test_refusals() -> None:
     text = fs.dumps(parallelogram())
     once = fs.solid.calibrate(text, softened(1.0)).text
-    with pytest.raises(DesignError, match="its 6x6 is from FEA already"):
+    with pytest.raises(DesignError, match="its compliance matrix is from FEA already"):
         fs.solid.calibrate(once, softened(1.0))
-    with pytest.raises(DesignError, match="leaf: the error of its 6x6 by FEA is 30 %"):
+    with pytest.raises(DesignError, match="leaf: the error of its compliance matrix by FEA is 30 %"):
         fs.solid.calibrate(text, softened(1.0, error=0.3))
     departing = replace(parallelogram(), overrides={"B/front.thickness": 2.1e-3})
     with pytest.raises(DesignError, match="B/front: overrides its part neck"):

@@ -1,4 +1,4 @@
-"""Amplified actuators and stepping drives: the specified 6x6 stiffness, with half of the mass and inertia at each face."""
+"""Amplified actuators and stepping drives: the specified 6x6 stiffness matrix, with half of the mass and inertia at each face."""
 
 from flexstage.beams.law import PartLaw
 

@@ -34,7 +34,7 @@ _EVERY: Array = np.arange(6)
 class Law:
     """Stiffness and constraints of a link: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` DOFs.
 
-    `inner` (..., m) [1/s^2] are the squared angular frequencies of its mass-normalised fixed-end modes, which are m additional coordinates
+    `inner` (..., m) [1/s^2] are the squared angular frequencies of its m mass-normalised fixed-end modes, which are additional coordinates
     of the lumped model (default: no modes). The mass matrix of the link is then (..., 12 + m, 12 + m), with the modes after the ends.
     """
 
@@ -181,7 +181,7 @@ def _stated(part: Elastic, material: Material | None) -> Array | None:
 
 def _unknown(part: Part) -> DesignError:
     what = "no beam theory for this kind"
-    advice = f'Install a package that provides one ({LAWS.group}), or specify its 6x6 (kind = "compliance_matrix")'
+    advice = f'Install a package with a law for this kind ({LAWS.group}), or specify a 6x6 compliance matrix (kind = "compliance_matrix")'
     return refuse(f"a part of kind {inner(part).kind}", what, advice)
 
 

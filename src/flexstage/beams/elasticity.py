@@ -73,18 +73,18 @@ class HingeDimensions:
 
 
 Law = Callable[[HingeDimensions, Numbers], Array]
-"""Compliance along or about an axis times Young's modulus, as a function of the fitted coefficients."""
+"""Compliance along or about an axis times Young's modulus, as a function of dimensions and fitted coefficients."""
 
 
 def notch_x(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Tension of a notch: root compliance d(t/R) / (E b), with a fitted function d, and restrained contraction."""
+    """Compute the tensile compliance of a notch: root compliance d(t/R) / (E b), with a fitted function d, and restrained contraction."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[5] + p[6] * (1.0 - flat)
     return hinge.plane_strain(p[3], p[4], hinge.half) * (hinge.beam[..., 0] + yielded / hinge.width)
 
 
 def notch_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Transverse compliance of a notch: root compliance, bending with restrained contraction, and the block.
+    """Compute the transverse compliance of a notch: root compliance, bending with restrained contraction, and the block.
 
     Beam theory includes the block as a beam. This term is subtracted, because the block deforms as a plate.
     """
@@ -97,7 +97,7 @@ def notch_y(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending of a notch about y, in the plane of its width, as for tension; the roots of narrow hinges are stiffer."""
+    """Compute the bending compliance of a notch about y, in the plane of its width, as for tension; roots of narrow hinges are stiffer."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[7] + p[8] * (1.0 - flat)
     share = 1.0 / (1.0 + p[5] * (hinge.along / hinge.width) ** p[6])
@@ -105,21 +105,21 @@ def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def notch_rz(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending of a notch: the root rotation is proportional to t/R for small t/R, and increases with Poisson's ratio."""
+    """Compute the bending compliance of a notch: the root rotation is proportional to t/R if small, and rises with Poisson's ratio."""
     neck = np.sqrt(hinge.thickness * hinge.radius)
     turned = _root_rotation(hinge, p) * hinge.flatness ** p[4] * (1.0 + p[5] * (hinge.poisson - 0.3))
     return hinge.plane_strain(p[2], p[3], neck) * (hinge.beam[..., 5] + turned)
 
 
 def fillet_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Transverse compliance of a fillet: plate action if wide, root rotation times its lever arms, and the block as for a notch."""
+    """Compute the transverse compliance of a fillet: plate action if wide, root rotation times its lever arms, the block as for a notch."""
     bent = _plate_share(hinge, shear_factor, p[3], p[4]) * (hinge.beam[..., 1] - hinge.shear_share)
     turned = _root_rotation(hinge, p) * (hinge.half - p[2] * hinge.along) ** 2
     return bent + hinge.shear_share * (1.0 + p[5] * hinge.root) + turned - _block_as_plate(hinge, p[6], p[7])
 
 
 def fillet_rz(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending of a fillet: plate action if wide, and root rotation."""
+    """Compute the bending compliance of a fillet, with plate action if it is wide, and with root rotation."""
     return _plate_share(hinge, moment_factor, p[2], p[3]) * (hinge.beam[..., 5] + _root_rotation(hinge, p))
 
 
@@ -148,13 +148,13 @@ def wu_zhou_rotation(young: Number, width: Number, thickness: Number, radius: Nu
 
 
 def bar_x(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Tension of a bar between rigid faces, which restrain the contraction across the width and the thickness."""
+    """Compute the tensile compliance of a bar between rigid faces, which restrain the contraction across width and thickness."""
     wide, thick = _proportions(hinge)
     return hinge.beam[..., 0] * (1.0 - hinge.poisson**2 * (_saturate(p[0] * wide) + _saturate(p[1] * thick)))
 
 
 def bar_z(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending and shear of a bar in the plane of its width, between rigid faces."""
+    """Compute the transverse compliance of a bar in the plane of its width, by bending and shear, between rigid faces."""
     wide, thick = _proportions(hinge)
     sheared = hinge.shear_share / hinge.beam[..., 2]
     restraint = hinge.poisson**2 * (p[0] * wide + p[1] * thick)
@@ -162,18 +162,18 @@ def bar_z(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def bar_ry(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending of a bar in the plane of its width, between rigid faces."""
+    """Compute the bending compliance of a bar in the plane of its width, between rigid faces."""
     wide, thick = _proportions(hinge)
     return hinge.beam[..., 4] * (1.0 - hinge.poisson**2 * (p[0] * wide + p[1] * thick))
 
 
 def bar_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Transverse compliance of a bar, including plate action, which its beam theory neglects."""
+    """Compute the transverse compliance of a bar, including plate action, which its beam theory neglects."""
     return hinge.beam[..., 1] * (_plate_share(hinge, shear_factor, 1.0, p[0]) - hinge.poisson**2 * p[1] * _proportions(hinge)[1])
 
 
 def bar_rz(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending of a bar, including plate action, which its beam theory neglects."""
+    """Compute the bending compliance of a bar, including plate action, which its beam theory neglects."""
     return hinge.beam[..., 5] * _plate_share(hinge, moment_factor, 1.0, p[0])
 
 
@@ -185,19 +185,19 @@ def _plate_share(hinge: HingeDimensions, factor: Callable[[Number, Number], Numb
 
 
 def leaf_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Transverse compliance of a leaf, including plate action."""
+    """Compute the transverse compliance of a leaf, including plate action."""
     return hinge.beam[..., 1] * (1.0 - p[0] * hinge.poisson**2 * _proportions(hinge)[0])
 
 
 def leaf_rx(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Torsion of a leaf: restrained contraction at its ends stiffens its strips by factors of 1 (narrow) to 1 / (1 - nu^2) (wide)."""
+    """Compute the torsional compliance of a leaf; restrained contraction at the ends stiffens its strips, up to 1 / (1 - nu^2) if wide."""
     wide, _ = _proportions(hinge)
     restrained = hinge.poisson**2 / (1.0 - hinge.poisson**2)
     return hinge.beam[..., 3] / (1.0 + p[0] + restrained * _saturate(p[1] * wide + p[2] * wide**2))
 
 
 def leaf_rz(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Bending of a leaf, including plate action."""
+    """Compute the bending compliance of a leaf, including plate action."""
     return hinge.beam[..., 5] * (1.0 - p[0] * hinge.poisson**2 * _proportions(hinge)[0])
 
 

@@ -4,7 +4,7 @@ The polynomials vanish at both ends. Their number exceeds the number of requeste
 better. Bending is by Timoshenko's theory: deflection w, section rotation psi.
 
 A plate (Kirchhoff) also bends across its width. In bending, its deflection is w plus Legendre polynomials of even degree in z; in twist,
-phi z plus polynomials of odd degree. They are zero at the clamped ends. The strain energy U of a plate is
+it is phi z plus polynomials of odd degree. All these terms are zero at the clamped ends. The strain energy U of a plate is
 
     2 U = integral of D (w_xx^2 + 2 nu w_xx w_zz + w_zz^2 + 2 (1 - nu) w_xz^2) + S (w' - psi)^2 dx,   D = E t^3 / (12 (1 - nu^2)),
 

@@ -1,4 +1,4 @@
-"""Geometric stiffness of parts: the additional stiffness between their ends due to the forces in the part."""
+"""Geometric stiffness of a part: the additional stiffness between its ends due to the forces in the part."""
 
 from __future__ import annotations
 

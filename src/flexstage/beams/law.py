@@ -14,7 +14,7 @@ from flexstage.beams.beam import Beam
 from flexstage.beams.fixed_end_modes import FixedEndModes
 from flexstage.parts.material import Material
 
-_CALIBRATE = 'Specify a measured or computed 6x6 (kind = "compliance_matrix"), or expect a larger error than listed'
+_CALIBRATE = 'Specify a measured or computed 6x6 compliance matrix (kind = "compliance_matrix"), or expect a larger error than listed'
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ class PartLaw:
     """Law of a kind of part, as functions of a part, or of a part and its material (`None` if `needs_material` is false).
 
     Usually, `beam` defines compliance, mass, geometric stiffness and stress of the part. `diagonal` (..., 6) is the compliance if it
-    differs from the beam's (plates). All 6x6 are about the centre. A part without a beam has:
+    differs from the beam's (plates). All 6x6 matrices are about the centre. A part without a beam has:
 
     - `compliance` (..., 6, 6), or `stiffness` (..., 6, 6) if it may be singular or negative in some DOFs;
     - `material_stiffness` if the stiffness depends on the material;
@@ -69,9 +69,9 @@ class PartLaw:
     - `damping`: the viscous damping (..., 6, 6) [N s/m];
     - `twisting_load`: the compression [N] at which a column of this kind buckles in twist, below Euler's load;
     - `concentration`: the stress concentration factor of its notches; without it, or if it is `None`, the stress is unknown;
-    - `ranges`: the intervals compared with finite elements;
+    - `ranges`: ratios of dimensions with the intervals that were compared with finite elements;
     - `family`: the name of the fitted laws for the model error;
-    - `fixed_end_modes`: the `inner_modes` lowest ones, at stations from -1 to 1 over the half length.
+    - `fixed_end_modes`: the `inner_modes` lowest fixed-end modes, at stations from -1 to 1 over the half length.
     """
 
     beam: Callable[[Any, Any], Beam] | None = None

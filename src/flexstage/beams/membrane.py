@@ -23,8 +23,8 @@ from flexstage.parts.stated import point_masses
 def membrane_stiffness(part: Membrane, material: Material) -> Array:
     """Compute the stiffness (..., 6, 6) of the hub relative to the rim about its centre.
 
-    It is valid for small displacements: beyond about half the thickness along x, a membrane stretches and becomes stiffer. Plate shear is
-    neglected.
+    The stiffness is valid for small displacements: beyond about half the thickness along x, a membrane stretches and becomes stiffer. Plate
+    shear is neglected.
 
     >>> sheet = Membrane("steel", inner=0.02, outer=0.06, thickness=2e-4)
     >>> membrane_stiffness(sheet, Material(young=200e9, poisson=0.3, density=7750.0)).diagonal().round(1).tolist()

@@ -37,7 +37,7 @@ def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
 
     Each thin end, up to its fillet, is a leaf whose two ends cannot curve across the width, with the factors of `beams.plate`. The moment
     at its centre and the shear force have different factors. The thick middle is assumed to prevent curvature of the leaf across the width,
-    which is valid if it is twice as thick. It bends as a beam. With `section` beam, there is no plate action.
+    which is valid if it is twice as thick as the ends. The middle bends as a beam. With `section` beam, there is no plate action.
     """
     whole = reinforced_beam(part, material).diagonal()
     if part.section is LeafSection.BEAM:

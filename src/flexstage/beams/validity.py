@@ -43,7 +43,7 @@ def validity(part: Part, where: str = "part", material: Material | None = None) 
     The errors are correct within 1 % of the compliance (fillets along y and about z: 2 %), compared with three-dimensional finite elements.
 
     - Errors of notches include the roots, on blocks of full height and width. Straight notches, leaves and rods are between rigid faces.
-    - Along z and about x, the error of a notch is unknown: its own compliance is too small compared with the blocks.
+    - Along z and about x, the error of a notch is unknown: its own compliance is too small compared with that of the blocks.
     - The error of parts with a specified matrix is not estimated.
 
     >>> from flexstage.parts.notch import Notch
@@ -70,7 +70,7 @@ def _plane_strain_finding(where: str, error: Array | None, poisson: Number) -> F
     return Finding(
         where,
         f"bends in plane strain due to its width: {off}",
-        'Use the plane-strain stiffness, or specify a measured or computed 6x6 (kind = "compliance_matrix")',
+        'Use the plane-strain stiffness, or specify a measured or computed 6x6 compliance matrix (kind = "compliance_matrix")',
     )
 
 

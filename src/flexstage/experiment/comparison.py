@@ -138,7 +138,7 @@ class FurtherMode:
     TABLE: ClassVar[Layout] = Layout(
         "Further measured modes",
         "experiment.number experiment.frequency experiment.frequency_interval experiment.widening experiment.damping name theory assurance",
-        notes=("Modes of single units, of the ground or of the support. Motions at the sensors alone pair local modes less reliably.",),
+        notes=("Modes of single units, of the ground or of the support. Pairing of local modes by sensor motions alone is less reliable.",),
     )
 
     experiment: Measured

@@ -41,7 +41,7 @@ class Resolution(CheckedFields):
 
 DEFAULT = Resolution()
 STRESSES = Resolution(twist=3, across=4, bending=4)
-"""Default resolution for hinges of varying compliance. At zero load, moments of degree 0 and 1 are exact; two more degrees are for loads.
+"""Default resolution for hinges of varying compliance. At zero load, moments of degree 0 and 1 are exact; two more are for loads.
 """
 
 
@@ -49,7 +49,7 @@ STRESSES = Resolution(twist=3, across=4, bending=4)
 class FlexureLaw:
     """Tables of a flexure (docs/nonlinear.md, 3). The leading axes are flexures with equal numbers of modes.
 
-    - `form` (..., q, q): second derivative of the quadratic energy by all q amplitudes: k of curvature, then e of the plate fields.
+    - `form` (..., q, q): second derivative of the quadratic energy by all q amplitudes, first k of curvature, then e of plate fields.
     - `modes` (..., n, 3, k) and `inner` (..., 3 (n + 1), 3, k): curvatures of unit amplitudes at the points of the rule and of the rotation
       steps.
     - `plate` (..., n, 2, e): the fields a2 and a4.
@@ -155,8 +155,8 @@ def natural_curvature(part: Leaf, material: Material) -> float:
 def beam_law(part: Beam, resolution: Resolution = STRESSES, *, flat: bool = False, curvature: float = 0.0) -> FlexureLaw:
     """Build the law of a part with a `Beam` by stress modes: curvature = flexibility(s) x polynomials (docs/nonlinear.md, 14).
 
-    At zero load, the law equals the 6x6 of the beam. `flat`: the section is thin, and its fibres far from the axis stretch in twist (Wagner
-    effect). `curvature` is the natural curvature about z [1/m].
+    At zero load, the law gives the 6x6 stiffness matrix of the beam. With `flat`, the section is thin, and its fibres far from the axis
+    stretch in twist (Wagner effect). `curvature` is the natural curvature about z [1/m].
     """
     places, weights, flexibility, inertia = _whole(part)
     length = np.sum(weights)

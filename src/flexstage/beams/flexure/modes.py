@@ -77,7 +77,7 @@ def slopes(count: int, places: Array) -> Array:
 class Across:
     """Integrals of products of the shapes phi_j = P_j(2 z) / 12 and their derivatives across the width b = 1.
 
-    The products are phi phi, phi' phi', phi'' phi'', phi phi'' and z phi''; the last integrals are of phi'.
+    The products are, in order, phi phi, phi' phi', phi'' phi'', phi phi'' and z phi''. `turning` contains the integrals of phi'.
     """
 
     plain: Array

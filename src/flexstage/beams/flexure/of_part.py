@@ -1,4 +1,4 @@
-"""Flexure law of a part at large displacements. Kinds of parts without such a law have only a 6x6 about the centre."""
+"""Flexure law of a part at large displacements. Other parts have only a 6x6 stiffness matrix about the centre."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _KINDS: Mapping[type, Callable[[Any, Material, Resolution], FlexureLaw]] = {
 
 
 def flexure_law(part: Part, material: Material | None, resolution: Resolution = DEFAULT) -> FlexureLaw | None:
-    """Return the flexure law of a part that bends, or `None` for a part that has only a 6x6.
+    """Return the flexure law of a part that bends, or `None` for a part that has only a 6x6 stiffness matrix.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> flexure_law(Rod("steel", length=0.1, diameter=0.002), steel).signature

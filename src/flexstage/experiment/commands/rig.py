@@ -64,7 +64,7 @@ def rig(  # noqa: PLR0913  a test has that many knobs
     ] = "0 nm",
     input_signal: Annotated[
         InputSignal,
-        word_option("--input-signal", InputSignal, "Recorded input signal: filtered output of the amplifier, or its command."),
+        word_option("--input-signal", InputSignal, "Recorded input signal: filtered output of the amplifier, or its unfiltered input."),
     ] = InputSignal.MONITOR,
     delay: Annotated[str, typer.Option("--delay", metavar="VALUE", help="Delay of the recorded gauge readings, e.g. 1ms.")] = "0 s",
     input_quantity: Annotated[

@@ -41,19 +41,19 @@ def update(  # noqa: PLR0913 (its options)
         text_option(
             "--prior",
             "[ADDRESS=]SHARE",
-            'Prior relative standard deviation, of all or one, e.g. "5 %" or "neck.thickness=2 %". Default: 10 %. Repeatable.',
+            'Prior relative standard deviation of all parameters or of one, e.g. "5 %" or "neck.thickness=2 %". Default: 10 %. Repeatable.',
         ),
     ] = None,
     model_error: Annotated[
         str, typer.Option("--model-error", metavar="SHARE", help="Relative standard deviation of the theoretical frequencies.")
     ] = "0.1 %",
-    gain: Annotated[bool, typer.Option("--gain", help="Static gains from actuators to gauges as further data.")] = False,
+    gain: Annotated[bool, typer.Option("--gain", help="Use static gains from actuators to gauges as further data.")] = False,
     gain_error: Annotated[
         str,
         typer.Option(
             "--gain-error",
             metavar="SHARE",
-            help="Standard deviation of static gains (theory, gauges and drives), relative to the largest of each actuator.",
+            help="Standard deviation of static gains (theory, gauges and drives), relative to the largest gain of each actuator.",
         ),
     ] = "0.1 %",
     texts: RecordTexts,

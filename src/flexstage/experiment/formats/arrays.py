@@ -47,7 +47,7 @@ Spans: TypeAlias = tuple[tuple[int, int], ...]
 
 @dataclass(frozen=True, eq=False)
 class Variable:
-    """Array of a file: its name (a path), its shape, the function that reads a part of it, and its attributes."""
+    """Array of a file: its name (with the path in the file), its shape, the function that reads a part of it, and its attributes."""
 
     name: str
     shape: tuple[int, ...]
@@ -82,7 +82,7 @@ def held_array(name: str, values: Array) -> Variable:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """Contents of a file, named `where` in messages: arrays (`variables`), and strings, lists of strings and numbers by name (`said`).
+    """Contents of a file, named `where` in messages: the arrays `variables`, and by name, in `said`, strings, lists of strings and numbers.
 
     `objects` maps names to classes of objects that only the program that wrote the file can read.
     """
@@ -119,7 +119,7 @@ class Contents:
         return found if isinstance(found, tuple) else (str(found),)
 
     def text(self, name: str) -> str:
-        """Return the string of this name, a list joined by blanks; empty if absent."""
+        """Return the string with this name (a list of strings is joined by blanks); empty if absent."""
         return " ".join(self.texts(name))
 
 
@@ -236,7 +236,7 @@ def list_arrays(contents: Contents) -> str:
 
 
 def _require_real(contents: Contents, chosen: Iterable[Variable]) -> None:
-    advice = "Name real arrays of one or two axes"
+    advice = "Name real arrays with one or two axes"
     require(
         Finding(f"{contents.where}: {each.name}", f"no samples (got {'complex' if each.is_complex else f'shape {each.shape}'})", advice)
         for each in chosen

@@ -31,7 +31,7 @@ def is_gcs(start: bytes, _suffix: str) -> bool:
 
 
 def read_gcs(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    r"""Read the record of a GCS array: NAME0, NAME1, ... name its columns, SAMPLE_TIME [s] is the time between its lines.
+    r"""Read the record of a GCS array: NAME0, NAME1, ... name its columns, and SAMPLE_TIME [s] is the time step of its lines.
 
     The header (`# KEY = value` up to `# END_HEADER`) follows PI's general command set, as read by PI's library (PIPython,
     `getgcsheader`). SEPARATOR is the code of the column separator, DIM the number of columns, NDATA the number of lines. The header has no

@@ -39,7 +39,7 @@ def is_hdf(start: bytes, _suffix: str) -> bool:
 
 
 def read_hdf(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    """Read the contents of an HDF5 file by array name; arrays stay in the file. Columns of tables are separate arrays.
+    """Read an HDF5 file as arrays by name, which stay in the file. Columns of tables are separate arrays.
 
     Lists of names, units and roles are attributes of the array, or separate arrays. Single values may be attributes of the file. Raises
     `DesignError` for an invalid, truncated or damaged file, and for the errors of `read_arrays`.
@@ -102,4 +102,4 @@ def _texts(texts: tuple[str, ...]) -> Any:
 
 
 HDF5 = Format((".h5", ".hdf5", ".hdf"), is_hdf, read_hdf, write_hdf)
-"""HDF5 format: numbers keep all bits, any size."""
+"""HDF5 format: numbers keep all bits; files may have any size."""

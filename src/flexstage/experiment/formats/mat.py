@@ -26,7 +26,7 @@ _REFERENCES = "#refs#/"
 
 
 def is_mat(start: bytes, suffix: str) -> bool:
-    """Recognise the signature of MAT files of version 5 and 7.3; version 4 has only its file ending.
+    """Recognise MAT files: versions 5 and 7.3 by their signature, version 4 by its file ending.
 
     >>> is_mat(b"MATLAB 5.0 MAT-file", ".dat"), is_mat(b"time,u1", ".csv")
     (True, False)
@@ -35,7 +35,7 @@ def is_mat(start: bytes, suffix: str) -> bool:
 
 
 def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    """Read the contents of a MAT file by array name. Members of structures have paths as names (`test.u`). Lists of strings are cells.
+    """Read a MAT file as arrays by name. Members of structures have paths as names (`test.u`). Lists of strings are cells.
 
     MATLAB objects (`timeseries`, `table`, `idfrd`) cannot be read outside MATLAB: the error lists them, with a hint on export. Arrays of
     version 7.3 stay in the file, others are read at once. Raises `DesignError` for an invalid or truncated file, and for the errors of

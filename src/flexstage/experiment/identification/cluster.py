@@ -30,8 +30,8 @@ class Candidate:
 class Stabilisation:
     """Stabilisation diagram: for every pole its order, frequency in Hz, damping ratio and stability relative to the order below.
 
-    `stable` is 0 for a new pole, 1 for a stable frequency (0.2 %), 2 for stable frequency and damping (5 %). It is 3 if also the
-    participation is stable (MAC of 0.98).
+    `stable` is 0 for a new pole, 1 for a stable frequency (0.2 %), 2 for stable frequency and damping (5 %), and 3 if the
+    participation is also stable (MAC of 0.98).
     """
 
     orders: Array

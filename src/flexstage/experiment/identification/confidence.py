@@ -32,7 +32,7 @@ class Deviations:
     shapes: Array
 
     def widen(self, factors: Array) -> Deviations:
-        """Multiply all deviations of each mode by the mode's factor (k,).
+        """Multiply all standard deviations of each mode by the mode's factor (k,).
 
         >>> Deviations(np.ones(1), np.ones(1), np.ones((2, 1))).widen(np.array([3.0])).shapes.tolist()
         [[3.0], [3.0]]
@@ -44,9 +44,9 @@ def misfits(band: Band, modal: Modal) -> Array:
     """Compute the residual of the fit near each mode (k,) relative to the band's noise; 1 if not significant.
 
     With noise only, the residual has the same level everywhere, apart from the degrees of freedom that the mode uses. Outputs with coherent
-    noise count once. A residual with a probability below 1/1000 is significant: the mode is then nonlinear, not viscously damped, or not
-    isolated. Neighbourhoods of 1.5 and of 4 half-widths are tested. The residual of a mode that varies or has unrecorded excitation is
-    largest in the first.
+    noise count once. A residual is significant if noise causes it with a probability below 1/1000: the mode is then nonlinear, not
+    viscously damped, or not isolated. Neighbourhoods of 1.5 and of 4 half-widths are tested. The residual of a mode that varies or has
+    unrecorded excitation is largest in the first neighbourhood.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit, noise

@@ -315,7 +315,7 @@ def _response_findings(known: Responses, steps: Array) -> list[Finding]:
 
 
 def is_even(frequencies: Array) -> bool:
-    """Whether lines are evenly spaced, to a thousandth of their spacing; stepped and swept sines are not.
+    """Return whether lines are evenly spaced, to a thousandth of their spacing; stepped and swept sines are not.
 
     >>> is_even(np.arange(5.0)), is_even(np.geomspace(1.0, 9.0, 5))
     (True, False)

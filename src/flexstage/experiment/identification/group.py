@@ -47,7 +47,8 @@ class ModeSearch:
 class BandModes:
     """Identified modes of the band of one `group`, with their standard deviations caused by noise, and their significance.
 
-    `misfit` (k,) is the residual near each mode relative to noise, `widening` (k,) the resulting inflation factor of its deviations.
+    `misfit` (k,) is the residual near each mode relative to noise, `widening` (k,) the resulting inflation factor of its standard
+    deviations.
     """
 
     group: Extent

@@ -1,4 +1,4 @@
-"""Jackknife deviations of modes, from omission of parts of the data: valid even if the model is not."""
+"""Jackknife standard deviations of modes, from omission of parts of the data; they are valid even if the model is not."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _OCTAVES = 6
 
 
 def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
-    """Compute deviations (k,) in Hz of the real and the imaginary part of poles, by omitting one group of cells at a time.
+    """Compute standard deviations (k,) in Hz of real and imaginary parts of poles, by omitting one group of cells at a time.
 
     `groups` (c,) are the group numbers of the cells, from 0 to G - 1. The variance is sigma^2 = (G - 1)/G sum |d_g|^2 / 2. The change d_g
     of the pole without group g is a Newton step, -(I - I_g)^-1 s_g. I_g and s_g are the contributions of the group to information and

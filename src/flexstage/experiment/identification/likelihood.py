@@ -181,7 +181,7 @@ def residual_power(band: Band, modal: Modal) -> Array:
 
 
 def explained_share(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
-    """Compute the outputs as explained by modes and background: factors (p, c, 8, n) of Z (see `Cells`), block by block.
+    """Compute the outputs that modes and background explain, as factors (p, c, 8, n) of Z (see `Cells`), block by block.
 
     Yields the indices of the block's cells and the factors in these cells.
 

@@ -8,7 +8,7 @@ from flexstage.base.number import Array
 
 
 def modal_sum(frequencies: Array, poles: Array, shapes: Array, participation: Array) -> Array:
-    """Compute H (f, p, m) = sum of shape participation / (j w - pole) and its conjugate, poles (k,) in rad/s, frequencies in Hz.
+    """Compute H (f, p, m) = sum of shape participation / (j w - pole) and its conjugate, with poles (k,) in rad/s and frequencies in Hz.
 
     Heylen, Lammens & Sas, Modal Analysis Theory and Testing, 1997, A.1. Shapes (p, k), participation (k, m).
 

@@ -274,7 +274,7 @@ def _dependent(record: Record, found: RecordNumbers, where: str) -> Iterator[Fau
             return
         name = names[alive.pop(worst)]
         what = f"{100.0 * shares[worst]:.3g} % of its power is explained by the other inputs, {', '.join(names[k] for k in alive)}"
-        advice = 'Drive the inputs with independent noise, or accept "dependent" to omit this input, whose effect is then part of theirs'
+        advice = 'Drive the inputs with independent noise, or accept "dependent" to omit this input; the others then explain its effect'
         yield _fault(FaultTolerance.DEPENDENT, where, name, what, advice)
 
 

@@ -68,7 +68,7 @@ class InMemory:
         return len(self.values)
 
     def read(self, start: int, stop: int) -> Array:
-        """Samples `start` to `stop` (excluded).
+        """Return samples `start` to `stop` (excluded).
 
         >>> InMemory(np.array([[1.0], [2.0], [3.0]])).read(1, 3).tolist()
         [[2.0], [3.0]]

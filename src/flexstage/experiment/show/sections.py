@@ -38,12 +38,12 @@ from flexstage.show.viewer.motions import Group, Motion, Skeleton
 
 _FLOOR = (
     "No input was recorded. Modes are stable poles of covariance-driven stochastic subspace identification, band by band. Intervals follow "
-    "from the scatter between forty blocks, to first order. Shapes are divided by their largest component: their scale by mass is unknown."
+    "from the scatter between forty blocks, to first order. Shapes are divided by their largest component; their mass scaling is unknown."
 )
 
 
 def found_section(seen: Identification) -> Section | None:
-    """Section of identified modes, and of the limits of the data."""
+    """Make the section of identified modes, and of the limits of the data."""
     text = (
         "Candidates are the stable poles of the poly-reference least-squares complex frequency-domain estimator, applied to H1. Each group "
         "of close candidates is fitted by maximum likelihood to the transform of the whole record. Insignificant modes are omitted."
@@ -62,7 +62,7 @@ def found_section(seen: Identification) -> Section | None:
 
 
 def response_data_section(seen: Identification) -> Section | None:
-    """Section of responses (data and fit) and of the estimators side by side; without recorded inputs, of amplitude densities."""
+    """Make the section of responses (data and fit) and of the estimators side by side; without recorded inputs, of amplitude densities."""
     found = seen.found
     if not found.inputs:
         picture = to_svg(density_figure(found), "measured-densities", "Amplitude density of outputs over frequency, and the modes found")
@@ -84,7 +84,7 @@ def response_data_section(seen: Identification) -> Section | None:
 
 
 def coherence_section(seen: Identification) -> Section | None:
-    """Section of ordinary and multiple coherence; `None` without stored coherence."""
+    """Make the section of ordinary and multiple coherence; `None` without stored coherence."""
     if seen.found.responses.coherence is None and seen.multiple is None:
         return None
     lines = None if seen.spectra is None else seen.spectra.frequencies
@@ -95,13 +95,13 @@ def coherence_section(seen: Identification) -> Section | None:
         window = known.segments.window.value.capitalize()
         cut = f" Segments of {number(known.segments.seconds, 4)} s, {window} window, {known.averages} averages."
     caption = (
-        "Multiple coherence: fraction of an output's power that all inputs explain. Ordinary coherence: fraction that one explains." + cut
+        "Multiple coherence: fraction of output power that all inputs explain. Ordinary coherence: fraction that one input explains." + cut
     )
     return section("Coherence", [Picture(drawn, caption)])
 
 
 def stabilisation_section(found: Identified) -> Section | None:
-    """Section of the stabilisation diagram; `None` without candidates."""
+    """Make the section of the stabilisation diagram; `None` without candidates."""
     if not found.stabilisation:
         return None
     drawn = to_svg(stabilisation_figure(found), "stabilisation", "Stabilisation diagram: poles by order and frequency")
@@ -113,7 +113,7 @@ def stabilisation_section(found: Identified) -> Section | None:
 
 
 def measured_shape_section(found: Identified, shapes: StageShapes, data: StageData) -> Section | None:
-    """Section of measured shapes as stage motions, or the reason for their absence; `None` without modes."""
+    """Make the section of measured shapes as stage motions, or of the reason for their absence; `None` without modes."""
     if not len(found.frequencies):
         return None
     if shapes.missing:
@@ -141,7 +141,7 @@ def measured_motions(found: Identified, shapes: StageShapes, bones: Skeleton) ->
 
 
 def pair_section(found: Compared, data: StageData) -> Section | None:
-    """Section of paired model and measured modes, animated side by side; `None` without a pair that can be drawn."""
+    """Make the section of paired model and measured modes, animated side by side; `None` without a pair that can be drawn."""
     theory, known = platform_modes(data), {each.name for each in data.motions}
     partners = [
         (f"mode {theory[mode.number - 1].name}", f"mode measured {mode.experiment.number}")
@@ -163,7 +163,7 @@ def _pictures(found: Identified, data: StageData) -> Iterator[Picture]:
 
 
 def compare_section(found: Compared) -> Section | None:
-    """Section of model, finite elements and test: figure, tables, warnings."""
+    """Make the section of model, finite elements and test: figure, tables, warnings."""
     drawn = to_svg(compare_figure(found), "compared", "Frequencies of theory, FEA and experiment")
     shown = "theory, FEA and experiment" if found.fea is not None else "theory and experiment"
     caption = f"Above: frequencies of {shown}. Below: difference from the experiment. Whiskers and bands: 95 % intervals of the experiment."

@@ -86,7 +86,7 @@ def multiple_coherence(spectra: Spectra) -> Array:
 
 
 def noise_density(spectra: Spectra) -> Array:
-    """Estimate the power density (f, p) of outputs that inputs do not explain, corrected for the bias of a finite number of averages.
+    """Estimate the part (f, p) of the output power density that inputs do not explain, without the bias of a finite number of averages.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> bool(noise_density(example_spectra())[3, 0] < 1e-9)

@@ -27,7 +27,7 @@ class Problem(Generic[_State]):
 
     `state` computes the model's state at parameters (P,), starting from the previous state. `residuals` (n,) of a state are (data -
     model)/deviation, with the standard deviations of the data. `slopes` (n, P) are the model's derivatives by the parameters, divided by
-    the same deviations. The prior covariance of the parameters is the identity.
+    the same standard deviations. The prior covariance of the parameters is the identity.
     """
 
     state: Callable[[Array, _State], _State]

@@ -10,7 +10,7 @@ _DIGITS = 7
 
 
 def updated_text(text: str, found: Updated, record: str, *, where: str = "text") -> str:
-    """Format the stage's design file with the updated values, each tagged `derived update RECORD` with its deviation.
+    """Format the stage's design file with the updated values, each tagged `derived update RECORD` with its standard deviation.
 
     Raises `DesignError` if the file's layout does not allow the change.
     """

@@ -70,7 +70,7 @@ _REMAINING = Heading("remaining variance", digits=2, unit="%")
 class Residual:
     """Frequency [Hz] or static gain: measured, and by the model before and after the update, with its relative standard deviation.
 
-    The deviation is relative to `scale`: the frequency itself, or the largest gain of the gain's actuator.
+    The standard deviation is relative to `scale`: the frequency itself, or the largest gain of the same actuator.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -165,11 +165,12 @@ class Combination:
 class Updated(InNotebook):
     """Result of an update: parameters before and after a test, in SI, with standard deviations of their logarithms.
 
-    Small deviations of logarithms equal relative deviations. `addresses` (P) are full addresses. `prior` (P,) are prior deviations and
-    `covariance` (P, P) is the posterior covariance of the logarithms. The columns of `directions` (P, P) are parameter combinations in
-    prior standard deviations, best identified first. With the combination's singular value s in `singular` (P,), 1/(1 + s^2) of its prior
-    variance remains. `chi_square` is the sum over data and priors at the result; `freedoms` is the number of data. `chi_square_before` is
-    the sum over data before the update. `mechanism` is the updated description. `data_warnings` lists unreliable results.
+    If small, the standard deviation of a logarithm equals the relative standard deviation of the value. `addresses` (P) are full addresses.
+    `prior` (P,) are prior standard deviations and `covariance` (P, P) is the posterior covariance of the logarithms. The columns of
+    `directions` (P, P) are parameter combinations in prior standard deviations, best identified first. With the combination's singular
+    value s in `singular` (P,), 1/(1 + s^2) of its prior variance remains. `chi_square` is the sum over data and priors at the result;
+    `freedoms` is the number of data. `chi_square_before` is the sum over data before the update. `mechanism` is the updated description.
+    `data_warnings` lists unreliable results.
     """
 
     addresses: Annotated[tuple[str, ...], INNER]
@@ -263,7 +264,7 @@ class Updated(InNotebook):
 
     @property
     def probability(self) -> Annotated[float, VIEW]:
-        """Probability of a chi-squared value this large or larger, if deviations, priors and model are correct."""
+        """Probability of a chi-squared value this large or larger, if standard deviations, priors and model are correct."""
         return float(scipy.special.chdtrc(self.freedoms, self.chi_square))
 
     def _verdict(self, index: int, grade: Identifiability) -> str:
@@ -422,7 +423,7 @@ def _warnings(data: _Data, found: Fitted[Design], compared: Compared) -> Iterato
         )
     for name, moved, prior in zip(freed.names, found.parameters, freed.deviations, strict=True):
         if abs(moved) > _FAR:
-            yield f"{name} changed by {abs(moved):.2g} prior deviations of {100.0 * prior:.2g} %: another parameter may be wrong."
+            yield f"{name} changed by {abs(moved):.2g} prior standard deviations of {100.0 * prior:.2g} %: another parameter may be wrong."
     for group in compared.repeated:
         if 0 < group.seen < len(group.numbers):
             yield f"the test shows {group.seen} of the repeated modes {' and '.join(map(str, group.numbers))}; their mean represents all."

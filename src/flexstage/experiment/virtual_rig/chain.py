@@ -38,7 +38,8 @@ class Chain:
 
     The transform has three blocks of `size` samples at `finer` times the sampling rate. `strokes` (l, m) is the transfer function to the
     inputs after the amplifiers, `inputs` (l, m) to the recorded inputs [m, A or N], `outputs` (l, p, m) to the gauges [m, rad]. Their l
-    lines end with the drive's band. `gauge` (f, p) is that to the gauges' noise, at all lines. `note` describes the damping model.
+    lines end with the drive's band. `gauge` (f, p) is the transfer function to the gauges' noise, at all lines. `note` describes the
+    damping model.
     """
 
     size: int
@@ -72,7 +73,7 @@ class Chain:
 
 
 def chain(model: LinearModel, plan: Plan, damping: Damping) -> Chain:
-    """Compute the measuring chain of a plan. Raises `DesignError` for a stage that decays too slowly.
+    """Compute the measuring chain of a plan. Raises `DesignError` for a stage whose vibrations decay too slowly.
 
     Structural damping has no time-domain form: each mode has its equivalent damping ratio, and `note` mentions this.
 

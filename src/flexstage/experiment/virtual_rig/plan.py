@@ -49,10 +49,10 @@ class DrivenInput:
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """Set-up of a virtual test with all defaults resolved, in SI, by driven actuator (m,) and by gauge (p,).
+    """Set-up of a virtual test with all defaults resolved, in SI, for each driven actuator (m,) and each gauge (p,).
 
-    `units` (p,) are the units of gauge readings. `rms` (m,) are rms values of the commanded `inputs`. `bandwidths` (m,) are those of
-    amplifiers and coils [Hz] (infinite: ideal). `lags` (p,) are corner frequencies of gauges, `walks` (p,) their drifts after a minute.
+    `units` (p,) are the units of gauge readings. `rms` (m,) are rms values of the commanded `inputs`. `bandwidths` (m,) are the bandwidths
+    of amplifiers and coils [Hz] (infinite: ideal). `lags` (p,) are corner frequencies of gauges, `walks` (p,) their drifts after a minute.
     `highest` is the highest platform mode [Hz].
     """
 

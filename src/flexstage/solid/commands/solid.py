@@ -70,7 +70,7 @@ else:  # reports are rare
 
 
 class Scope(Enum):
-    """Scope of a solid study: each distinct hinge, each distinct unit isolated, or the whole stage."""
+    """Scope of a solid study: each distinct hinge, each distinct isolated unit, or the whole stage."""
 
     HINGE = "hinge"
     UNIT = "unit"
@@ -100,7 +100,7 @@ class SolidOptions:
 
     @property
     def resolution(self) -> Resolution:
-        """The accuracy and the order. Raises `DesignError` for values out of range."""
+        """Return the accuracy and the order. Raises `DesignError` for values out of range."""
         share = parse(self.accuracy, RATIO, where="--accuracy")
         if not 1e-6 <= share < 1.0:
             what = f"must be between 1e-6 and 1 (got {self.accuracy})"
@@ -108,7 +108,7 @@ class SolidOptions:
         return Resolution(share, self.order)
 
     def ways(self, shown: ProgressBar, pool: Pool | None = None) -> Ways:
-        """Options of the jobs: the cache of the user, with progress. Raises `DesignError` for an invalid size of memory."""
+        """Return the options of the jobs, with the user's cache and progress. Raises `DesignError` for an invalid size of memory."""
         return Ways(Cache(), shown.step, Limits(memory=_size(self.memory)), pool, print_warning, print_note)
 
 
@@ -135,8 +135,8 @@ def solid(
 ) -> CommandResult:
     """Analyse a stage as elastic solids by finite elements.
 
-    With scope hinge, computes the 6x6 compliance of every hinge. With scope unit, computes stiffness, lost motion and stress of isolated
-    units. With scope stage, computes stiffness, modes and stress of the stage.
+    With scope hinge, computes the 6x6 compliance matrix of every hinge. With scope unit, computes stiffness, lost motion and stress of
+    isolated units. With scope stage, computes stiffness, modes and stress of the stage.
 
     The cache keeps reduced components for later commands.
     """
@@ -216,7 +216,8 @@ def calibrate(
 ) -> CommandResult:
     """Compute the 6x6 compliance of hinges by finite elements.
 
-    Writes a design file in which hinges have the 6x6 from FEA, for a more accurate lumped model. Comments and the drawn hinges are kept.
+    Writes a design file in which hinges have compliance matrices from FEA, for a more accurate lumped model. Comments and the drawn hinges
+    are kept.
     """
     resolution = options.resolution
     text = read_text(design)
@@ -303,7 +304,7 @@ _STUDIES = {Scope.HINGE: _hinge_study, Scope.UNIT: _unit_study, Scope.STAGE: _st
 
 
 def free_end_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Warnings about leaves whose ends are free to warp in theory, but clamped in the solid model.
+    """Return warnings about leaves whose ends are free to warp in theory, but clamped in the solid model.
 
     >>> free_end_warnings(Mechanism("stage"))
     ()

@@ -46,7 +46,7 @@ def export_superelement(
     the stage, of the unit that contains the solid, or of the link if the solid is a single link.
 
     Stiffness `K` and mass `M` are in SI units. Their coordinates are the twists of the ports, then inner coordinates: the `reduction.modes`
-    lowest modes with all ports fixed, and static responses that replace the omitted modes. These are the responses to wrenches on the
+    lowest modes with all ports fixed, and static responses that replace the omitted modes. The latter are responses to wrenches on the
     bodies and to the inertia of the ports' motions.
 
     Raises `DesignError` for the errors of `model`, for an unknown name, for fewer than two ports, and for a stack, because the matrices

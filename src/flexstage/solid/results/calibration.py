@@ -1,4 +1,4 @@
-"""Calibration of the lumped model: the 6x6 compliance of hinges from finite elements replaces that of beam theory."""
+"""Calibration of the lumped model: the 6x6 compliance matrix of hinges from finite elements replaces that of beam theory."""
 
 from __future__ import annotations
 
@@ -52,10 +52,10 @@ class Calibration(InNotebook):
 
 @check_arguments
 def calibrate(text: str, compute: Hinges = STANDARD_HINGES, *, where: str = "text") -> Calibration:
-    """Compute the 6x6 compliance of every distinct hinge in a design file's text and insert the results; comments are kept.
+    """Compute the 6x6 compliance matrix of every distinct hinge in a design file's text, and insert the results; comments are kept.
 
     Raises `DesignError` for hinges that are calibrated already, have overrides in single instances or are members of a compound. Raises it
-    also if the error of a 6x6 by FEA is unknown or above 10 %.
+    also if the error of a matrix by FEA is unknown or above 10 %.
     """
     mechanism = loads(text, where=where)
     require(_refuse_calibrated(mechanism))
@@ -97,8 +97,8 @@ def stand_ins(found: Mapping[str, SolidHinge]) -> dict[str, ComplianceMatrix]:
 
 def _doubt(name: str, error: float | None) -> Finding:
     if error is None:
-        return Finding(f"parts.{name}", f"the error of its 6x6 by FEA is unknown: {NO_ESTIMATE}", LEAVE)
-    what = f"the error of its 6x6 by FEA is {100.0 * error:.2g} % (expected at most 10 %)"
+        return Finding(f"parts.{name}", f"the error of its compliance matrix by FEA is unknown: {NO_ESTIMATE}", LEAVE)
+    what = f"the error of its compliance matrix by FEA is {100.0 * error:.2g} % (expected at most 10 %)"
     return Finding(f"parts.{name}", what, "Require a smaller relative error (--accuracy)")
 
 
@@ -128,7 +128,7 @@ def _rename_parts(links: Mapping[str, Link], names: Mapping[str, str], owner: st
 
 def _refuse_calibrated(mechanism: Mechanism) -> Iterator[Finding]:
     for name in calibrated_parts(mechanism):
-        yield Finding(f"parts.{name}", "its 6x6 is from FEA already", "Calibrate the original design file")
+        yield Finding(f"parts.{name}", "its compliance matrix is from FEA already", "Calibrate the original design file")
 
 
 def _refuse_members(mechanism: Mechanism) -> Iterator[Finding]:
@@ -142,7 +142,7 @@ def _refuse_overrides(mechanism: Mechanism) -> Iterator[Finding]:
         if link.described.part != mechanism.parts[link.link.part]:
             yield Finding(
                 link.name,
-                f"overrides its part {link.link.part}, but all links of this part share one 6x6",
+                f"overrides its part {link.link.part}, but all links of this part share one compliance matrix",
                 "Define a separate part for this link",
             )
 

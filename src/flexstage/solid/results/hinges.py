@@ -1,4 +1,4 @@
-"""Compliance (6x6) of every distinct hinge of a stage, computed for the isolated solid with the roots that it has in the stage.
+"""6x6 compliance matrix of every distinct hinge of a stage, by finite elements of the isolated hinge with its roots in the stage.
 
 A root is the elastic block to which an end of the hinge is attached. The compliance of the roots belongs to the hinge, because models with
 rigid bodies contain no other compliance of the blocks. A part used with different roots counts as several hinges.
@@ -35,7 +35,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 _MOST_STUB = 0.9
 
 Hinges: TypeAlias = Callable[[Mapping[str, HingeForm]], Mapping[str, HingeSolid]]
-"""Function that returns the 6x6 of hinges by name: computed, or from a cache with progress reports."""
+"""Function that returns the 6x6 compliance matrices of hinges by name: computed, or from a cache with progress reports."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +70,7 @@ class SolidHinge(DistinctHinge, InNotebook):
 
     @property
     def separable(self) -> Annotated[tuple[bool, ...], VIEW]:
-        """Whether each direct compliance can be separated from that of the adjacent stubs: stubs have at most 90 % of the sum.
+        """Whether each direct compliance can be separated from that of the adjacent stubs, which is then at most 90 % of the sum.
 
         The solid contains stubs (pieces of the blocks) next to the hinge. Their compliance as beams with restrained warping (Vlasov) is
         subtracted. In torsion a wide notch is stiffer than its stubs. The result is then a small difference of two large numbers, and the
@@ -113,7 +113,7 @@ class SolidHinge(DistinctHinge, InNotebook):
 
 
 def hinges(accuracy: float = 0.01, order: int | None = None, ways: Ways = STANDARD_WAYS) -> Hinges:
-    """Return a function that computes the 6x6 of hinges to a relative accuracy, with elements up to this `order` (at least three).
+    """Return a function that computes compliance matrices of hinges to a relative accuracy, with elements up to this `order` (at least 3).
 
     `ways` specifies cache, progress and processes. Every hinge is computed once, in parallel with others.
     """
@@ -135,7 +135,7 @@ def accuracy_of(accuracy: float, order: int | None) -> Accuracy:
 
 
 STANDARD_HINGES = hinges()
-"""Function that computes the 6x6 of hinges to 1 %, with the user's cache."""
+"""Function that computes the compliance matrices of hinges to 1 %, with the user's cache."""
 
 
 def distinct_hinges(mechanism: Mechanism) -> dict[str, DistinctHinge]:
@@ -180,7 +180,7 @@ def _name(shape: Mechanism, links: list[PlacedLink], everything: list[list[Place
 
 @check_arguments
 def solid_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, SolidHinge]:
-    """Compute the 6x6 compliance of every distinct drawn hinge.
+    """Compute the 6x6 compliance matrix of every distinct drawn hinge.
 
     Raises `DesignError` if the stage has no hinge with a shape.
 

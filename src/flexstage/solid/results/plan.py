@@ -30,7 +30,7 @@ class Plan:
     needed: frozenset[str] = frozenset()
 
     def missing(self, cache: Cache | None) -> tuple[StoredJob, ...]:
-        """The jobs without a stored result."""
+        """Return the jobs without a stored result."""
         return tuple(job for job in self.jobs if cache is None or not holds(cache, job.key, job.stored))
 
 
@@ -84,7 +84,7 @@ def work_ahead(plan: Plan, ways: Ways) -> None:
 
 
 def units_alone(mechanism: Mechanism) -> list[Mechanism]:
-    """Return every distinct isolated unit as drawn; none if the strokes do not determine the platform, which is reported later.
+    """Return every distinct isolated unit as drawn; none if the strokes do not determine its platform motion, which is reported later.
 
     >>> units_alone(Mechanism("nothing"))
     []

@@ -46,7 +46,7 @@ class SolidRead:
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Number of unknowns of every distinct component, by the keys that `Reduction.raised` contains."""
+        """Number of unknowns of every distinct component, with the same keys as in `Reduction.raised`."""
         return {content_in_stage(item.component): item.element.freedoms for item in self._distinct}
 
     @property
@@ -64,7 +64,7 @@ def solids(ways: Ways = STANDARD_WAYS) -> Solids:
 
 
 def remember(reduce: Solids) -> Solids:
-    """Return the same function with stored results. A reduction with `raised` components is combined from stored results of two orders.
+    """Return a function that stores the results of `reduce`. Reductions with `raised` components combine stored ones of two orders.
 
     >>> remember(solids())(Mechanism("nothing"), Reduction())
     ()

@@ -40,7 +40,7 @@ DEFAULT = Resolution()
 
 @dataclass(frozen=True, eq=False)
 class Converged(Generic[_Result]):
-    """A result with the estimated relative error of each figure. It is an estimate, not a bound; absent errors are unknown.
+    """A result with the estimated relative error of each figure. Errors are estimates, not bounds; absent errors are unknown.
 
     The error is the change from the previous order; at order two it is a quarter of this change. The errors of the `unestimated` figures,
     which changed by more than half, are unknown. `stopped` is the reason why the order was not raised further, although the required
@@ -69,7 +69,7 @@ def converge(
 ) -> Converged[_Result]:
     """Compute at rising orders (2, 3, 4) until the estimated errors are within the accuracy, or only at a fixed order and the one below.
 
-    `sizes` returns the number of unknowns of each component: then only components with a large share of the change get a higher order.
+    With `sizes`, the unknowns of each component, only components that cause a large fraction of the change get a higher order.
     `measure` computes only the figures of a result.
 
     >>> found = converge(lambda way: 1.0 + 0.1 ** way.fineness.order, lambda value: {"value": value}, Resolution(0.02))
@@ -168,7 +168,7 @@ def first_reductions(asked: Resolution) -> tuple[Reduction, Reduction]:
 
 
 def reduction_of_order(order: int) -> Reduction:
-    """The standard reduction with elements of an order.
+    """Return the standard reduction with elements of an order.
 
     >>> reduction_of_order(2).fineness.order
     2
@@ -189,7 +189,7 @@ def estimates(before: Mapping[str, float], after: Mapping[str, float], order: in
 
 
 def changes(before: Mapping[str, float], after: Mapping[str, float]) -> dict[str, float]:
-    """Relative changes of figures that are finite in both results.
+    """Compute the relative changes of figures that are finite in both results.
 
     >>> changes({"a": 1.0, "b": 1.0, "c": float("nan")}, {"a": 2.0, "c": 1.0})
     {'a': 0.5}

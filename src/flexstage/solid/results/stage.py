@@ -46,7 +46,7 @@ class BodyCost:
 class SolidStage(InNotebook):
     """Results of a stage by the solid model.
 
-    `statics` and `modes` are as for any model. `stress` is the highest stress at every link and body over all corners of the strokes,
+    `statics` and `modes` are as for any model. `stress` is the highest stress at every link and body over all corners of the stroke range,
     measured from zero voltage, with permanent load. It is `None` without strokes or with too many corners. `worst` (N,) are the model's
     coordinates at the corner with the highest stress of the weakest link. `blocks` (k,) is the strain-energy fraction of the bodies, which
     are rigid in other models, in each mode.

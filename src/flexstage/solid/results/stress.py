@@ -21,12 +21,12 @@ from flexstage.solid.results.read import SolidRead
 
 SHARP_CORNERS = "At sharp inner corners the true stress is infinite: the computed stress grows with the resolution."
 SILENT = 1e3
-"""Stress [Pa] below which stress counts as zero."""
+"""Limit [Pa] below which stress counts as zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class LinkStress(InNotebook):
-    """Highest von Mises stress (L,) [Pa] on the surface of links and bodies over some load cases, without stacks.
+    """Highest von Mises stress (L,) [Pa] on the surface of links and bodies, except stacks, over some load cases.
 
     `case` (L,) is the number of the load case with the highest stress. `yield_stress` (L,) [Pa] is the yield stress, or the fatigue limit
     or allowable stress if lower (NaN: unknown). At sharp inner corners the true stress is infinite, and the computed stress grows with the

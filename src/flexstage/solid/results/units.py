@@ -37,7 +37,7 @@ class SolidUnit(UnitOutput, InNotebook):
     """Results of one isolated unit by the linear solid model, with its output guided along `direction`, without load.
 
     `strokes` (k,) [m] are steps up to the full stroke, with `outputs` (k,) [m]. `stress` is the stress at every link at the full stroke.
-    `motion` (N,) are the coordinates of the model `read` at the full stroke, for pictures.
+    `motion` (N,) are the coordinates of its model, `read`, at the full stroke, for pictures.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -68,9 +68,9 @@ class Row:
     """One figure by theory and by FEA, in SI units.
 
     `theory` is the value of the lumped model, or of beam theory for a hinge. `mapped` is the value of the paper's model with axial springs,
-    if it applies. `calibrated` is the value of the lumped model with the 6x6 of hinges from FEA. `fea_error` is the estimated relative
-    error of FEA. `calibration` names the parts in the theory that are from FEA. `modal_assurance` is the MAC of paired modes. `reason`
-    explains unknown values, which are absent. Without `calibration`, a verdict requires `theory` and `fea_error`.
+    if it applies. `calibrated` is the value of the lumped model with compliance matrices of hinges from FEA. `fea_error` is the estimated
+    relative error of FEA. `calibration` names the parts in the theory that are from FEA. `modal_assurance` is the MAC of paired modes.
+    `reason` explains unknown values, which are absent. Without `calibration`, a verdict requires `theory` and `fea_error`.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -295,7 +295,7 @@ def hinge_rows(mechanism: Mechanism, found: Mapping[str, SolidHinge]) -> Iterato
 
 
 def units_with_calibrated_hinges(mechanism: Mechanism, compute: Hinges = STANDARD_HINGES) -> dict[str, UnitResult]:
-    """Compute isolated units by theory with the 6x6 of their hinges from FEA, computed with the roots in the isolated unit.
+    """Compute isolated units by theory with compliance matrices of hinges from FEA, for the roots of hinges in the isolated unit.
 
     If the output has no outlines in the isolated unit, the end of the hinge at the output is rigid.
     """
@@ -484,17 +484,17 @@ def _verdict_of_known(rows: tuple[Row, ...]) -> str:
     off = f"up to {_percent(_size_of_difference(worst))} off ({worst.figure})"
     if any(row.calibration for row in rows):
         names = ", ".join(dict.fromkeys(name for row in rows for name in row.calibration))
-        return f"Not independent: the theory contains the 6x6 of {names} from FEA. It is {off}, but not due to these hinges."
+        return f"Not independent: the theory contains compliance matrices of {names} from FEA. It is {off}, but not due to these hinges."
     name = "Beam theory" if worst.group.startswith("hinge") else "Lumped theory"
     if all(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows):
-        return f"{name} is {off}, the error of FEA up to {_percent(least)}: trust the theory."
+        return f"{name} is {off}, with an FEA error up to {_percent(least)}: trust the theory."
     known = departures(rows)
     if any(row.trust is TheoryCheck.UNCLEAR for row in rows):
         text = f"{name} is {off}, but the error of FEA is up to {_percent(least)}: increase the accuracy."
         return f"{known[:1].upper()}{known[1:]}. {text}" if known else text
     better = [abs(row.calibrated_difference) for row in rows if row.calibrated_difference is not None]
     if not better:
-        return f"{name} is {off}, the error of FEA up to {_percent(least)}: trust FEA, or calibrate."
+        return f"{name} is {off}, with an FEA error up to {_percent(least)}: trust FEA, or calibrate."
     after = f"with calibrated hinges, up to {_percent(max(better))}"
     if all(row.trust is not TheoryCheck.FEA for row in rows):
         return f"{name} is {off}; {after}. Calibrate, then trust the lumped model."

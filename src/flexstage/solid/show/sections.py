@@ -46,7 +46,7 @@ _STRESS_EXPONENT = 0.4
 
 
 def hinge_section(found: Mapping[str, SolidHinge]) -> Section | None:
-    """Make the section of hinges: the 6x6 compliance of every distinct hinge; `None` without hinges.
+    """Make the section of hinges: the 6x6 compliance matrix of every distinct hinge; `None` without hinges.
 
     >>> hinge_section({}) is None
     True

@@ -57,7 +57,7 @@ def hinge_table(found: Mapping[str, SolidHinge]) -> Table:
 
 
 def hinge_matrices(found: Mapping[str, SolidHinge]) -> Iterator[Table]:
-    """Make a table of the 6x6 compliance of every distinct hinge.
+    """Make a table of the 6x6 compliance matrix of every distinct hinge.
 
     >>> list(hinge_matrices({}))
     []
@@ -133,7 +133,7 @@ def verdict_table_of(found: Verification) -> Table:
     rows = [(Cell(name, Mark.STRONG), text) for name, text in found.verdicts.items()]
     notes = [
         "Theory: beam theory for hinges, the lumped model for units and stage.",
-        "Calibrated: the lumped model with the 6x6 of its hinges from FEA; it is therefore not independent of FEA.",
+        "Calibrated: the lumped model with compliance matrices of its hinges from FEA; it is therefore not independent of FEA.",
         "The error of FEA is an estimate from two resolutions, not a bound.",
         *_stated_note(found.as_stated),
         *(f"Not compared: {name}: {reason}" for name, reason in found.reasons.items()),

@@ -58,7 +58,7 @@ class Layout:
         return _fields(line, self.delimiter)
 
     def fits(self, line: str) -> bool:
-        """Whether a line has as many fields as columns; a trailing separator is allowed.
+        """Return whether a line has as many fields as columns; a trailing separator is allowed.
 
         >>> two = Layout(("a", "b"), ("", ""), ",", ".", 0, 1, "utf-8", ())
         >>> two.fits("1,2"), two.fits("1,2,"), two.fits("1,2,3"), two.fits("1")

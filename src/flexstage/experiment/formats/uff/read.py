@@ -160,7 +160,7 @@ def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
 
 
 def refines(text: str, field: float, *, inverse: bool = False) -> bool:
-    """Whether a full-precision number, or its inverse, rounds to a printed field of six digits.
+    """Return whether a full-precision number, or its inverse, rounds to a printed field of six digits.
 
     >>> refines("2048.0", 4.88281e-04, inverse=True), refines("100.0", 0.02, inverse=True), refines("0", 0.02, inverse=True)
     (True, False, False)

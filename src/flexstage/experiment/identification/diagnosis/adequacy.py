@@ -24,7 +24,7 @@ class Reach:
 
 
 def width(pole: complex) -> float:
-    """Half-power bandwidth 2 zeta f of a resonance, in Hz, from its pole in Hz.
+    """Compute the half-power bandwidth 2 zeta f of a resonance, in Hz, from its pole in Hz.
 
     >>> width(-1.0 + 100.0j)
     2.0

@@ -94,7 +94,7 @@ def late_channels(found: Identified) -> Iterator[str]:
                 word = "late" if by > 0.0 else "early"
                 yield (
                     f"{channel.name} looks {word} by {1e3 * abs(by):.3g} ms relative to the other {role.value}s: after correction, the "
-                    f"phases of its modal residues agree with theirs."
+                    f"phases of its modal residues agree with those of the others."
                 )
 
 
@@ -135,7 +135,7 @@ def _fit_delay(found: Identified, channel: _Single | None, near: float = 0.0, le
 
 
 def bends_modes(found: Identified, delay: Delay) -> bool:
-    """Whether a delay rotates the phase within a mode's band enough (0.05 rad) to impair the fit."""
+    """Return whether a delay rotates the phase within a mode's band enough (0.05 rad) to impair the fit."""
     widths = found.frequencies * found.damping
     return bool(2.0 * np.pi * delay.value * _BESIDE * float(np.max(widths)) > _TURNED)
 

@@ -58,7 +58,7 @@ class Peak:
     TABLE: ClassVar[Layout] = Layout(
         "Peaks not confirmed as modes",
         "frequency outputs width resolution chance reason",
-        notes=("The probability is that of such a peak without a mode. A mode requires at most 1e-9, and lines finer than its width.",),
+        notes=("Without a mode, such a peak has this probability. A mode requires at most 1e-9, and lines finer than its width.",),
     )
 
     frequency: Annotated[float, FREQUENCY, Heading(digits=5)]
@@ -104,8 +104,8 @@ def peaks(
     """List all peaks that are not modes, by ascending frequency.
 
     The list contains removed tones, resonances `refused` because the inputs do not excite them, and resonances `lost` because they are not
-    significant. A lost resonance is listed only if the probability that noise is as strong is below 1/1000. For an analyser's responses,
-    the list also contains prominent single lines.
+    significant. A lost resonance is listed only if noise alone would give an equally strong peak with a probability below 1/1000. For an
+    analyser's responses, the list also contains prominent single lines.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record

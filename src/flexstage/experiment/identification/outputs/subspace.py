@@ -1,4 +1,4 @@
-"""Output-only modes by covariance-driven stochastic subspace identification, band by band, with deviations from blocks of the record."""
+"""Output-only modes by covariance-driven stochastic subspace identification, band by band, with standard deviations from blocks."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ def band_covariances(record: Record, low: float, high: float) -> tuple[list[Band
 
     Each block is transformed. The inverse transform of products of lines within a band, tapered at the ends, is the band's covariance R(l)
     = E[y(n + l) y(n)^H]. This is equivalent to mixing and decimation. R is divided by 1 - l/N, the fraction of the block's N samples
-    available at lag l. Outputs are divided by their root mean squares. The density of the floor motion must be smooth within each band
-    only.
+    available at lag l. Outputs are divided by their root mean squares. The density of the floor motion need only be smooth within
+    each band.
     """
     chosen = record.select([channel.name for channel in record.outputs])
     size = record.length // BLOCKS
@@ -171,9 +171,9 @@ def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, lis
     strongly excited modes have equal weight (Van Overschee & De Moor, Subspace Identification for Linear Systems, 1996, ch. 3; Peeters &
     De Roeck, MSSP 13 (1999) 855).
 
-    The equations are projected onto the signal subspace of the whole record, U^H W H(shifted) V = Lambda U^H W H V. Deviations follow from
-    a first-order perturbation by the covariances of independent blocks (Doehler & Mevel, MSSP 38 (2013) 346). Modes outside the band bias
-    low orders, spurious poles bias high orders: the order is selected for each mode (`_select_order`).
+    The equations are projected onto the signal subspace of the whole record, U^H W H(shifted) V = Lambda U^H W H V. Standard deviations
+    follow from a first-order perturbation by the covariances of independent blocks (Doehler & Mevel, MSSP 38 (2013) 346). Modes outside the
+    band bias low orders, spurious poles bias high orders: the order is selected for each mode (`_select_order`).
     """
     outputs = band.covariances.shape[2]
     diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)

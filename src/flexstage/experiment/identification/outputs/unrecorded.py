@@ -18,7 +18,7 @@ from flexstage.experiment.identification.outputs.tones import remove_tones
 from flexstage.experiment.records.record import Channel, Record, Responses, Role
 
 _EVIDENT, _WEAK = 6.1, 4.0
-"""Deviations by which a mode's width must differ from zero: noise reaches the first once in 1e9."""
+"""Standard deviations by which a mode's width must differ from zero: noise reaches the first once in 1e9."""
 _HIGHEST, _LOWEST = 0.42, 6.0
 _FEWEST = 400
 _SAME, _LOCATED = 0.95, 0.1

@@ -68,7 +68,7 @@ def cad(component: Component) -> Cad:
 
 
 def cut_component(component: Component, drawing: Cad) -> Cad:
-    """The positive side of a component's drawing, cut at its symmetry planes.
+    """Return the positive side of a component's drawing, cut at its symmetry planes.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> round(cut_component(bar(), cad(bar())).shape.mass, 6)  # mm^3
@@ -80,11 +80,11 @@ def cut_component(component: Component, drawing: Cad) -> Cad:
 
 @SESSION.keep(1)
 def mirrors_of(component: Component) -> Mirrors:
-    """The planes normal to y and z about which a component of one medium is symmetric and can be cut.
+    """Return the planes normal to y and z about which a component of one medium is symmetric and can be cut.
 
     Every joint, link and body must be its own mirror image. Leaves are cut only if thin, and only across their width: otherwise their flat
-    elements would become flatter, or fewer across the leaf, with larger error estimates. Stacks, rods, cylinders, spheres and round holes
-    are not cut either, except round plates. Their curvature sets the size of elements, and the mesher divides arcs less finely than
+    elements would become flatter, or fewer across the leaf, with larger error estimates. Stacks, rods, cylinders (except round plates),
+    spheres and round holes are not cut either. Their curvature sets the size of elements, and the mesher divides arcs less finely than
     circles, which would reduce their mass.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
@@ -197,7 +197,7 @@ def _is_flat(face: occ.Face, origin: Array, normal: Array) -> bool:
 
 
 def region(piece: Piece, points: Array) -> Array:
-    """Measure of the distance (n,) [m] of points (n, 3) [m] from a piece: largest component of that from its bounding box, 0 inside.
+    """Estimate the distance (n,) [m] of points (n, 3) from a piece: the largest component of that from its bounding box, 0 inside.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> region(bar().pieces[0], np.array([[0.05, 0.0, 0.0], [0.05, 0.0, 0.007]])).round(9).tolist()
@@ -209,7 +209,7 @@ def region(piece: Piece, points: Array) -> Array:
 
 @SESSION.keep(KEPT)
 def half_extents(piece: Piece) -> Array:
-    """Half sizes (3,) of a piece's bounding box in its own frame [m].
+    """Return half the sizes (3,) of a piece's bounding box in its own frame [m].
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> half_extents(bar().pieces[0]).round(9).tolist()

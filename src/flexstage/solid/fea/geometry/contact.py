@@ -32,7 +32,7 @@ _NEAR = 2e-3
 
 
 def contact_findings(mechanism: Mechanism, clearance: float = 0.0) -> tuple[Finding, ...]:
-    """Errors that prevent the outlines of a stage from forming the described solids; empty for a sound stage.
+    """Return the errors that prevent the outlines of a stage from forming the described solids; empty for a sound stage.
 
     Each end face of a link with a shape must be entirely on the outline of its body. A body without outline is not checked; the ground is
     checked only if it is drawn in the link's unit. Outlines of one body must form one solid, joined over faces. All other outlines must be

@@ -44,7 +44,7 @@ Curve = list[occ.TopoDS_Shape]
 
 
 def draw_form(form: Form) -> occ.Solid:
-    """A form as a CAD solid at the origin [mm]: links are along x, with their thickness along y and their width along z.
+    """Draw a form as a CAD solid at the origin [mm]: links are along x, with their thickness along y and their width along z.
 
     >>> from flexstage.parts.body import Block
     >>> round(draw_form(Block("steel", (0.01, 0.02, 0.03))).mass, 6)  # mm^3
@@ -56,7 +56,7 @@ def draw_form(form: Form) -> occ.Solid:
 def specimen(part: Shaped, stubs: tuple[float, float], size: float) -> Specimen:
     """Draw a hinge with stubs of these lengths [m] at its first and second end; elements at the neck are `size` times its thickness.
 
-    It is thin along y and wide along z. Raises `DesignError` for a kind without a shape.
+    The hinge is thin along y and wide along z. Raises `DesignError` for a kind without a shape.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> bar = specimen(Leaf("steel", 1e-3, 1e-3, 2e-3), (0.0, 0.0), 1.0)

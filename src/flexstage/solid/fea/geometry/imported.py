@@ -41,7 +41,7 @@ class ImportedProperties:
 
 
 def imported_shape(form: Imported) -> occ.TopoDS_Shape:
-    """The file's solid [mm], with the middle of its bounding box at the origin.
+    """Return the file's solid [mm], with the middle of its bounding box at the origin.
 
     Raises `DesignError` for a missing file, a file other than STEP or with another digest, or without exactly one matching solid.
     """
@@ -80,7 +80,7 @@ def _inertia(solid: occ.TopoDS_Shape) -> Array:
 
 
 def with_properties(found: ImportedProperties, file: str, material: str, density: float, solid: str | None = None) -> Imported:
-    """The description of a measured solid with a `density` [kg/m^3], and with the name `solid` if its file contains several.
+    """Describe a measured solid with a `density` [kg/m^3], and with the name `solid` if its file contains several.
 
     >>> cube = ImportedProperties("", np.ones(3), np.zeros(3), 1.0, np.zeros(3), np.eye(3) / 6.0)
     >>> round(with_properties(cube, "cube.step", "steel", 6.0).inertia.zz, 12)
@@ -107,7 +107,7 @@ def _triple(values: Array) -> tuple[float, float, float]:
 
 
 def import_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Differences between imported solids and their description; empty without any.
+    """Return the differences between imported solids and their description; empty if they agree.
 
     >>> import_findings(Mechanism("nothing"))
     ()

@@ -47,29 +47,29 @@ class Mirrors:
         return np.stack([np.where(self.is_odd(odd, axis), -1.0, 1.0) if axis in self.axes else odd**0.0 for axis in range(3)], axis=1)
 
     def is_odd(self, kinds: Array, axis: int) -> Array:
-        """The kinds that are odd across one of the axes."""
+        """Return which kinds are odd across one of the axes."""
         return (kinds >> self.axes.index(axis)) % 2 == 1
 
     def twist_kinds(self, rotation: Array) -> Array:
-        """The kinds (6,) of translations along and rotations about the columns of `rotation`, each parallel to a plane or normal to it."""
+        """Return kinds (6,) of translations along and rotations about columns of `rotation`, each parallel to a plane or normal to it."""
         translations = self.kinds(np.abs(rotation[list(self.axes)]) > 0.5)
         return np.concatenate([translations, translations ^ (self.copies - 1)])
 
     def kinds(self, odd: Array) -> Array:
-        """The kinds (k,) of motions; `odd` (m, k) contains a row for each axis."""
+        """Return the kinds (k,) of motions; `odd` (m, k) contains a row for each axis."""
         return np.sum(odd.astype(np.int64) << np.arange(len(self.axes))[:, None], axis=0)
 
     def whole(self, side: Array, rows: Array, columns: Array) -> Array:
-        """Products (n, k) of motions over the whole, from those over a `side`; zero where kinds `rows` (n,) and `columns` (k,) differ."""
+        """Compute products (n, k) of motions over the whole from a `side`; zero if kinds `rows` (n,) and `columns` (k,) differ."""
         return np.where(rows[:, None] == columns, self.copies * side, 0.0)
 
     def within(self, points: Array) -> Array:
-        """Those of the points (n, 3) that are on the positive side."""
+        """Select the points (n, 3) that are on the positive side."""
         return points[np.all(points[:, list(self.axes)] >= 0.0, axis=1)]
 
 
 def cut_at_mirrors(solid: occ.TopoDS_Shape, mirrors: Mirrors) -> occ.TopoDS_Shape:
-    """The positive side of a drawing of `medium 0`, with named cut faces.
+    """Return the positive side of a drawing of `medium 0`, with named cut faces.
 
     >>> quarter = cut_at_mirrors(occ.Box(occ.Pnt(0, -1, -1), occ.Pnt(1, 1, 1)), Mirrors((1, 2)))
     >>> round(quarter.mass, 9), sorted(face.name for face in quarter.faces if face.name)
@@ -85,7 +85,7 @@ def cut_at_mirrors(solid: occ.TopoDS_Shape, mirrors: Mirrors) -> occ.TopoDS_Shap
 
 
 def is_symmetric(solids: Iterable[occ.TopoDS_Shape], axis: int) -> bool:
-    """Whether every face of some solids has a mirror image in the plane normal to an axis: a face of equal area, centre mirrored.
+    """Return whether every face of some solids has a mirror image normal to an axis: a face of equal area, with its centre mirrored.
 
     >>> is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 1), is_symmetric([occ.Box(occ.Pnt(0, -1, 0), occ.Pnt(1, 1, 1))], 2)
     (True, False)

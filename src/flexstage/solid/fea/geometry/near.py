@@ -40,7 +40,7 @@ def findings_of(questions: Iterable[Question]) -> Iterator[Finding]:
 
 
 def relative_frame(frame: Frame, base: Frame) -> Frame:
-    """A frame relative to another one, rounded so that instances have equal frames.
+    """Return a frame relative to another one, rounded so that instances have equal frames.
 
     >>> relative_frame(Frame(np.eye(3), np.ones(3)), Frame(np.eye(3), np.array([1.0, 0.0, 0.0]))).position.tolist()
     [0.0, 1.0, 1.0]
@@ -51,7 +51,7 @@ def relative_frame(frame: Frame, base: Frame) -> Frame:
 
 
 def frame_key(frame: Frame) -> str:
-    """A frame as a string, equal for frames that differ only by rounding error.
+    """Format a frame as a string, equal for frames that differ only by rounding error.
 
     >>> frame_key(Frame(np.eye(3), np.zeros(3))) == frame_key(Frame(np.eye(3), np.full(3, 1e-13)))
     True

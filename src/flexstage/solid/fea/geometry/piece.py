@@ -90,7 +90,7 @@ class Piece:
 
 
 def medium(material: Material, rotation: Array | None = None) -> Medium:
-    """The medium of a material; for a crystal, the axes of the drawing are the columns of `rotation` (3, 3) in the stage.
+    """Return the medium of a material; for a crystal, the axes of the drawing are the columns of `rotation` (3, 3) in the stage.
 
     Without `rotation`, they are the axes of the part that orients the crystal, or else those of the stage.
 
@@ -113,7 +113,7 @@ def medium(material: Material, rotation: Array | None = None) -> Medium:
 
 
 def is_mirrored(own: Medium, axis: int) -> bool:
-    """Whether a medium is its own mirror image across an axis (0, 1, 2) of its drawing; true for isotropic media.
+    """Return whether a medium is its own mirror image across an axis (0, 1, 2) of its drawing; true for isotropic media.
 
     >>> is_mirrored(Medium(1.0, 0.3, 1.0), 0)
     True
@@ -130,7 +130,7 @@ def _stage(rotation: Array | None) -> Array:
 
 
 def stack_medium(stack: Piezo) -> Medium:
-    """The medium of a stack's ceramic: E = k L / A from its axial stiffness, density from its mass.
+    """Return the medium of a stack's ceramic: E = k L / A from its axial stiffness, density from its mass.
 
     >>> round(stack_medium(Piezo(stroke=1e-4, stiffness=17e6, length=0.162, diameter=0.01, mass=0.1)).young / 1e9, 2)
     35.07
@@ -141,7 +141,7 @@ def stack_medium(stack: Piezo) -> Medium:
 
 
 def form_of(link: PlacedLink) -> Form | Finding | None:
-    """The form of a link's part, or the error if it has none; `None` for a part without a shape whose behaviour is specified.
+    """Return the form of a link's part, or the error if it has none; `None` for a part without a shape whose behaviour is specified.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -158,11 +158,11 @@ def form_of(link: PlacedLink) -> Form | Finding | None:
     if not isinstance(part, Joint) and part.stated(link.material) is not None:
         return None
     what = f"a part of kind {part.kind} has neither a shape nor a specified stiffness"
-    return Finding(link.name, what, 'Use a part with a shape, or specify its 6x6 (kind = "compliance_matrix")')
+    return Finding(link.name, what, 'Use a part with a shape, or specify its 6x6 compliance matrix (kind = "compliance_matrix")')
 
 
 def form_digest(form: Form) -> str:
-    """Digest of a form; for a shape of another package, including that package's name and version.
+    """Return the digest of a form; for a shape of another package, including that package's name and version.
 
     >>> from flexstage.parts.body import Block
     >>> form_digest(Block("steel", (1.0, 1.0, 1.0))) == form_digest(Block("steel", (1.0, 1.0, 2.0)))
@@ -172,7 +172,7 @@ def form_digest(form: Form) -> str:
 
 
 def span(form: Form) -> float:
-    """Length of a link's form between its end faces [m].
+    """Return the length of a link's form between its end faces [m].
 
     >>> from flexstage.parts.profile import Circular
     >>> from flexstage.parts.notch import Notch
@@ -183,7 +183,7 @@ def span(form: Form) -> float:
 
 
 def end_area(form: Form) -> float:
-    """Area of a link form's end faces [m^2].
+    """Return the area of a link form's end faces [m^2].
 
     >>> from flexstage.parts.profile import Straight
     >>> from flexstage.parts.neck import Neck
@@ -198,7 +198,7 @@ def end_area(form: Form) -> float:
 
 
 def thinnest(form: Form) -> float:
-    """Smallest dimension of a form [m]: it sets the local mesh size.
+    """Return the smallest dimension of a form [m], which sets the local mesh size.
 
     >>> from flexstage.parts.body import Block
     >>> thinnest(Block("steel", (0.1, 0.02, 0.03)))
@@ -213,10 +213,10 @@ def _single(value: Number) -> float:
 
 
 def millimetres(value: object) -> float:
-    """A length of one design in CAD units."""
+    """Convert a length of one design to CAD units."""
     return _single(value) * MILLIMETRES  # type: ignore[arg-type]
 
 
 def coordinates(point: Any) -> Array:
-    """The coordinates (3,) of a point of the CAD kernel or of a mesh [mm]."""
+    """Return the coordinates (3,) of a point of the CAD kernel or of a mesh [mm]."""
     return np.array([point.x, point.y, point.z])

@@ -39,7 +39,7 @@ class _Sliver:
 
 
 def sliver_findings(parts: Sequence[Component], *, coarse: bool = False) -> Iterator[Finding]:
-    """Slivers of every distinct component, drawn as one solid; also errors of drawing, unless `coarse` errors were found before.
+    """Yield the slivers of every distinct component, drawn as one solid, and errors of drawing unless `coarse` errors were found before.
 
     >>> list(sliver_findings([]))
     []

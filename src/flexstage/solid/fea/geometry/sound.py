@@ -34,7 +34,7 @@ def sound_components(mechanism: Mechanism, cache: Cache | None, cut: Cut = Cut.U
 
 
 def stage_findings(mechanism: Mechanism, cache: Cache | None, pool: Pool | None = None) -> tuple[Finding, ...]:
-    """Errors that prevent a stage's outlines from forming solids. The cache records sound stages by their content.
+    """Return the errors that prevent a stage's outlines from forming solids. The cache records sound stages by their content.
 
     Stages with imported solids are always checked, because their files may change.
     """
@@ -46,7 +46,7 @@ def stage_findings(mechanism: Mechanism, cache: Cache | None, pool: Pool | None 
 
 
 def solid_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
-    """Errors that prevent finite elements of a stage with outlines; none without the solver, or if a link cannot be a solid.
+    """Return the errors that prevent an FEA of a stage with outlines; none without the solver, or if a link cannot be a solid.
 
     >>> solid_findings(Mechanism("nothing"))
     ()
@@ -87,6 +87,6 @@ def _key(mechanism: Mechanism) -> str:
 
 
 def has_imports(mechanism: Mechanism) -> bool:
-    """Whether a stage contains imported solids."""
+    """Return whether a stage contains imported solids."""
     bodies = [*mechanism.bodies.values(), *(body for unit in mechanism.units.values() for body in unit.bodies.values())]
     return any(isinstance(solid, Imported) for body in bodies for solid in body.solids.values())

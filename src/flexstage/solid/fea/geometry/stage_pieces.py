@@ -37,7 +37,7 @@ class Stage:
 
 
 def stage_pieces(mechanism: Mechanism) -> Stage:
-    """The pieces of a stage; parts with a specified stiffness and no shape are left out.
+    """Return the pieces of a stage; parts with a specified stiffness and no shape are left out.
 
     Raises `DesignError` with the names of links that have neither.
 

@@ -1,1 +1,1 @@
-"""The 6x6 of hinges by finite elements."""
+"""6x6 compliance matrices of hinges by finite elements."""

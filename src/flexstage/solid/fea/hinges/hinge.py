@@ -1,4 +1,4 @@
-"""The 6x6 of a hinge by three-dimensional elasticity, between the ends of its arcs, with an error estimate.
+"""6x6 compliance matrix of a hinge by three-dimensional elasticity, between the ends of its arcs, with an error estimate.
 
 The outer faces of the model are rigid. At each end with a root, a stub of the block is between the hinge and the outer face. The stubs are
 then subtracted as beams, so that the compliance of the roots remains with the hinge. An end without a root is rigid at the end of its arcs.
@@ -129,7 +129,7 @@ def hinge_compliance(
     *,
     roots: Roots | None = None,
 ) -> HingeSolid:
-    """Compute the 6x6 of a hinge by finite elements, to the required accuracy (default 1 %).
+    """Compute the 6x6 compliance matrix of a hinge by finite elements, to the required accuracy (default 1 %).
 
     With one outer face fixed and the other moved rigidly by e_i about the centre, the displacements u_i have the energies K_ij = u_i . K_FE
     u_j. Then C = K^-1 - sum over stubs of X C_stub X^T. The order is raised, then the mesh refined, until the error estimated from the last
@@ -138,9 +138,9 @@ def hinge_compliance(
     `roots` selects the ends that are on blocks (default: both ends of a profile that rises to its blocks, else none). `stub` [m] is the
     length of a stub: by default the hinge's full height, or five times its `grain` if the block is wider than the hinge.
 
-    The depth of the root is a convention: C_x depends on the stub's length by 1-3 %, C_y by about 10 %, and C_rx of a hinge several
-    times wider than high by a multiple. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made.
-    `told` is called for every mesh and solve.
+    The depth of the root is a convention: C_x changes by 1 to 3 % with the stub's length, C_y by about 10 %, and C_rx of a hinge several
+    times wider than high by a large factor. Raises `DesignError` for a part without a shape, for a batch, and if no mesh can be made.
+    `told` is called for every mesh and solution.
 
     >>> from flexstage.parts.neck import Neck
     >>> from flexstage.parts.profile import Straight
@@ -264,7 +264,7 @@ def _law(part: Shaped, space: Field, cut: _Mesh) -> Array:
 def hinge_mesh(part: Shaped, stub: float | None = None, factor: float = 1.0, order: int = 5) -> ngsolve.Mesh:
     """Return a mesh [mm] of a hinge with stubs and the faces `start` and `end`; no element is inverted at any order up to `order`.
 
-    For an isotropic material only one symmetric portion is meshed: the quarter on the positive sides of y and z, the half of a leaf.
+    For an isotropic material only one symmetric portion is meshed: the quarter at positive y and z, or half of a leaf.
     Elements are `factor` times the usual size. If the mesher fails or an element is inverted, other sizes are tried, a few times. Raises
     `DesignError` if all fail.
 
@@ -307,7 +307,7 @@ def _attempt(drawn: Specimen, sizes: Mapping[str, Any], order: int) -> ngsolve.M
 
 
 def lowest_jacobian(mesh: ngsolve.Mesh) -> float:
-    """The lowest Jacobian determinant [mm^3] at a lattice of points in every element, close to its corners and edges, which fold first.
+    """Return the lowest Jacobian determinant [mm^3] at a lattice of points in every element, near corners and edges, which fold first.
 
     Edges are excluded: if two faces of an element are on one smooth surface, the determinant is zero at their edge without harm.
 
@@ -344,9 +344,10 @@ def _require_symmetric(part: Shaped, law: Array) -> None:
 
 def _not_reached(part: Shaped, error: float, accuracy: Accuracy) -> Finding:
     if not np.isfinite(error):
-        return Finding(_label(part), f"the error of its 6x6 is unknown: {NO_ESTIMATE}", LEAVE)
+        return Finding(_label(part), f"the error of its compliance matrix is unknown: {NO_ESTIMATE}", LEAVE)
     return Finding(
         _label(part),
-        f"the error of its 6x6 with {accuracy.freedoms} DOFs is {100.0 * error:.2g} %, but {100.0 * accuracy.error:.2g} % is required",
+        f"the error of its compliance matrix with {accuracy.freedoms} DOFs is {100.0 * error:.2g} %, "
+        f"but {100.0 * accuracy.error:.2g} % is required",
         "Allow more DOFs or a larger error",
     )

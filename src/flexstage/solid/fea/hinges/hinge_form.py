@@ -1,4 +1,4 @@
-"""Input and result of the computation of a hinge's 6x6. This module does not import the solver."""
+"""Input and result of the computation of a hinge's compliance matrix. This module does not import the solver."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ class HingeForm(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class HingeSolid:
-    """The 6x6 of a hinge by three-dimensional elasticity, about its centre in the link frame, between the ends of its arcs [SI].
+    """6x6 matrices of a hinge by three-dimensional elasticity, about its centre in the link frame, between the ends of its arcs [SI].
 
     `compliance` and `stiffness` (6, 6) are for the twist (x, y, z, rx, ry, rz) of the second end relative to the first. `error` estimates
     the largest relative error of the compliance *at the hinge's end*, with each entry ij relative to sqrt(C_ii C_jj) there. `changes` (6,)
-    are the last relative changes of the diagonal about the centre. Those of y and z are larger, as differences of lever-arm terms. `whole`
-    (6, 6) is the compliance including the stubs of length `stub` [m]. `freedoms`, `elements` and `order` belong to the last solution;
-    `finding` is the warning if the accuracy was not reached.
+    are the last relative changes of the diagonal about the centre. The changes of y and z are larger, because these entries are differences
+    of lever-arm terms. `whole` (6, 6) is the compliance including the stubs of length `stub` [m]. `freedoms`, `elements` and `order` belong
+    to the last solution; `finding` is the warning if the accuracy was not reached.
     """
 
     compliance: Array

@@ -29,7 +29,7 @@ class Roots:
 
 
 def own_roots(part: Shaped) -> Roots:
-    """The roots of an isolated hinge: a profile that rises to its ends is between blocks of its height, others are between rigid faces.
+    """Return the roots of an isolated hinge: a profile that rises to its ends is between blocks of its height, others between rigid faces.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> own_roots(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))
@@ -39,7 +39,7 @@ def own_roots(part: Shaped) -> Roots:
 
 
 def rises(part: Shaped) -> bool:
-    """Whether a profile of cuts rises to the full height of blocks at its ends.
+    """Return whether a profile of cuts rises to the full height of blocks at its ends.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> rises(Leaf("steel", length=0.01, thickness=1e-3, width=5e-3))
@@ -50,7 +50,7 @@ def rises(part: Shaped) -> bool:
 
 
 def roots_of(assembly: Assembly, link: PlacedLink) -> Roots:
-    """The roots of a link in the stage: its ends on bodies with outlines; the ground and bodies without outlines are rigid.
+    """Return the roots of a link in the stage: its ends on bodies with outlines; the ground and bodies without outlines are rigid.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

@@ -55,7 +55,7 @@ class Specimen:
     mirrors: Mirrors = Mirrors()
 
     def cut(self, across: Iterable[int]) -> Specimen:
-        """Return its positive side, cut at the symmetry planes normal to some axes (1: y, 2: z)."""
+        """Return the positive side of the specimen, cut at the symmetry planes normal to some axes (1: y, 2: z)."""
         mirrors = Mirrors(tuple(axis for axis in across if is_symmetric([self.solid], axis)))
         return replace(self, solid=cut_at_mirrors(self.solid, mirrors), mirrors=mirrors)
 
@@ -101,7 +101,7 @@ class _Side:
 
 
 def grain(part: Shaped) -> float:
-    """Length scale of the root's compliance [m]: thickness at the hinge's ends; geometric mean with the width if it bends both ways.
+    """Return the length scale of the root's compliance [m]: end thickness; geometric mean with the width if the hinge bends both ways.
 
     >>> from flexstage.parts.neck import Neck
     >>> grain(Neck("steel", 1e-3, Straight(0.01), width=4e-3))
@@ -112,7 +112,7 @@ def grain(part: Shaped) -> float:
 
 
 def own_stub(part: Shaped) -> tuple[Section, float]:
-    """Section and length [m] of the stub at a hinge's end: as high as the end of a profile that rises, else wider on all sides.
+    """Return section and length [m] of the stub at a hinge's end: as high as the end of a profile that rises, else wider on all sides.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> section, depth = own_stub(Leaf("steel", 0.01, 1e-3, 5e-3))

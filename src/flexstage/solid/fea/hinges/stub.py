@@ -19,7 +19,7 @@ _POINTS = 40
 
 
 def beam(section: Section, length: float, medium: Medium) -> Array:
-    """Compliance (6, 6) of a prismatic Timoshenko beam about its centre, axis along x, one end fixed plane and the other free to warp.
+    """Compute the compliance (6, 6) of a prismatic Timoshenko beam along x about its centre, one end fixed plane, the other free to warp.
 
     C = diag(L/EA, L^3/12EI_z + k L/GA, L^3/12EI_y + k L/GA, C_rx, L/EI_y, L/EI_z): bending and shear about the centre do not couple.
     Torsion is by Vlasov's theory: C_rx = L/GJ (1 - tanh(m)/m), m^2 = G J L^2/(E C_w). For a wide hinge, Saint-Venant torsion would give the

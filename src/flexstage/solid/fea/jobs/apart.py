@@ -60,7 +60,7 @@ def contacts_apart(
 
 
 def step_apart(mechanism: Mechanism, limits: Limits = _LIMITS) -> bytes:
-    """The result of `step`, computed in a separate process. Raises `DesignError` after a crash or a timeout."""
+    """Compute the result of `step` in a separate process. Raises `DesignError` after a crash or a timeout."""
     return _results_of([_Drawing(mechanism)], limits)[0]
 
 

@@ -34,12 +34,13 @@ class Kind:
     noun: str
 
 
-SUPERELEMENTS, HINGES, SOUND = Kind(".superelement", "superelement"), Kind(".hinge", "6x6"), Kind(".sound", "record of checked outlines")
+SUPERELEMENTS, HINGES = Kind(".superelement", "superelement"), Kind(".hinge", "compliance matrix")
+SOUND = Kind(".sound", "record of checked outlines")
 
 
 @dataclass(frozen=True)
 class Cache(CheckedFields):
-    """Folder of superelements and hinges, and size `limit` [bytes] of each kind of file: the least recently used are removed first.
+    """Folder of superelements and hinges, and size `limit` [bytes] of each kind of file: the least recently used files are removed first.
 
     The default `folder` is that of the environment variable FLEXSTAGE_CACHE, else flexstage in the user's folder for caches.
     """
@@ -58,7 +59,7 @@ def warn(finding: Finding) -> None:
 
 
 def folder_of(cache: Cache) -> Path:
-    """The folder of a cache; it need not exist.
+    """Return the folder of a cache; it need not exist.
 
     >>> folder_of(Cache(Path("/tmp/superelements"))).name
     'superelements'
@@ -67,7 +68,7 @@ def folder_of(cache: Cache) -> Path:
 
 
 def key_of(component: Component, reduction: Reduction, springs: Array | None = None) -> str:
-    """Digest of the inputs of a superelement: the component's content and the options of its reduction; program versions are excluded.
+    """Digest the inputs of a superelement: the content of the component and the options of its reduction, without program versions.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.solid.fea.solver.component import components
@@ -82,7 +83,7 @@ def key_of(component: Component, reduction: Reduction, springs: Array | None = N
 
 
 def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> Any:
-    """Return the superelement or the 6x6 stored for a key, `None` if there is none. `where` names it in warnings about a damaged file.
+    """Return the superelement or hinge stored for a key, `None` if there is none. `where` names it in warnings about a damaged file.
 
     >>> find(Cache(Path("/nowhere")), "key", "lever") is None
     True
@@ -103,7 +104,7 @@ def find(cache: Cache, key: str, where: str, kind: Kind = SUPERELEMENTS, *, noti
 
 
 def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
-    """Whether a file exists for a key; its validity is checked only when it is read.
+    """Return whether a file exists for a key; its validity is checked only when it is read.
 
     >>> holds(Cache(Path("/nowhere")), "key")
     False
@@ -112,7 +113,7 @@ def holds(cache: Cache, key: str, kind: Kind = SUPERELEMENTS) -> bool:
 
 
 def keep(cache: Cache, key: str, where: str, element: Any, kind: Kind = SUPERELEMENTS, *, notice: Notice = warn) -> None:
-    """Store a superelement, a 6x6 or a record of checked outlines in a file, completely or not at all.
+    """Store a superelement, a hinge or a record of checked outlines in a file, completely or not at all.
 
     >>> keep(Cache(Path("/proc/nowhere")), "key", "lever", None, notice=lambda finding: print(finding.where))
     lever

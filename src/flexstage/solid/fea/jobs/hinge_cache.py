@@ -1,4 +1,4 @@
-"""Cache of the 6x6 of hinges by content: each is computed once on a machine."""
+"""Cache of the compliance matrices of hinges by content: each is computed once on a machine."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SECONDS, _PER_WIDTH, _WIDEST = 0.3, 0.04, 50.0
 
 @dataclass(frozen=True, eq=False)
 class HingeJob(StoredJob):
-    """Job that computes the 6x6 of a hinge in a separate process; `called` is the user's name of the hinge."""
+    """Job that computes the compliance matrix of a hinge in a separate process; `called` is the user's name of the hinge."""
 
     called: str
     form: HingeForm
@@ -43,27 +43,27 @@ class HingeJob(StoredJob):
         return min(self.asked.orders[0] + 1, self.asked.orders[1])
 
     def seconds(self) -> float:
-        """Usual CPU time [s] of several solves; it increases with the width of the hinge."""
+        """Return the usual CPU time [s] of several solutions; it increases with the width of the hinge."""
         throat = self.form.part.throat
         return _SECONDS + _PER_WIDTH * min(float(np.real(throat.area / throat.thinnest**2)), _WIDEST)
 
     def summary(self, found: HingeSolid) -> str:
-        """One line about the computed hinge."""
+        """Describe the computed hinge in one line."""
         return f"hinge {self.name}: error {100.0 * found.error:.2g} %, {found.freedoms:,} unknowns of order {found.order}"
 
     def needed(self, counts: Counts) -> float:
-        """Memory of the first solves [bytes]; higher orders use the available memory."""
+        """Return the memory of the first solutions [bytes]; higher orders use the available memory."""
         return needed(counts, self.order, 6)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Error if its coarsest mesh does not fit into the memory."""
+        """Return an error if the coarsest mesh does not fit into the memory."""
         if self.needed(counts) <= limit:
             return None
         what = f"its coarsest mesh needs about {self.needed(counts) / 1e9:.3g} GB at order {self.order} ({limit / 1e9:.3g} GB available)"
         return Finding(self.name, what, "Free memory, or increase --memory")
 
     def work(self, call: Call) -> HingeSolid:
-        """Compute the 6x6; errors name the hinge as the user does."""
+        """Compute the compliance matrix; errors name the hinge as the user does."""
         from flexstage.solid.fea.hinges.hinge import hinge_compliance
 
         try:
@@ -74,9 +74,9 @@ class HingeJob(StoredJob):
 
 
 def hinges_from_cache(forms: Mapping[str, HingeForm], accuracy: Accuracy, ways: Ways) -> dict[str, HingeSolid]:
-    """Return the 6x6 compliance of hinges by name. Missing ones are computed in parallel processes, and each is stored immediately.
+    """Return the 6x6 compliance matrices of hinges by name. Missing ones are computed in parallel processes; each is stored immediately.
 
-    The solver is needed only for missing ones. Raises `DesignError` with all failures.
+    The solver is needed only for missing matrices. Raises `DesignError` with all failures.
 
     >>> hinges_from_cache({}, Accuracy(), Ways())
     {}
@@ -87,7 +87,7 @@ def hinges_from_cache(forms: Mapping[str, HingeForm], accuracy: Accuracy, ways: 
 
 
 def hinge_jobs(forms: Mapping[str, HingeForm], accuracy: Accuracy) -> list[HingeJob]:
-    """A job for each hinge."""
+    """Make a job for each hinge."""
     return [HingeJob(_key(form, accuracy), name, form, accuracy) for name, form in forms.items()]
 
 

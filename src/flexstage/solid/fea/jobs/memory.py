@@ -45,7 +45,7 @@ class Counts:
 
     @staticmethod
     def of(elements: float, sides: int = 1) -> Counts:
-        """The usual counts of a mesh with this number of elements.
+        """Estimate the counts of a mesh with this number of elements.
 
         >>> Counts.of(1000.0)
         Counts(vertices=300.0, edges=1500.0, faces=2200.0, elements=1000.0, sides=1)
@@ -53,7 +53,7 @@ class Counts:
         return Counts(0.3 * elements, 1.5 * elements, 2.2 * elements, elements, sides)
 
     def coarser(self, factor: float) -> Counts:
-        """Approximate counts if all sizes are larger by a factor: counts of graded meshes decrease with its square rather than its cube.
+        """Estimate the counts if all sizes are larger by a factor: counts of graded meshes decrease with its square, not its cube.
 
         >>> Counts(8.0, 8.0, 8.0, 8.0).coarser(2.0).elements
         2.0
@@ -61,7 +61,7 @@ class Counts:
         return self._times(1.0 / factor**2)
 
     def enriched(self, share: float, order: int) -> Counts:
-        """Counts of a mesh of one `order` with as many DOFs as this mesh, in which a `share` of the elements has one order more.
+        """Return counts of a mesh of uniform `order` with as many DOFs as this mesh if a `share` of its elements has one order more.
 
         >>> Counts(4, 6, 4, 1).enriched(1.0, 1).vertices  # ten nodes instead of four
         10.0
@@ -73,7 +73,7 @@ class Counts:
 
 
 def freedoms(counts: Counts, order: int) -> float:
-    """Number of displacement DOFs at an order: 3 (n_v + (p-1) n_e + (p-1)(p-2)/2 n_f + (p-1)(p-2)(p-3)/6 n_t).
+    """Count the displacement DOFs at an order: 3 (n_v + (p-1) n_e + (p-1)(p-2)/2 n_f + (p-1)(p-2)(p-3)/6 n_t).
 
     >>> freedoms(Counts(4, 6, 4, 1), order=2)  # one tetrahedron: ten nodes
     30.0
@@ -84,7 +84,7 @@ def freedoms(counts: Counts, order: int) -> float:
 
 
 def entries(counts: Counts, order: int) -> float:
-    """Number of entries of the stiffness matrix: nine for every pair of basis functions with a common element.
+    """Count the entries of the stiffness matrix: nine for every pair of basis functions with a common element.
 
     >>> entries(Counts(4, 6, 4, 1), order=2)  # one tetrahedron: full
     900.0
@@ -97,11 +97,11 @@ def entries(counts: Counts, order: int) -> float:
 
 
 def needed(counts: Counts, order: int, columns: int) -> float:
-    """Peak memory of a reduction [bytes] to `columns` coordinates: process, mesh, matrices, their factors, basis.
+    """Estimate the peak memory [bytes] of a reduction to `columns` coordinates: process, mesh, matrices, their factors, and basis.
 
-    One side of a symmetric component has a factor for every kind of motion, as many as mirror images. The estimate is within -15 and +40 %
-    of measurements at orders two to four with modes. Without modes only one factor exists at a time, and the estimate is up to 70 % too
-    high.
+    One side of a symmetric component needs one factor for each kind of motion; there are as many kinds as mirror images. The estimate is
+    within -15 and +40 % of measurements at orders two to four with modes. Without modes only one factor exists at a time, and the estimate
+    is up to 70 % too high.
 
     >>> round(needed(Counts(1416, 7258, 10580, 4737), order=3, columns=24) / 1e6)  # a lever's foot: 967 MB measured
     1030
@@ -125,7 +125,7 @@ class ReductionWork:
     pace: float = 1.0
 
     def seconds(self, columns: int) -> float:
-        """Usual CPU time [s] to factorise, solve and project for a number of coordinates.
+        """Estimate the CPU time [s] to factorise, solve and project for a number of coordinates.
 
         >>> round(ReductionWork(Counts.of(5000.0), 126_711, 3.1e10).seconds(90))
         11
@@ -151,7 +151,7 @@ def measure_pace() -> float:
 
 
 def refusal(where: str, counts: Counts, fineness: Fineness, columns: int, limit: float) -> Finding | None:
-    """Error of a component that does not fit into `limit` bytes, with an order or a fineness that fits; `None` if it fits.
+    """Return an error for a component that needs more than `limit` bytes, with an order or a fineness that fits; `None` if it fits.
 
     >>> found = refusal("lever", Counts(1416, 7258, 10580, 4737), Fineness(), 24, 0.5e9)
     >>> found.what

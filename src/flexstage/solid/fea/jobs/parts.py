@@ -71,7 +71,7 @@ def reduce_parts(
 
 
 def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mapping[str, Array] = _NO_SPRINGS) -> list[Reduce]:
-    """A job for each component. The ends of its links may deform, so that an isolated unit and the unit in its stage have the same job.
+    """Make a job for each component. Ends of its links may deform: an isolated unit and the unit in its stage have the same job.
 
     An encased stack has no fixed-interface modes: in them the ceramic would bend without its casing, which joins only the end faces.
 
@@ -90,7 +90,7 @@ def reduce_jobs(parts: Sequence[Component], reduction: Reduction, springs: Mappi
 
 @SESSION.keep(KEPT)
 def content_in_stage(part: Component) -> str:
-    """The content of a component's reduction, equal for an isolated unit and the unit in its stage.
+    """Digest the content of a component's reduction, equal for an isolated unit and the unit in its stage.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> content_in_stage(bar()) == content(with_yielding_ends(bar()))
@@ -100,7 +100,7 @@ def content_in_stage(part: Component) -> str:
 
 
 def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Superelement]]) -> Parts:
-    """Components with the superelements of their `reduce_jobs`, faces on rigid bodies kept plane; equal ones share a superelement.
+    """Return components with the superelements of their `reduce_jobs`, with plane faces on rigid bodies; equal ones share a superelement.
 
     >>> as_joined((), ())
     ()
@@ -117,7 +117,7 @@ def as_joined(parts: Sequence[Component], reduced: Sequence[tuple[Component, Sup
 
 
 def obtain(jobs: Sequence[StoredJob], ways: Ways) -> dict[str, Any]:
-    """Results of jobs by key: from the cache, else computed, each once, and stored immediately.
+    """Return the results of jobs by key: from the cache, else computed once and stored immediately.
 
     First, the computing effort of missing results is estimated from their meshes and reported. Raises `DesignError` if a job fails or would
     exceed memory or time.
@@ -188,7 +188,7 @@ def _measure(jobs: Sequence[StoredJob], ways: Ways) -> tuple[list[StoredJob], tu
 
 
 def announce(jobs: Sequence[StoredJob], lanes: int, cached: int) -> str:
-    """One line about the jobs: their number, the largest number of unknowns, and the total CPU time.
+    """Describe the jobs in one line: their number, the largest number of unknowns, and the total CPU time.
 
     >>> announce((), lanes=2, cached=3)
     'to do: nothing, all 3 results are in the cache.'
@@ -203,7 +203,7 @@ def announce(jobs: Sequence[StoredJob], lanes: int, cached: int) -> str:
 
 
 def distinct(jobs: Iterable[AnyStored]) -> tuple[AnyStored, ...]:
-    """The first job of each key."""
+    """Return the first job of each key."""
     first: dict[str, AnyStored] = {}
     for job in jobs:
         first.setdefault(job.key, job)

@@ -1,4 +1,4 @@
-"""Stages of a solid model: the computing process reports them, and the waiting process sums them over all components."""
+"""Stages of the computation of a solid model: the computing process reports them, and the waiting process sums them over all components."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import Enum
 
 
 class Stage(Enum):
-    """Stage of a component's computation, in this order."""
+    """Stages of a component's computation, in this order."""
 
     STARTING = "starting"
     DRAWING = "drawing"
@@ -41,7 +41,7 @@ def silent(_stage: Stage, _fraction: float) -> None:
 
 
 def fraction_done(stage: Stage, fraction: float) -> float:
-    """Completed fraction of the computation of a component, from the completed fraction of a stage.
+    """Compute the completed fraction of the work on a component, from the completed fraction of a stage.
 
     >>> fraction_done(Stage.STARTING, 0.0), round(fraction_done(Stage.MESHING, 1.0), 2), round(fraction_done(Stage.PROJECTING, 1.0), 9)
     (0.0, 0.07, 1.0)

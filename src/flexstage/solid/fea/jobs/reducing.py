@@ -30,7 +30,7 @@ _TRIANGLE = 0.433
 
 
 def fewest_elements(component: Component, fineness: Fineness) -> float:
-    """Lower bound of the number of elements: one for each triangle of a mesh on the lateral surface of necks and blocks.
+    """Compute a lower bound of the number of elements: one for each triangle of a mesh on the lateral surface of necks and blocks.
 
     It serves to refuse meshes that exceed the available memory before meshing.
 
@@ -62,16 +62,16 @@ class StoredJob(Job):
 
     @property
     def phase(self) -> str:
-        """Its group in announcements."""
+        """Group of the job in announcements."""
         return "hinges"
 
     def summary(self, _found: Any) -> str:
-        """One line about the result."""
+        """Describe the result in one line."""
         raise NotImplementedError
 
     @property
     def mark(self) -> str:
-        """Its key."""
+        """Key of the job."""
         return self.key
 
 
@@ -105,12 +105,12 @@ class Reduce(ComponentJob):
 
     @property
     def phase(self) -> str:
-        """Its group in announcements, with the order."""
+        """Group of the job in announcements, with the order."""
         return f"components at order {self.reduction.fineness.order}"
 
     @property
     def columns(self) -> int:
-        """Upper bound of the number of coordinates of its superelement."""
+        """Upper bound of the number of coordinates of the component's superelement."""
         part = self.component
         stacks = sum(isinstance(piece.form, Piezo) for piece in part.pieces)
         warps = WARPS * sum(item.yields for item in part.interfaces)
@@ -126,19 +126,19 @@ class Reduce(ComponentJob):
         return self.springs is None and self.reduction.hold is Hold.RIGID and not (part.floats or part.seats)
 
     def seconds(self) -> float:
-        """Usual CPU time of the reduction [s]: from its measured work if known, else that of a small job."""
+        """Return the usual CPU time of the reduction [s]: from its measured work if known, else that of a small job."""
         return super().seconds() if self.measured is None else self.measured.seconds(self.columns)
 
     def summary(self, found: Superelement) -> str:
-        """One line about the reduced component."""
+        """Describe the reduced component in one line."""
         return f"{self.name} at order {self.reduction.fineness.order}: {found.freedoms:,} unknowns"
 
     def needed(self, counts: Counts) -> float:
-        """Memory of the reduction [bytes]."""
+        """Return the memory of the reduction [bytes]."""
         return needed(counts, self.reduction.fineness.order, self.columns)
 
     def refusal(self, counts: Counts, limit: float) -> Finding | None:
-        """Error if it does not fit into the memory, with an order or a fineness that fits; for thin wide parts also with their size."""
+        """Return an error if the job does not fit into the memory, with an order or fineness that fits; for thin parts with their size."""
         found = refusal(self.name, counts, self.reduction.fineness, self.columns, limit)
         forms = ((piece.name, piece.form) for piece in self.component.pieces if is_leaf(piece.form) or is_notch(piece.form))
         wide = {name: form.throat for name, form in forms if isinstance(form, Shaped)}
@@ -151,7 +151,7 @@ class Reduce(ComponentJob):
         return Finding(found.where, f"{found.what}: {ratio}", f"{found.advice}, {more}")
 
     def excess(self, memory: float, seconds: float) -> Iterator[Finding]:
-        """Error if its measured work exceeds a memory [bytes] or a time [s]."""
+        """Return an error if the measured work of the reduction exceeds a memory [bytes] or a time [s]."""
         found = self.measured and self.refusal(self.measured.counts, memory)
         if found:
             yield found
@@ -207,7 +207,7 @@ class MeasureWork(Job):
         return self.reductions[0].kin
 
     def work(self, call: Call) -> tuple[ReductionWork, ...]:
-        """Computing effort of each reduction, from its mesh and the elimination order of its unknowns."""
+        """Compute the effort of each reduction, from its mesh and the elimination order of its unknowns."""
         return tuple(_measure(each, call) for each in self.reductions)
 
 

@@ -46,7 +46,7 @@ AnyJob = TypeVar("AnyJob", bound=Job)
 
 
 class Pool:
-    """Processes kept between groups of jobs, because loading the solver takes longer than a small job; `results` are by key.
+    """Processes kept between groups of jobs, because loading the solver takes longer than a small job; `results` maps keys to results.
 
     The processes end with the context of the pool.
 
@@ -68,7 +68,7 @@ class Pool:
             self.end(worker)
 
     def worker(self, job: Job) -> Worker:
-        """A process for a job: an idle one, preferably after a similar job, else a new one. Raises `OSError` if no process can start."""
+        """Return a process for a job: an idle one, preferably after a similar job, else a new one. Raises `OSError` if none can start."""
         for each in self.idle:
             if each.process.poll() is not None:
                 self.end(each)
@@ -96,8 +96,8 @@ def work_all(
 ) -> None:
     """Run jobs in separate processes; `done` is called with each finished job and its result.
 
-    The processes remain in the `pool`, if any. After all jobs, raises `DesignError` with those that were refused, crashed, or exceeded time
-    or memory. An exception from `progress` or an interruption ends all processes.
+    The processes remain in the `pool`, if any. After all jobs, raises `DesignError` with the jobs that were refused, crashed, or exceeded
+    time or memory. An exception from `progress` or an interruption ends all processes.
 
     >>> work_all([], print, Limits())
     """
@@ -115,7 +115,7 @@ def _ignore(_step: Step) -> None:
 
 
 def workers(limits: Limits) -> int:
-    """Number of simultaneous jobs.
+    """Return the number of simultaneous jobs.
 
     >>> workers(Limits(workers=1))
     1

@@ -1,4 +1,4 @@
-"""Files of superelements and of the 6x6 of hinges: one line of JSON that describes the data, then the arrays as NPZ; no code."""
+"""Files of superelements and hinges: one line of JSON that describes the data, then the arrays as NPZ; no code."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def program() -> str:
 
 
 def to_bytes(element: Superelement | HingeSolid | None, key: str) -> bytes:
-    """Return the content of a file with a superelement, a 6x6 or nothing, stored for the content `key`.
+    """Return the content of a file with a superelement, a hinge or nothing, stored for the content `key`.
 
     >>> small = Superelement(0, 0, {}, {}, {}, {}, {}, {}, {}, np.zeros((0, 6)), np.zeros((0, 6)), Skin(*[np.zeros(0)] * 5), 3, 1)
     >>> from_bytes(to_bytes(small, "key"), "key").freedoms

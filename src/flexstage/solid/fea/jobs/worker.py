@@ -43,11 +43,11 @@ class Job(ABC):
     @property
     @abstractmethod
     def name(self) -> str:
-        """Name of its object for the user."""
+        """User's name of the object of the job."""
 
     @property
     def mark(self) -> str:
-        """Its identifier among all jobs."""
+        """Identifier of the job among all jobs."""
         return self.name
 
     @property
@@ -56,7 +56,7 @@ class Job(ABC):
         return ""
 
     def seconds(self) -> float:
-        """Usual CPU time [s]."""
+        """Return the usual CPU time [s]."""
         return USUAL_SECONDS
 
     @abstractmethod
@@ -64,11 +64,11 @@ class Job(ABC):
         """Compute the result."""
 
     def needed(self, _counts: Counts) -> float:
-        """Memory for a mesh [bytes]."""
+        """Return the memory for a mesh [bytes]."""
         return 0.0
 
     def refusal(self, _counts: Counts, _limit: float) -> Finding | None:
-        """Error if it does not fit into memory, with a smaller alternative."""
+        """Return an error if the job does not fit into memory, with a smaller alternative."""
         return None
 
 

@@ -31,7 +31,7 @@ class Accuracy(CheckedFields):
 
 
 def change(first: Array, second: Array) -> float:
-    """Largest change between two compliances (6, 6), each entry ij relative to sqrt(C_ii C_jj) of the second: dimensionless.
+    """Compute the largest relative change between two compliances (6, 6), each entry ij relative to sqrt(C_ii C_jj) of the second.
 
     >>> change(np.diag([1.0, 2.0]), np.diag([1.0, 2.02])).__round__(4)
     0.0099
@@ -41,10 +41,10 @@ def change(first: Array, second: Array) -> float:
 
 
 def remaining(changes: Iterable[float]) -> float:
-    """Error of the last of a sequence of results, from the changes d_1, d_2, ... between successive results: max(1, r / (1 - r)) d_n.
+    """Estimate the error of the last of several results from the successive changes d_1, d_2, ... of the result: max(1, r / (1 - r)) d_n.
 
     r = d_n / d_(n-1), at most 0.8. For slow convergence this is the sum of a geometric series, for fast convergence the last change, an
-    overestimate. It is infinite without any change. It is an estimate, not a bound.
+    overestimate. For a single result it is infinite. It is an estimate, not a bound.
 
     >>> remaining([0.4, 0.1]), round(remaining([0.4, 0.3]), 6), round(remaining([0.4, 0.4]), 6), remaining([0.4]), remaining([])
     (0.1, 0.9, 1.6, 0.4, inf)

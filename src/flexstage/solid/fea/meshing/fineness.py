@@ -64,8 +64,8 @@ class Reduction(CheckedFields):
     """Options of a component's reduction: mesh and order, number of fixed-interface modes, constraint of its interface faces.
 
     `residual` adds the static response, with faces fixed, to the inertia of the faces' motions. It replaces the omitted modes to first
-    order in frequency squared. Components whose content is in `raised` have elements of one order more than the others. With `static` these
-    have no modes, because static results do not need them.
+    order in frequency squared. Components whose content is in `raised` have elements of one order more than the others. With `static` the
+    raised components have no modes, which static results do not need.
     """
 
     fineness: Fineness = Fineness()
@@ -76,7 +76,7 @@ class Reduction(CheckedFields):
     static: bool = False
 
     def of(self, content: str) -> Reduction:
-        """The options of a component, by its content.
+        """Return the options of a component, by its content.
 
         >>> own = Reduction(raised=frozenset({"lever"}), static=True).of("lever")
         >>> own.fineness.order, own.modes
@@ -88,7 +88,7 @@ class Reduction(CheckedFields):
 
 
 def is_leaf(form: object) -> bool:
-    """Whether a form is a leaf: of rectangular section, thin along its whole length.
+    """Return whether a form is a leaf: of rectangular section, thin along its whole length.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> is_leaf(Leaf("steel", 0.01, 1e-3, 5e-3))
@@ -98,7 +98,7 @@ def is_leaf(form: object) -> bool:
 
 
 def is_notch(form: object) -> bool:
-    """Whether a form is a hinge with arcs across a width: its strain varies smoothly across and along it.
+    """Return whether a form is a hinge with arcs across a width: its strain varies smoothly across and along it.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> is_notch(Leaf("steel", 0.01, 1e-3, 5e-3))
@@ -108,7 +108,7 @@ def is_notch(form: object) -> bool:
 
 
 def is_thin(form: object) -> bool:
-    """Whether a form is a leaf or notch wider and longer than 35 times its thickness: only these have flat elements.
+    """Return whether a form is a leaf or notch wider and longer than 35 times its thickness: only these have flat elements.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> [is_thin(Leaf("steel", 0.04, 1e-3, width)) for width in (0.03, 0.04)]
@@ -123,7 +123,7 @@ def _short(form: Shaped) -> float:
 
 
 def is_strut(form: object) -> bool:
-    """Whether a form is a neck of one section, which ends on blocks wider than itself.
+    """Return whether a form is a neck of one section, which ends on blocks wider than itself.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> is_strut(Leaf("steel", 0.01, 1e-3, 5e-3))
@@ -133,7 +133,7 @@ def is_strut(form: object) -> bool:
 
 
 def element_size(piece: Piece, fineness: Fineness) -> float:
-    """Size of elements [m] on the faces of a piece.
+    """Return the size of elements [m] on the faces of a piece.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> round(element_size(bar().pieces[0], Fineness(block=1.5)), 9)
@@ -148,7 +148,7 @@ def element_size(piece: Piece, fineness: Fineness) -> float:
 
 
 def middle_size(form: Shaped, neck: float) -> float:
-    """Size of elements [m] around the thinnest line of a notch.
+    """Return the size of elements [m] around the thinnest line of a notch.
 
     >>> from flexstage.parts.notch import Notch
     >>> from flexstage.parts.profile import Circular
@@ -159,7 +159,7 @@ def middle_size(form: Shaped, neck: float) -> float:
 
 
 def thin_findings(pieces: Iterable[Piece], fineness: Fineness) -> Iterator[Finding]:
-    """Errors of links too thin to be meshed over their length and width.
+    """Yield an error for each link that is too thin to be meshed over its length and width.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> list(thin_findings(bar().pieces, Fineness()))

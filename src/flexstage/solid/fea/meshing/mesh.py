@@ -151,7 +151,7 @@ def _curve(straight: ngsolve.Mesh, order: int) -> ngsolve.Mesh:
 
 
 def generate_mesh(shape: occ.TopoDS_Shape, sizes: Mapping[str, Any]) -> ngsolve.Mesh | str:
-    """A mesh [mm] of a drawing with these mesher options; else the reason of the failure.
+    """Generate a mesh [mm] of a drawing with these mesher options; if this fails, return the reason.
 
     One thread is used: with several, meshes may differ from run to run, and threads mostly wait for one another.
 
@@ -227,7 +227,7 @@ def _middle_points(form: Shaped, size: float) -> Array:
 
 
 def core_points(form: Shaped, neck: float) -> Iterator[tuple[Array, float]]:
-    """Points (n, 3) within a round neck with an arc, in its frame, and the element size there [m].
+    """Return points (n, 3) within a round neck with an arc, in its frame, and the element size there [m].
 
     `neck` is the element size on its faces over the thickness. The points are on its axis and halfway to its surface. Other hinges have
     none.
@@ -307,7 +307,7 @@ def _refuse_mesh(component: Component, reason: str) -> Exception:
 
 
 def centroids(mesh: ngsolve.Mesh) -> Array:
-    """Mean vertex positions (n, 3) of all elements [m].
+    """Compute the mean vertex positions (n, 3) of all elements [m].
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -321,7 +321,7 @@ def centroids(mesh: ngsolve.Mesh) -> Array:
 
 
 def owners(pieces: tuple[Piece, ...], points: Array) -> Array:
-    """The piece (index) of each point: the nearest by bounding box, links before bodies.
+    """Return the piece (index) of each point: the nearest piece by bounding box, links before bodies.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> owners(bar().pieces, np.array([[0.05, 0.0, 0.0]])).tolist()

@@ -48,7 +48,7 @@ def straighten(mesh: ngsolve.Mesh, kept: Array) -> str | None:
 
 
 def jacobians(mesh: ngsolve.Mesh) -> tuple[Array, Array]:
-    """The lowest and the highest Jacobian determinant of each element (n,), (n,) at the points of a rule of order four.
+    """Compute the lowest and the highest Jacobian determinant of each element (n,), (n,) at the points of a rule of order four.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

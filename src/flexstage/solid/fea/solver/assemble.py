@@ -155,7 +155,7 @@ def _seats(placed: tuple[Placed, ...]) -> Iterator[tuple[str, tuple[Array, Array
 
 
 def place_parts(assembly: Assembly, parts: tuple[tuple[Component, Superelement], ...]) -> tuple[Placed, ...]:
-    """The components with the operators from the coordinates of their `linear_model` to their own, for displacement fields.
+    """Return components with the operators from the coordinates of their `linear_model` to their own, for displacement fields.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand

@@ -23,10 +23,11 @@ def is_encased(form: object) -> bool:
 
 
 def casing(link: PlacedLink) -> Array | None:
-    """Stiffness (6, 6) of a stack's casing about its centre, in its frame: 12 B/L^3 across, B/L in bending, B/((1 + nu) L) in torsion.
+    """Return the stiffness (6, 6) of a stack's casing about its centre: 12 B/L^3 across, B/L in bending, B/((1 + nu) L) in torsion.
 
-    B is the specified bending rigidity less E I of the ceramic. Along the axis the stiffness is zero, because the casing slides. Without a
-    casing, the result is `None`. Raises `DesignError` if the specified rigidity is below that of the ceramic.
+    B is the specified bending rigidity less E I of the ceramic. Along the axis the stiffness is zero, because the casing slides. The axes
+    are those of the stack. Without a casing, the result is `None`. Raises `DesignError` if the specified rigidity is below that of the
+    ceramic.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -52,7 +53,9 @@ def casing(link: PlacedLink) -> Array | None:
 
 
 def end_face_twist(component: Component, link: PlacedLink) -> Array:
-    """Relative twist of a stack's end faces, second less first, at its centre in its frame: operator (6, 6 m) on twists of m interfaces.
+    """Return the operator (6, 6 m) from twists of m interfaces to the relative twist of a stack's end faces, second less first.
+
+    The relative twist is at the stack's centre, in its frame.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand

@@ -108,7 +108,7 @@ def components(mechanism: Mechanism, cut: Cut = Cut.UNITS) -> tuple[Component, .
 
 
 def groups(component: Component) -> dict[str, tuple[int, ...]]:
-    """Pieces (by index) of each link and each body, in order.
+    """Collect the pieces (by index) of each link and each body, in order.
 
     The order is the same in every instance, so that one superelement serves all.
 
@@ -123,7 +123,7 @@ def groups(component: Component) -> dict[str, tuple[int, ...]]:
 
 
 def with_yielding_ends(component: Component) -> Component:
-    """The same component with link ends that deform on rigid bodies, as on elastic ones.
+    """Return the same component with link ends that deform on rigid bodies, as on elastic ones.
 
     An isolated unit ends on a rigid output, but on an elastic platform in its stage. If all warps are zero, both are equal.
 
@@ -141,7 +141,7 @@ def with_yielding_ends(component: Component) -> Component:
 
 
 def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
-    """The joints of a link: with its first body, at the end face towards -x of the link frame, and with its second, at +x.
+    """Return the two joints of a link: with its first body, at the end face towards -x of the link frame, and with its second, at +x.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> link = next(iter(expand(parallelogram()).links.values()))
@@ -157,7 +157,7 @@ def link_joints(link: PlacedLink, form: Form) -> tuple[Joint, Joint]:
 
 
 def is_elastic(assembly: Assembly, body: str) -> bool:
-    """Whether a body has outlines: such bodies are elastic solids, others and the ground are rigid.
+    """Return whether a body has outlines: such bodies are elastic solids, others and the ground are rigid.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.assembly.expand import expand

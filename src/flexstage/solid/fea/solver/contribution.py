@@ -61,7 +61,7 @@ def assemble_groups(space: Field, groups: Mapping[str, Array]) -> tuple[Assemble
 
 
 def contributions(space: Field, sets: Sequence[Assembled], basis: Array) -> Iterator[Contribution]:
-    """Yield the contributions of groups of elements in motions (n, k), in any sequence.
+    """Yield the contributions of groups of elements in motions (n, k), in any order.
 
     Rigid parts are subtracted before elastic forces are computed: their rounding errors would exceed the forces of a thin leaf.
 

@@ -85,7 +85,7 @@ class Field:
         return dissect(grid(self), self.free.reshape(3, -1)[0])
 
     def stress(self, strain: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
-        """Hooke's law: 2 mu strain + lambda tr(strain) I, or with the tensor of a crystal [Pa, with strains per m]."""
+        """Apply Hooke's law: 2 mu strain + lambda tr(strain) I, or with the tensor of a crystal [Pa, with strains per m]."""
         if self.tensor is not None:
             pairs = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
             found = self.tensor * ngsolve.CoefficientFunction(tuple(strain[i, j] + (0.0 if i == j else strain[j, i]) for i, j in pairs))
@@ -94,7 +94,7 @@ class Field:
 
 
 def field(meshed: PieceMesh, held: Iterable[str], order: int) -> Field:
-    """The displacement space on a mesh with the faces `held` fixed, of this `order`, and of one order more in `finer` elements.
+    """Build the displacement space on a mesh with the faces `held` fixed, of this `order`, and of one order more in `finer` elements.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -128,7 +128,7 @@ def field(meshed: PieceMesh, held: Iterable[str], order: int) -> Field:
 
 
 def hooke(medium: Medium) -> Array:
-    """The stiffness (6, 6) of a medium [Pa] for the strains xx, yy, zz, yz, xz, xy, with engineering shear.
+    """Return the stiffness (6, 6) of a medium [Pa] for the strains xx, yy, zz, yz, xz, xy, with engineering shear.
 
     >>> hooke(Medium(1.0, 0.25, 1.0))[0].round(9).tolist()
     [1.2, 0.4, 0.4, 0.0, 0.0, 0.0]
@@ -148,7 +148,7 @@ def _escape(name: str) -> str:
 
 
 def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunction:
-    """Small strain of a displacement, per mm.
+    """Compute the small strain of a displacement, per mm.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -163,7 +163,7 @@ def strain(displacement: ngsolve.CoefficientFunction) -> ngsolve.CoefficientFunc
 
 
 def stiffness(space: Field, elements: Array | None = None, *, assemble: bool = True) -> ngsolve.BilinearForm:
-    """int stress(u) : strain(v) dV [N/m], over some elements (mask) or all; without `assemble` it can only be applied to vectors.
+    """Build int stress(u) : strain(v) dV [N/m], over some elements (mask) or all; without `assemble` it can only be applied to vectors.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -186,7 +186,7 @@ class Inertia:
     scalar: tuple[Any, ...]
 
     def times(self, vectors: Array) -> Array:
-        """The momenta (n, k) of velocities (n, k)."""
+        """Compute the momenta (n, k) of velocities (n, k)."""
         count, columns = len(vectors) // 3, vectors.shape[1]
         each = vectors.reshape(3, count, columns).transpose(1, 0, 2).reshape(count, 3 * columns)
         moved = functools.reduce(operator.iadd, (_symmetric_times(matrix, each) for matrix in self.scalar))
@@ -194,7 +194,7 @@ class Inertia:
 
 
 def total(parts: Sequence[Inertia]) -> Inertia:
-    """The sum of inertias.
+    """Return the sum of inertias.
 
     >>> one = Inertia((scipy.sparse.csr_array(np.eye(1)),))
     >>> total([one, one]).times(np.ones((3, 1))).tolist()
@@ -204,7 +204,7 @@ def total(parts: Sequence[Inertia]) -> Inertia:
 
 
 def inertia(space: Field, elements: Array | None = None) -> Inertia:
-    """The inertia of some elements (mask) or all.
+    """Build the inertia of some elements (mask) or all.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -252,7 +252,7 @@ def _apply_by_columns(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector
 
 
 def stroke_force(space: Field, frame: Frame, length: float) -> Array:
-    """Forces (n,) of a unit free stroke: int C e0 : strain(v) dV with the imposed strain e0 = x x^T / length along the frame's x axis.
+    """Compute forces (n,) of a unit free stroke: int C e0 : strain(v) dV with imposed strain e0 = x x^T / length along the frame's x axis.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -274,7 +274,7 @@ def stroke_force(space: Field, frame: Frame, length: float) -> Array:
 
 
 def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
-    """The six rigid motions (n, 6) about a frame's origin in its axes; with `faces`, only on these faces.
+    """Return the six rigid motions (n, 6) about a frame's origin in its axes; with `faces`, only on these faces.
 
     They are translations of 1 m and rotations of 1 rad.
 
@@ -296,7 +296,7 @@ def rigid(space: Field, frame: Frame, faces: str | None = None) -> Array:
 
 
 def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array:
-    """The twelve motions (n, 12) of a face normal to a frame's x axis that are linear or quadratic over it, and not rigid.
+    """Return the twelve motions (n, 12) of a face normal to a frame's x axis that are linear or quadratic over it, and not rigid.
 
     In the frame's axes, with y and z over `size` [m], they are in-plane strains and shear, then u_x, u_y and u_z equal to y^2, y z and z^2.
 
@@ -319,7 +319,7 @@ def warping_motion(space: Field, frame: Frame, size: float, faces: str) -> Array
 
 
 def warp_kinds(mirrors: Mirrors, frame: Frame) -> Array:
-    """The kinds (12,) of the motions of `warping_motion` about a mesh's mirrors.
+    """Return the kinds (12,) of the motions of `warping_motion` about a mesh's mirrors.
 
     >>> warp_kinds(Mirrors((1,)), Frame(np.eye(3), np.zeros(3))).tolist()
     [0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0]
@@ -353,7 +353,7 @@ def _interpolated_on(space: Field, columns: list[ngsolve.CoefficientFunction], f
 
 
 def degrees_of(space: Field, elements: Array) -> Array:
-    """Mask (n,) of the degrees of freedom of some elements (mask).
+    """Return a mask (n,) of the degrees of freedom of some elements (mask).
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -369,7 +369,7 @@ def degrees_of(space: Field, elements: Array) -> Array:
 
 
 def nodes_on(space: Field, face: str) -> Array:
-    """Mask (n / 3,) of the functions of one component of the space on a named face.
+    """Return a mask (n / 3,) of the functions of one component of the space on a named face.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -383,7 +383,7 @@ def nodes_on(space: Field, face: str) -> Array:
 
 
 def mean_motion(space: Field, frame: Frame, face: str) -> Array:
-    """Rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, and R the rigid motions in a frame.
+    """Compute rows (6, n) of a face's mean twist: G^-1 int R^T u dS with G = int R^T R dS, and R the rigid motions in a frame.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -404,7 +404,7 @@ def mean_motion(space: Field, frame: Frame, face: str) -> Array:
 
 
 def seat_motion(space: Field, point: Array, reach: float, faces: Array) -> Array:
-    """Rows (6, n) of the mean twist about a point, in the field's axes, of the surface elements `faces` (mask) around it.
+    """Compute rows (6, n) of the mean twist about a point, in the field's axes, of the surface elements `faces` (mask) around it.
 
     The weight of the surface is exp(-(d^2 - d0^2) / reach^2), with d the distance from the point and d0 the smallest distance. On a flat
     face the weight is a bell around the foot of the perpendicular; on a ball about the point it is uniform.
@@ -464,7 +464,7 @@ def _matrix(form: ngsolve.BilinearForm) -> Any:
 
 
 def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
-    """Stiffness plus `shift` times inertia: positive definite without any support.
+    """Return the stiffness plus `shift` times the inertia: positive definite without any support.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -482,7 +482,7 @@ def shift_stiffness(space: Field, shift: float) -> ngsolve.BilinearForm:
 
 
 def held_at_mirrors(space: Field, kind: int) -> Array:
-    """Mask (n,) of DOFs that are zero at the mesh's mirrors in motions of a kind: normal ones if even, tangential ones if odd.
+    """Return a mask (n,) of DOFs that are zero at a mesh's mirrors in motions of a kind: normal ones if even, tangential ones if odd.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness
@@ -509,15 +509,15 @@ class Columns:
 
     @staticmethod
     def of(values: Array) -> Columns:
-        """Columns of one kind, without mirrors."""
+        """Make columns of one kind, without mirrors."""
         return Columns(values, np.zeros(values.shape[1], dtype=np.int64))
 
     def kind(self, kind: int) -> Array:
-        """The columns of one kind."""
+        """Return the columns of one kind."""
         return self.values[:, self.kinds == kind]
 
     def some(self, columns: slice) -> Columns:
-        """A slice of the columns."""
+        """Return a slice of the columns."""
         return Columns(self.values[:, columns], self.kinds[columns])
 
 
@@ -612,7 +612,7 @@ def _apply_held(operator: Callable[[ngsolve.BaseVector, ngsolve.BaseVector], obj
 
 
 def grid(space: Field) -> Grid:
-    """The elements and nodes of a field, for dissection.
+    """Return the elements and nodes of a field, for dissection.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from flexstage.solid.fea.meshing.fineness import Fineness

@@ -107,7 +107,7 @@ class Fronts:
 
 
 def dissect(grid: Grid, free: Array) -> Fronts:
-    """The elimination order of free nodes (mask): elements are cut in two repeatedly, with few faces at the cut."""
+    """Compute the elimination order of free nodes (mask): elements are cut in two repeatedly, with few faces at the cut."""
     leaves, spans = _cuts(grid.faces.tobytes(), grid.places.tobytes())
     leaf = np.repeat(np.arange(len(leaves)), [len(each) for each in leaves])[np.argsort(np.concatenate(leaves))]
     owner, low = _owners(grid, leaf, spans)
@@ -214,7 +214,7 @@ class Factorised:
     factors: tuple[_Factor, ...]
 
     def solve(self, forces: Array) -> Array:
-        """Displacements (n, k) from forces (n, k), zero at fixed degrees of freedom."""
+        """Compute displacements (n, k) from forces (n, k), zero at fixed degrees of freedom."""
         nodes, (size, columns) = self.order.nodes, forces.shape
         work = np.empty((len(nodes), 3, columns))  # by node, with its three components
         for axis, along in enumerate(forces.reshape(3, -1, columns)):

@@ -40,7 +40,7 @@ _SHIFT = (2.0 * np.pi * 10.0) ** 2
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """Motions for unit twists of `faces` (n, 6 m), for their unit `warps` (n, w), and for loads `within` with fixed faces; the solver."""
+    """Motions for unit twists of `faces` (n, 6 m), for their unit `warps` (n, w), for loads `within` with fixed faces; and `solve`."""
 
     faces: Columns
     warps: Columns
@@ -49,7 +49,7 @@ class Support:
 
 
 def is_rigid(component: Component, interface: Interface, hold: Hold) -> bool:
-    """Whether an interface's motions, not only their mean, are constrained: by option, or as a stack's end cap.
+    """Return whether an interface's motions, not only their mean, are constrained: by option, or as a stack's end cap.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> is_rigid(bar(), bar().interfaces[0], Hold.RIGID), is_rigid(bar(), bar().interfaces[0], Hold.AVERAGED)
@@ -113,7 +113,7 @@ def _held(plain: KindSolver, means: Array) -> tuple[Array, KindSolver]:
 
 
 def middle(component: Component) -> Array:
-    """The reference point (3,) for the motion of a floating component: the point of its first body.
+    """Return the reference point (3,) for the motion of a floating component: the point of its first body.
 
     >>> from flexstage.solid.fea.meshing.bar import bar
     >>> from dataclasses import replace

@@ -29,7 +29,7 @@ class Pencil:
 
 
 def lowest_modes(pencils: Sequence[Pencil], count: int) -> list[Array]:
-    """The `count` lowest modes of several pencils together, as (size, k) for each: block Lanczos with full orthogonalisation.
+    """Compute the `count` lowest modes of several pencils together, (size, k) for each: block Lanczos with full orthogonalisation.
 
     There are fewer modes if the masses have a lower rank. Golub and Underwood, in Mathematical Software III (1977), 361.
 

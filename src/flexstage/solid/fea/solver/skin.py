@@ -33,7 +33,7 @@ _NEAR = 1e-9
 
 
 def skin(space: Field, motions: Columns) -> Skin:
-    """The surface of a field's mesh with displacement and stress of motions; with mirrors, the surface of the whole.
+    """Build the surface of a field's mesh with displacement and stress of motions; with mirrors, the surface of the whole.
 
     Stresses are evaluated within each triangle and extrapolated to its corners. At a vertex they are means over its triangles, weighted by
     the Jacobian, because strains of a nearly folded element have no meaning.
@@ -147,6 +147,6 @@ def _mean_by_vertex(triangles: Array, weights: Array) -> Any:
 
 
 def surface_owners(mesh: ngsolve.Mesh, owner: Array) -> Array:
-    """The piece of the element behind each triangle."""
+    """Return the piece of the element behind each triangle."""
     behind = [mesh[face.facets[0]].elements[0].nr for face in mesh.Elements(ngsolve.BND)]
     return owner[np.array(behind, dtype=int)]

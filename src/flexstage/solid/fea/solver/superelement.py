@@ -28,7 +28,7 @@ class Skin:
 
 @dataclass(frozen=True, eq=False)
 class Superelement:
-    """A reduced component in its own axes. Its n coordinates are a twist of each interface (at its own point), `warps`, internal ones.
+    """A reduced component in its own axes. Its n coordinates: a twist of each interface (at its own point), `warps`, internal coordinates.
 
     `stiffness` and `inertia` (n, n) have an entry for each link and body, by position in the component. `bodies` (6, n) are mean twists of
     bodies, `body_inertia` (6, 6) the inertia for these twists, which `inertia` includes. `resultants` (6, n) are wrenches at links' centres
@@ -66,7 +66,7 @@ class Superelement:
 
 
 def hold_faces(element: Superelement, held: Sequence[bool]) -> Superelement:
-    """A superelement with zero warps of some deformable faces; `held` marks these faces, in order.
+    """Return a superelement with zero warps of some deformable faces; `held` marks these faces, in order.
 
     >>> bare = Skin(*[np.zeros((0, 20))] * 5)
     >>> whole = Superelement(1, 12, {"a": np.eye(20)}, {}, {}, {}, {}, {}, {}, np.zeros((20, 6)), np.zeros((20, 6)), bare, 3, 1)

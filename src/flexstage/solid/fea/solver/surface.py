@@ -12,7 +12,7 @@ from flexstage.solid.fea.solver.component import groups
 
 
 def element_coordinates(item: Placed, motion: Array, strokes: Mapping[str, Array] | None = None) -> Array:
-    """A component's coordinates (n, k) for its stress, from the model's (N, k) and the `strokes` (k,) [m] of its stacks, by link.
+    """Compute a component's coordinates (n, k) for its stress, from the model's (N, k) and its stacks' `strokes` (k,) [m] by link.
 
     A freely expanding stack has no stress, so its free stroke is subtracted.
 
@@ -40,7 +40,7 @@ def _stacks(item: Placed) -> Iterator[tuple[str, Array]]:
 
 
 def stresses(item: Placed, coordinates: Array) -> Array:
-    """Stress (v, 6, k) as xx, yy, zz, xy, yz, zx [Pa] at the vertices of a component's skin, in its own axes.
+    """Compute the stress (v, 6, k) as xx, yy, zz, xy, yz, zx [Pa] at the vertices of a component's skin, in its own axes.
 
     >>> from types import SimpleNamespace as Of
     >>> one = Of(element=Of(skin=Of(stress=np.ones((1, 6, 2)))))
@@ -52,7 +52,7 @@ def stresses(item: Placed, coordinates: Array) -> Array:
 
 
 def von_mises(stress: Array) -> Array:
-    """Equivalent stress (...) of stresses (..., 6) as xx, yy, zz, xy, yz, zx: sqrt((differences squared)/2 + 3 (shears squared)).
+    """Compute the von Mises stress (...) of stresses (..., 6), xx, yy, zz, xy, yz, zx: sqrt((differences squared)/2 + 3 (shears squared)).
 
     >>> von_mises(np.array([[2.0, 0, 0, 0, 0, 0], [0, 0, 0, 1.0, 0, 0]])).round(9).tolist()
     [2.0, 1.732050808]
@@ -62,7 +62,7 @@ def von_mises(stress: Array) -> Array:
 
 
 def vertex_places(item: Placed, motion: Array, factor: float) -> Array:
-    """Positions (v, 3) [m] of a component's skin in the stage's frame, displaced by `factor` times the motion with coordinates (N,).
+    """Compute positions (v, 3) [m] of a component's skin in the stage's frame, displaced by `factor` times the motion of coordinates (N,).
 
     >>> from types import SimpleNamespace as Of
     >>> from flexstage.spatial.frame import identity
@@ -78,7 +78,7 @@ def vertex_places(item: Placed, motion: Array, factor: float) -> Array:
 
 
 def piece_vertices(item: Placed) -> Iterator[tuple[str, Array]]:
-    """Every link and body of a component, by its name in this instance, with the vertices (indices) of its skin.
+    """List every link and body of a component, by its name in this instance, with the vertices (indices) of its skin.
 
     >>> from types import SimpleNamespace as Of
     >>> skin = Of(triangles=np.array([[0, 1, 2], [2, 1, 3]]), owner=np.array([0, 1]))

@@ -49,7 +49,7 @@ class ShapelessContribution:
 
 
 def stated_of(link: PlacedLink) -> Stated | None:
-    """The specified behaviour of a link without a shape; `None` if it has a shape, is ideal or restricted, or specifies nothing.
+    """Return the specified behaviour of a link without a shape; `None` if it has a shape, is ideal or restricted, or specifies nothing.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -61,7 +61,7 @@ def stated_of(link: PlacedLink) -> Stated | None:
 
 
 def ends(assembly: Assembly) -> Iterator[End]:
-    """The ends, on bodies that move, of all parts without a shape, in order.
+    """List the ends, on bodies that move, of all parts without a shape, in order.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -81,7 +81,7 @@ def ends(assembly: Assembly) -> Iterator[End]:
 
 
 def inner_coordinates(element: PlacedSuperelement) -> tuple[str, ...]:
-    """The names of a superelement's modes with its ports fixed."""
+    """Name a superelement's modes with its ports fixed."""
     return tuple(f"{element.name}.mode{number + 1}" for number in range(len(_condensed(element).squares)))
 
 
@@ -90,7 +90,7 @@ Twist = Callable[[str, str, Frame], Array]
 
 
 def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float) -> ShapelessContribution:
-    """The tie of a link between two bodies.
+    """Build the tie of a link between two bodies.
 
     >>> spring = Stated(np.eye(6), np.zeros((12, 12)))
     >>> from flexstage.cases.registry import case
@@ -111,7 +111,7 @@ def link_tie(link: PlacedLink, stated: Stated, twist: Twist, loss_factor: float)
 
 
 def superelement_tie(element: PlacedSuperelement, twist: Twist, inner: Array) -> ShapelessContribution:
-    """The tie of a superelement: twists of its ports relative to the body of the first, and its modes with the rows `inner` (m, N)."""
+    """Build the tie of a superelement: twists of its ports relative to the first port's body, and its modes with rows `inner` (m, N)."""
     found = _condensed(element)
     names = [f"{element.name}.{name}:{port.body}" for name, port in element.ports.items()]
     ports = list(element.ports.values())
@@ -147,7 +147,7 @@ def _all_ports(frames: Sequence[Frame]) -> Array:
 
 
 def stated_links(assembly: Assembly) -> dict[str, str]:
-    """The links with specified behaviour, with the kind of their part.
+    """Return the links with specified behaviour, with the kind of their part.
 
     >>> from flexstage.cases.registry import case
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -159,7 +159,7 @@ def stated_links(assembly: Assembly) -> dict[str, str]:
 
 
 def in_words(stated: Mapping[str, str]) -> str:
-    """Number of links of each kind with specified behaviour; empty without any.
+    """Count the links of each kind with specified behaviour, as text; empty without any.
 
     >>> in_words({"a": "spring", "b": "spring", "motor": "voice_coil"})
     '2 springs, 1 voice coil as specified'
