@@ -35,8 +35,8 @@ class VariedTable:
     """A variable of a study: one or several numbers of the design (`address`), or parameters of the case (`parameter`).
 
     Several numbers change together. Without `address` and `parameter`, the variable's name is the address. The range is `from` ... `to`,
-    with units or in percent of the design's value. `logarithmic`: equal steps in the range are equal ratios. `levels`: number of values in
-    a grid. `step`: manufacturing increment; rounded values are multiples of it.
+    with units or in percent of the design's value. `logarithmic`: equally spaced values have equal ratios. `levels`: number of values in a
+    grid. `step`: manufacturing increment; rounded values are multiples of it.
     """
 
     low: Amount = field(metadata={KEY: "from"})
