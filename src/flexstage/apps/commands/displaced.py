@@ -56,9 +56,7 @@ def stroke(
     named: Annotated[
         str,
         text_option(
-            "--path",
-            "NAME",
-            "Load path [paths.NAME] of the design file. Default: the first load path, unless --drive, --from or --to is used.",
+            "--path", "NAME", "Load path [paths.NAME] of the design file. Default: the first one, unless --drive, --from or --to is used."
         ),
     ] = "",
     drive: Annotated[

@@ -33,7 +33,7 @@ _PATIENCE = 10.0
 """Time limit for a page to send its token [s]."""
 _PAGES = 16
 _KEPT = (say.Welcome, say.Engine, say.State, say.Scene, say.Figures, say.Verdicts, say.Reach, say.Warnings, say.Jobs)
-"""Pushed messages of which only the newest is sent."""
+"""Pushed messages: only the newest of each kind is sent."""
 _STUDIO, _SHOW = Path(__file__).with_name("static"), Path(show.__file__).with_name("static")
 _SCRIPT, _PLAIN = "text/javascript; charset=utf-8", "text/plain; charset=utf-8"
 _FILES: Mapping[str, tuple[Path, str]] = {

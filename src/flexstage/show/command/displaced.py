@@ -70,11 +70,7 @@ class OperatingPointOptions:
         """Names of the fixed coordinates. Raises `DesignError` for a coordinate with a value, and for repeated coordinates."""
         fixed = tuple(name.strip() for name in self.fixed or ())
         require(
-            Finding(
-                f"--fixed {name}",
-                "takes only the name of a coordinate, without '= value'",
-                f'Use --at "{name}" --fixed {name.partition("=")[0]}',
-            )
+            Finding(f"--fixed {name}", "takes only the name of a coordinate", f'Use --at "{name}" --fixed {name.partition("=")[0]}')
             for name in fixed
             if "=" in name
         )

@@ -76,7 +76,7 @@ _BLOCK_NUMBERS = {
     "half_y": "(payload_width + reach_y + sqrt((payload_width - reach_y)*(payload_width - reach_y)))/4",
 }
 _OWN = r"\b(skin|length_[xyz]|leaf_thickness|wire|half_[xyz]|payload_length|payload_width|(?:leaf|wire)_(?:slenderness_)?[xyz])\b"
-"""Names of numbers and parts of which each of several guides in series has its own."""
+"""Names of numbers and parts that are separate for each of several guides in series."""
 _CLEARANCE = 2e-3
 """Gap below a block on a tray, in addition to its displacement [m]."""
 _HEADER = """# {title}: a block on wires and leaves, found by a search on a ground structure.
