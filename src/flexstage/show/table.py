@@ -75,7 +75,7 @@ class Table(InNotebook):
     provenance: str = ""
 
     def texts(self) -> list[list[str]]:
-        """Heads (with units) and cells as plain text, row by row."""
+        """Return heads (with units) and cells as plain text, row by row."""
         heads = [f"{column.head} [{column.unit}]" if column.unit else column.head for column in self.columns]
         return [heads, *([cell.text for cell in row] for row in self.rows)]
 

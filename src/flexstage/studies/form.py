@@ -157,7 +157,7 @@ def study_schema() -> dict[str, Any]:
 
 
 def is_share(raw: str | float) -> bool:
-    """Whether an amount is in percent of the design's value.
+    """Return whether an amount is in percent of the design's value.
 
     >>> is_share("-10 %"), is_share("1.4 mm")
     (True, False)
