@@ -145,7 +145,7 @@ temperature_option = partial(text_option, "--temperature", "VALUE", 'Uniform tem
 parameters_option = partial(
     text_option, "--parameters", "ADDRESSES", 'Parameters by address, e.g. "neck.thickness, steel.density". Repeatable.'
 )
-order_option = partial(typer.Option, "--order", max=5, help="Polynomial order of the finite elements.")
+order_option = partial(typer.Option, "--order", max=5, help="Polynomial order of the elements.")
 modes_option = partial(typer.Option, "--modes", help="Number of modes, starting with the lowest.")
 STEPS = typer.Option(
     "--steps",
