@@ -380,7 +380,10 @@ BAD = {
         'requirements.stifness.x = "at least 1 N/um"\nrequirements.',
         'requirements.stifness.x: unknown measure "stifness.x". Use',
     ),
-    'requirements.frequency = "': ('requirements.stroke.x = "at least 1 um"\nrequirements.frequency = "', "strokes are required by motion"),
+    'requirements.frequency = "': (
+        'requirements.stroke.x = "at least 1 um"\nrequirements.frequency = "',
+        "strokes must be specified in motion",
+    ),
     'actuators.like = "': ('goals.maximise = "width"\nactuators.like = "', 'goals.maximise: unknown measure "width"'),
     "requirements.f": (
         'requirements."loss.x" = "at most 1"\nrequirements.loss.x = "at most 1"\nrequirements.f',

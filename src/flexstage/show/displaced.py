@@ -39,7 +39,7 @@ def stroke_report(mechanism: Mechanism, path: LoadPath, found: Stroke) -> str:
         caveat_section(mechanism, found.warnings),
         section("Point by point", stroke_tables(found)),
     ]
-    text = f"{words}; {len(beyond)} of the points exceed a limit: {beyond[0]}" if beyond else words
+    text = f"{words}; {len(beyond)} of the points exceed a limit (first: {beyond[0]})" if beyond else words
     headline = Headline(to_typography(text), not beyond)
     caption = "Bodies and flexures are shown at large displacements. Red: a limit is exceeded."
     return _page(mechanism, "A stroke at large displacements", found.provenance, headline, data, sections=sections, said=caption)
@@ -79,14 +79,14 @@ def buckling_report(mechanism: Mechanism, found: CaseFactors, after: PostBucklin
         caveat_section(mechanism, found.warnings if after is None else (*found.warnings, *after.stroke.warnings)),
     ]
     headline = Headline(to_typography(_buckling_text(found)), least is None or least.factor >= max(1.0, found.demand))
-    caption = "The amplitude of the mode is arbitrary: the slider sets it." if known else ""
+    caption = "The amplitude of the mode is arbitrary; choose it with the slider." if known else ""
     return _page(mechanism, "Buckling", found.provenance, headline, data, sections=sections, said=caption)
 
 
 def _buckling_text(found: CaseFactors) -> str:
     least, open_ = found.least, found.least_bound
     if open_ is not None and not (least is not None and least.factor <= open_.bound):
-        return f"{open_.load}, {open_.place}: stable up to {format_value(open_.bound, '1', 4)} times the load, not followed beyond"
+        return f"{open_.load}, {open_.place}: stable up to {format_value(open_.bound, '1', 4)} times the load; not computed beyond"
     if least is None:
         return f"no buckling in {len(found.cases)} load cases and stroke ends"
     where = "" if least.place == REST else f", {least.place}"
@@ -125,7 +125,7 @@ _BENT = "Flexures are shown as bent by the misalignment. Red: a limit is exceede
 
 
 def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
-    """Write the effect of one misaligned instance as an HTML page: deformed stage; loads, frequencies and stress over the misalignment."""
+    """Write an HTML page of a misaligned instance: the deformed stage; loads, frequencies and stress as functions of misalignment."""
     sections = [
         _misaligned_curves(found),
         caveat_section(mechanism, found.warnings),
@@ -136,8 +136,8 @@ def misalign_report(mechanism: Mechanism, found: Misaligned) -> str:
 
 
 def _misaligned_curves(found: Misaligned) -> Section | None:
-    figure = to_svg(stroke_figure(curves_of(found.along), _beyond(found)), "misalign", "Results over the misalignment")
-    return section("Over the misalignment", [Picture(figure, to_typography(f"{_misaligned_text(found)}. Shaded: buckled."))])
+    figure = to_svg(stroke_figure(curves_of(found.along), _beyond(found)), "misalign", "Results as functions of the misalignment")
+    return section("Effect of the misalignment", [Picture(figure, to_typography(f"{_misaligned_text(found)}. Shaded: buckled."))])
 
 
 def _beyond(found: Misaligned) -> Array:
@@ -150,12 +150,14 @@ def _misaligned_text(found: Misaligned) -> str:
 
 
 def misaligned_tables(found: Misaligned) -> list[Table]:
-    """Tabulate the critical misalignment, results over the misalignment, and the loads in all flexures at the largest misalignment."""
+    """Tabulate the critical misalignment, results as functions of misalignment, and loads in flexures at the largest misalignment."""
     last = format_value(float(found.along.values[-1, 0]), MOTION.unit(found.axis), 4)
     return [
         make_table("Misaligned instance", ["instance", "axis", "stability"], [[found.copy, found.axis, critical_text(found)]]),
         along_table(f"Along {found.axis}", found.along),
-        matrix_table(f"Loads in flexures at a misalignment of {last}, on each end in the frame of the flexure's start", found.loads),
+        matrix_table(
+            f"Loads in flexures at a misalignment of {last}, on each end of a flexure, in the frame of its first end", found.loads
+        ),
     ]
 
 
@@ -176,12 +178,12 @@ def misalignments_report(mechanism: Mechanism, found: Misalignments) -> str:
 
 
 def misalignments_text(found: Misalignments) -> str:
-    """Format the number of instances, and the instance that buckles first, as text."""
+    """Describe the number of misaligned instances, and the one that buckles first."""
     count, worst = len(found.critical.rows), found.worst
     if worst is None:
         return "no instance and no link is connected to the ground"
     where = f"{worst.copy} {'about' if worst.axis.startswith('r') else 'along'} {worst.axis[-1]}"
-    summary = f"the most critical is {where}, {critical_text(worst)}"
+    summary = f"the most critical is {where} ({critical_text(worst)})"
     if np.isnan(worst.critical) and not np.ptp(found.followed.values):
         summary = f"all are {critical_text(worst)}; the highest stress is at {where}"
     return f"{count} instances and links misaligned one by one: {summary}"
@@ -190,7 +192,7 @@ def misalignments_text(found: Misalignments) -> str:
 def critical_text(found: Misaligned) -> str:
     """Format the critical misalignment as text."""
     size = format_value(found.followed, MOTION.unit(found.axis), 4)
-    return f"stable up to {size}, not followed beyond" if np.isnan(found.critical) else f"buckles at {size}"
+    return f"stable up to {size}; not computed beyond" if np.isnan(found.critical) else f"buckles at {size}"
 
 
 def misalignment_tables(found: Misalignments) -> list[Table]:

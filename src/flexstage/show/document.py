@@ -24,7 +24,7 @@ FORMAT = "flexstage result 3"
 _UNLUMPED = "deflection under permanent load needs the lumped model"
 _UNSORTED = "requires a platform with fewer than six ideal motions, and a load at its output point"
 _KEYS = {"statics": "stiffness", "lost_motion": "lost-motion", "error_budget": "budget"}
-"""Fields of an analysis whose document is named after their command."""
+"""Fields of an analysis whose documents are named after a command: the command of each field."""
 
 
 def envelope(kind: str, mechanism: Mechanism | None, model: Model | None, body: Any, more: Iterable[Finding] = ()) -> Document:
@@ -115,14 +115,14 @@ def stiffness_body(
     mass: MassMatrix | None = None,
     missing: Mapping[str, str] | None = None,
 ) -> SideBySide:
-    """Combine the platform's statics, mass, deflection under permanent load, and stiffness by DOF if fewer than six DOFs are free."""
+    """Return the JSON body of statics, mass, deflection under permanent load, and stiffness by DOF (of fewer than six DOFs)."""
     reasons = {} if freedoms is not None else {"freedoms": (missing or {}).get("freedoms", _UNSORTED)}
     reasons |= {} if deflection is not None else {"dead_load": _UNLUMPED}
     return SideBySide((statics, {"freedoms": freedoms, "mass": mass, "dead_load": deflection, "reasons": reasons}))
 
 
 def response_body(response: Response, damping: Damping | None) -> SideBySide:
-    """Combine a frequency response with its damping."""
+    """Return the JSON body of a frequency response, with its damping."""
     laws: dict[type, str] = {ModalDamping: "modal", RayleighDamping: "rayleigh", StructuralDamping: "structural"}
     return SideBySide((response, {"damping": None if damping is None else {"law": laws[type(damping)], **walk(damping)}}))
 

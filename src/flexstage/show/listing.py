@@ -1,4 +1,4 @@
-"""Listings: the shipped cases, the catalogue and errors as tables."""
+"""Listings: the shipped cases, their parameters and the catalogue as tables."""
 
 from __future__ import annotations
 

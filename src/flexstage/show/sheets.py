@@ -19,7 +19,7 @@ _FORMULA = ("=", "+", "-", "@")
 
 @check_arguments
 def to_csv(result: Any) -> dict[str, str]:
-    r"""Convert every part of a result to CSV (RFC 4180), by the path of the part, with SI units in the column heads.
+    r"""Return every part of a result as CSV (RFC 4180), by the part's path in the document, with SI units in the column heads.
 
     The first columns are names. Numbers are not rounded; an unknown number is an empty cell. Texts that a spreadsheet would execute as
     formulas (they start with `=`, `+`, `-` or `@`) begin with an apostrophe. If a column of a matrix has no common unit, the units are in
@@ -49,7 +49,7 @@ class Grid:
 
 
 def grid_of(part: Sheet | Matrix) -> Grid:
-    """Convert a part of a result to a grid. Units of a matrix are in the heads, else in a column, else each entry becomes a row.
+    """Convert a part of a result to a grid. Units of a matrix are in the heads or in a column; otherwise, each entry becomes a row.
 
     >>> import numpy as np
     >>> grid_of(Matrix(np.array([[2.0, 3.0]]), ("x",), ("a", "b"), (("m", "N"),)))
@@ -90,7 +90,7 @@ def _cell(value: Any) -> Any:
 
 @check_arguments
 def to_pandas(result: Any) -> dict[str, Any]:
-    """Convert every part of a result to a pandas frame, by the path of the part. Needs the extra `tables`.
+    """Return every part of a result as a pandas frame, by the part's path in the document. Needs the extra `tables`.
 
     Row names are the index. Units are in the names of columns; units of matrices are in `attrs["unit"]`.
     """
@@ -106,8 +106,8 @@ def _frame(sheet: Sheet) -> Any:
 
 @check_arguments
 def to_xarray(result: Any) -> dict[str, Any]:
-    """Convert every part of a result to xarray, by the path of the part. Needs the extra `tables`.
+    """Return every part of a result as xarray, by the part's path in the document. Needs the extra `tables`.
 
-    A matrix becomes an array, another part a dataset. Names of rows are coordinates of a dimension.
+    A matrix becomes an array; any other part becomes a dataset. Names of rows are coordinates of a dimension.
     """
     return {path: part.to_xarray() if isinstance(part, Matrix) else _frame(part).to_xarray() for path, part in parts(result)}

@@ -75,7 +75,7 @@ class Table(InNotebook):
     provenance: str = ""
 
     def texts(self) -> list[list[str]]:
-        """Heads (with units) and cells as plain text, row by row."""
+        """Return heads (with units) and cells as plain text, row by row."""
         heads = [f"{column.head} [{column.unit}]" if column.unit else column.head for column in self.columns]
         return [heads, *([cell.text for cell in row] for row in self.rows)]
 
@@ -116,7 +116,7 @@ def text_table(
 
 
 def number_cells(values: Iterable[float], form: DisplayUnit, digits: int | None = None) -> list[Cell]:
-    """Format a column of SI values in a display unit, with aligned decimals. With `digits`, each number has as many significant digits.
+    """Format a column of SI values in a display unit, with aligned decimals. With `digits`, each number has that many significant digits.
 
     Values that are rounding noise, relative to the largest value of the column, are shown as 0.
 

@@ -35,8 +35,8 @@ class VariedTable:
     """A variable of a study: one or several numbers of the design (`address`), or parameters of the case (`parameter`).
 
     Several numbers change together. Without `address` and `parameter`, the variable's name is the address. The range is `from` ... `to`,
-    with units or in percent of the design's value. `logarithmic`: equal steps in the range are equal ratios. `levels`: number of values in
-    a grid. `step`: manufacturing increment; rounded values are multiples of it.
+    with units or in percent of the design's value. `logarithmic`: equally spaced values have equal ratios. `levels`: number of values in a
+    grid. `step`: manufacturing increment; rounded values are multiples of it.
     """
 
     low: Amount = field(metadata={KEY: "from"})
@@ -157,7 +157,7 @@ def study_schema() -> dict[str, Any]:
 
 
 def is_share(raw: str | float) -> bool:
-    """Whether an amount is in percent of the design's value.
+    """Return whether an amount is in percent of the design's value.
 
     >>> is_share("-10 %"), is_share("1.4 mm")
     (True, False)

@@ -74,11 +74,11 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage superelement stage.toml platform -o frame.npz"),
     Command("analyse", _ANALYSE, "Analyse a stage: everything at once.", f"{_APPS}.analyse:analyse",
             "flexstage analyse stage.toml --report report.html --set horizontal/front.thickness=1.4mm"),
-    Command("mapping", _ANALYSE, "Compute the mappings R_a and R_s, mobility, redundancy.", f"{_APPS}.analyses:mapping",
+    Command("mapping", _ANALYSE, "Compute mobility, redundancy, and mappings R_a and R_s.", f"{_APPS}.analyses:mapping",
             "flexstage mapping stage.toml --json -"),
     Command("stiffness", _ANALYSE, "Compute compliance and stiffness of the platform.", f"{_APPS}.analyses:stiffness",
             "flexstage stiffness stage.toml --model mapped"),
-    Command("lost-motion", _ANALYSE, "Compute lost motion of each part, crosstalk, correction.", f"{_APPS}.analyses:lost_motion",
+    Command("lost-motion", _ANALYSE, "Compute lost motion, crosstalk, and their correction.", f"{_APPS}.analyses:lost_motion",
             "flexstage lost-motion stage.toml --set vertical/pivot.thickness=0.9mm"),
     Command("modes", _ANALYSE, "Compute natural frequencies, mode names and shapes.", f"{_APPS}.analyses:modes",
             "flexstage modes stage.toml --model mapped --json modes.json"),
@@ -94,7 +94,7 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage workspace stage.toml --command x=50um --command rz=244urad"),
     Command("drift", _ANALYSE, "Compute thermal drift of platform, points and gauges.", f"{_APPS}.accuracy:drift",
             "flexstage drift stage.toml --ground none"),
-    Command("sensitivities", _ANALYSE, "Compute derivatives with respect to every parameter.", f"{_APPS}.accuracy:sensitivities",
+    Command("sensitivities", _ANALYSE, "Compute sensitivities of frequencies and lost motion.", f"{_APPS}.accuracy:sensitivities",
             "flexstage sensitivities stage.toml --parameters parts.neck.thickness"),
     Command("budget", _ANALYSE, "Compute the error budget of each axis in nm and nrad.", f"{_APPS}.accuracy:budget",
             "flexstage budget stage.toml --command z=150um --temperature 0.1K"),
@@ -120,11 +120,11 @@ COMMANDS: tuple[Command, ...] = (
             "flexstage serve stage.toml"),
     Command("design", _IMPROVE, "Design stages for a specification.", f"{_APPS}.design:design",
             "flexstage design spec.toml -o answers"),
-    Command("sweep", _IMPROVE, "Analyse many designs of a study.", f"{_STUDIES}.sweep:sweep",
+    Command("sweep", _IMPROVE, "Analyse many designs with varied parameters.", f"{_STUDIES}.sweep:sweep",
             "flexstage sweep study.toml -o results.h5 --report sweep.html"),
     Command("optimise", _IMPROVE, "Find the best design within ranges and limits.", f"{_STUDIES}.optimise:optimise",
             "flexstage optimise study.toml -o better.toml --report optimum.html"),
-    Command("tolerance", _IMPROVE, "Analyse tolerances: yield and allowances.", f"{_STUDIES}.tolerance:tolerance",
+    Command("tolerance", _IMPROVE, "Compute production yield and allowable tolerances.", f"{_STUDIES}.tolerance:tolerance",
             "flexstage tolerance study.toml --report tolerance.html"),
     Command("doctor", _INSTALLATION, "Examine the installation.", f"{_APPS}.about:doctor",
             "flexstage doctor"),
@@ -159,11 +159,11 @@ class GroupedCommands(TyperGroup):
     """A group that lists its commands by purpose, and loads the called one."""
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Return the command of this name, in British or American spelling."""
+        """Return the command with this name, in British or American spelling."""
         return super().get_command(ctx, _SPELLINGS.get(cmd_name, cmd_name))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Return name, command and the remaining arguments."""
+        """Return the name of the command, the command, and the arguments after it."""
         if not args[0].startswith("-") and self.get_command(ctx, args[0]) is None:
             listed = "Use 'flexstage --help' to list all commands"
             raise refuse(args[0], "unknown command", suggest_nearest(args[0], self.commands, otherwise=listed))

@@ -48,7 +48,7 @@ Commands: TypeAlias = Annotated[
         "--command",
         "AXIS=VALUE",
         "Platform motion along an axis in both directions, e.g. x=50um for +-50 um. Repeatable. "
-        "Default: the required strokes. Without them, budget uses the single-axis strokes.",
+        "Default: the required strokes; if there are none, budget uses the single-axis strokes.",
     ),
 ]
 
@@ -115,14 +115,14 @@ def drift(
         text_option(
             "--ground",
             "MATERIAL",
-            'Material of the ground, or "none" for a ground without expansion. Default: from the design, else the material of its links.',
+            'Material of the ground, or "none" for a ground without expansion. Default: as in the design, else the material of its links.',
         ),
     ] = None,
 ) -> CommandResult:
     """Compute thermal drift of platform, points and gauges.
 
-    Prints drift per kelvin of uniform temperature and per K/m of temperature gradient, by the lumped model. Significant permanent loads are
-    included.
+    Prints drift per kelvin of uniform temperature change and per K/m of temperature gradient, by the lumped model. Significant permanent
+    loads are included.
     """
     stands = command_stage(mechanism, OperatingPointOptions())
     found = drifting.drift(mechanism, stands.links, ground=ground)
@@ -141,10 +141,10 @@ def sensitivities(
     parameters: Annotated[list[str] | None, parameters_option("every number")] = None,
     count: Annotated[int, modes_option(min=1)] = 12,
 ) -> CommandResult:
-    """Compute derivatives with respect to every parameter.
+    """Compute sensitivities of frequencies and lost motion.
 
-    Prints exact derivatives of frequencies, transmission ratios and lost motion by the lumped model; for force-driven stages, of
-    frequencies only.
+    Prints exact derivatives of frequencies, transmission ratios and lost motion with respect to parameters, by the lumped model. For
+    force-driven stages, prints those of frequencies only.
     """
     found = derivatives.sensitivities(mechanism, names(parameters) if parameters else None, modes=count)
     print_missing(found.missing)
@@ -172,8 +172,8 @@ def budget(
 
     For force-driven stages in open loop: parasitic motion, gauge noise, quantisation and drift.
 
-    For a stage without stiffness along its drive: closed-loop positioning noise, as in flexstage loop --quick. Such a stage accepts no
-    option of the budget.
+    For a stage without stiffness along its drive: closed-loop positioning noise, as in flexstage loop --quick. The options of budget are
+    then not allowed.
 
     With --input-asd: also the motion due to actuator noise and floor vibration.
     """

@@ -54,7 +54,7 @@ from flexstage.spatial.frame import COMPONENTS
 
 @command()
 def mapping(mechanism: Mechanism, *, model: ModelName = Model.IDEAL) -> CommandResult:
-    """Compute the mappings R_a and R_s, mobility, redundancy.
+    """Compute mobility, redundancy, and mappings R_a and R_s.
 
     R_a: strokes per platform motion. R_s: gauge readings per platform motion.
 
@@ -136,7 +136,7 @@ def lost_motion(
     model: ElasticModelName = Model.LUMPED,
     place: OperatingPointOptions,
 ) -> CommandResult:
-    """Compute lost motion of each part, crosstalk, correction.
+    """Compute lost motion, crosstalk, and their correction.
 
     Prints transmission ratio, lost motion of each part, parasitic motion, and the gains that correct the lost motion.
 

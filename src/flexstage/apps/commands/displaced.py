@@ -56,7 +56,7 @@ def stroke(
     named: Annotated[
         str,
         text_option(
-            "--path", "NAME", "Load path [paths.NAME] of the design file. Default: its first one, unless --drive, --from or --to is used."
+            "--path", "NAME", "Load path [paths.NAME] of the design file. Default: the first one, unless --drive, --from or --to is used."
         ),
     ] = "",
     drive: Annotated[
@@ -208,7 +208,7 @@ def _beyond(found: CaseFactors, cases: Sequence[LoadCase], branch: BranchSide, p
     if least is None or least.found is None:
         raise refuse("--post-buckling", "the stage does not buckle", "Remove --post-buckling, or specify a larger load")
     if least.found.state.held:
-        what = f"the lowest factor is the one of {least.load} at {least.place}, which has prescribed coordinates"
+        what = f"the lowest factor belongs to {least.load} at {least.place}, where coordinates are prescribed"
         raise refuse("--post-buckling", what, "Remove --at")
     grows = next(case.grows for case, told in zip(cases, found.cases, strict=True) if told is least)
     path = follow(least.found, grows, side=1.0 if branch is BranchSide.ALONG else -1.0, points=points)
@@ -264,8 +264,8 @@ def misalign(
 ) -> CommandResult:
     """Compute loads of a misaligned, over-constrained stage.
 
-    The fixed end of an instance or link is rotated or translated. Prints loads in all flexures, frequencies over the misalignment,
-    and the critical misalignment at which the stage buckles.
+    The fixed end of an instance or link is rotated or translated. Prints loads in all flexures, frequencies as functions of the
+    misalignment, and the critical misalignment at which the stage buckles.
 
     Without --instance, prints critical misalignment, load and stress of each instance, for all axes of rotation or for the specified axis.
     """
@@ -281,7 +281,7 @@ def misalign(
         return CommandResult(
             mechanism,
             lambda: told,
-            lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. Details: --instance NAME."],
+            lambda: [*misalignment_tables(told), f"{misalignments_text(told)}. For details, use --instance NAME."],
             partial(misalignments_report, mechanism, told),
             warnings=told.warnings,
         )

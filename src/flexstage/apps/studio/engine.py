@@ -58,12 +58,12 @@ class Outcome:
 
 
 def problem(finding: Finding) -> Problem:
-    """A finding without a position in the text."""
+    """Return a finding as a message, without a position in the text."""
     return Problem(finding.where, finding.what, finding.advice)
 
 
 def failure(task: str, error: Exception) -> Problem:
-    """An error of the program itself."""
+    """Return an error of the program itself as a message."""
     what = f"internal error of flexstage, not caused by your design: {type(error).__name__}: {error}"
     return Problem(task, what, "Save the design, and report it with this message")
 

@@ -110,7 +110,7 @@ def _replace_values(table: Any, values: Mapping[str, Any]) -> None:
 
 
 def key_figures(document: Mapping[str, Any]) -> tuple[Figure, ...]:
-    """The key figures of a command's result, in SI units and degrees, for a comparison of runs."""
+    """Return the key figures of a command's result, in SI units and degrees, for a comparison of runs."""
     kind = document["kind"]
     return tuple(Figure(name, kind, unit, unit, 1.0, value, None) for name, value, unit in _FIGURES[kind](document))
 

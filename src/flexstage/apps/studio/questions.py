@@ -271,7 +271,7 @@ class Bearing:
 
     @property
     def per_input(self) -> Labelled:
-        """Peak stress under each unit input individually, without bias and permanent loads."""
+        """Peak stress of each link per unit of each single input, without bias and permanent loads."""
         values = np.array([self._peaks(column) for column in self._gain.T]).T.reshape(len(self.links), len(self.inputs))
         return Labelled(values, self.links, self.inputs, ratio_units(("Pa",) * len(self.links), self._units))
 

@@ -322,7 +322,7 @@ def _key_results(known: StageResults) -> tuple[tuple[str, Any], ...]:
 
 
 def all_figures(text: str, file: str) -> tuple[KeyFigure, ...]:
-    """Return all figures for the comparison of designs, requirements first. Returns none for a text with errors."""
+    """Return all figures for the comparison of designs, requirements first. Returns an empty tuple for a text with errors."""
     rows = (
         *requirement_figures(_stored_verdicts(text, file)),
         *_stored_figures("figures", text, file),

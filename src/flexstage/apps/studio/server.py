@@ -33,7 +33,7 @@ _PATIENCE = 10.0
 """Time limit for a page to send its token [s]."""
 _PAGES = 16
 _KEPT = (say.Welcome, say.Engine, say.State, say.Scene, say.Figures, say.Verdicts, say.Reach, say.Warnings, say.Jobs)
-"""Pushed messages with only the newest sent."""
+"""Pushed messages: only the newest of each kind is sent."""
 _STUDIO, _SHOW = Path(__file__).with_name("static"), Path(show.__file__).with_name("static")
 _SCRIPT, _PLAIN = "text/javascript; charset=utf-8", "text/plain; charset=utf-8"
 _FILES: Mapping[str, tuple[Path, str]] = {
@@ -204,7 +204,7 @@ class Studio:
 
 
 class Outbox:
-    """Messages to a page: answers in sequence, and of pushed messages the newest of each kind. A slow page does not delay other pages."""
+    """Messages to a page: all answers, but only the newest pushed message of each kind. A slow page does not delay other pages."""
 
     def __init__(self) -> None:
         self._waiting: deque[say.Said] = deque()

@@ -32,7 +32,7 @@ _STAGES: tuple[tuple[str, str], ...] = (
     ("scene", "the geometry"),
     ("warnings", "warnings"),
 )
-"""Computed stages of a design, in this order, and their names."""
+"""Steps of the computation of a design, in this sequence, and their names."""
 
 _TASKS: Mapping[type[Any], str] = {
     say.Part: "card",
@@ -81,10 +81,10 @@ class Session:
         self._computed = 0
         self._warnings: tuple[say.Problem, ...] = ()
         self._failures: dict[str, tuple[say.Problem, ...]] = {}
-        """Errors of the computation by its stage."""
+        """Errors by step of the computation."""
         self._pages: dict[int, tuple[str, ...]] = {}
         self._last: dict[str, tuple[Any, ...]] = {}
-        """Last input of each stage."""
+        """Last input of each step of the computation."""
         self._took: dict[str, tuple[float, int]] = {}
         self._work: set[asyncio.Task[Any]] = set()
         self._changing, self._computing = asyncio.Lock(), asyncio.Lock()
@@ -552,11 +552,11 @@ class Session:
 
 
 _FIRST: Mapping[str, float] = {"figures": 0.1, "verdicts": 0.05, "reach": 0.1, "scene": 0.2, "warnings": 0.2, "errors": 0.1}
-"""Duration of the stages of a design of thirty links before the first measurement [s] (benchmarks/studio.py)."""
+"""Assumed durations of the steps for a design of thirty links before the first measurement [s] (benchmarks/studio.py)."""
 
 
 def expected(stage: str, links: int, took: Mapping[str, tuple[float, int]]) -> float:
-    """Estimate the duration of a stage [s] from its last duration or that of a small design, scaled with the square of the link count.
+    """Estimate the duration of a step [s] from its last duration or that for a small design, scaled with the square of the link count.
 
     >>> expected("figures", 300, {}), expected("figures", 10, {"figures": (2.0, 20)})
     (10.0, 0.5)

@@ -64,7 +64,7 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
         text_option(
             "--export",
             "FILE",
-            "Exported file: plant.mat, controller.c, controller.fmu, stage.loop.fmu (whole loop), or with --tracking path.csv. Repeatable.",
+            "Exported file: plant.mat, controller.c, controller.fmu, stage.loop.fmu (whole loop); path.csv with --tracking. Repeatable.",
         ),
     ] = None,
     hardware: Annotated[Path | None, text_option("--hardware", "FILE.c", "C code of the controller: FILE.c, FILE.h, FILE_test.c.")] = None,

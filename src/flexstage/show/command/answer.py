@@ -36,7 +36,7 @@ _UNFOLDED = 1000
 _LONGEST = 200
 _HANG = 2
 _MAPPING = "mapping: 0 strokes"
-"""Reason of results that need the mapping of strokes to motions."""
+"""Reason for missing results that need the mapping of strokes to motions."""
 
 
 @dataclass(frozen=True)

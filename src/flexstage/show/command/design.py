@@ -36,7 +36,7 @@ class DesignOptions:
 
 
 Lumped: TypeAlias = Annotated[Mechanism, "a lumped model may include the flexibility of its bodies"]
-"""The description that a command of the lumped model reads."""
+"""The description that a command with the lumped model reads."""
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ else:  # few commands have an operating point
 
 Load: TypeAlias = Annotated[
     list[str] | None,
-    text_option("--load", "NAME=VALUE", 'Constant load, e.g. "platform.fx=-20 N" or the stroke "B1=10 um". Repeatable.'),
+    text_option("--load", "NAME=VALUE", 'Constant load or stroke, e.g. "platform.fx=-20 N" or "B1=10 um". Repeatable.'),
 ]
 
 At: TypeAlias = Annotated[
@@ -38,7 +38,7 @@ At: TypeAlias = Annotated[
     text_option(
         "--at",
         "NAME=VALUE",
-        'Operating point relative to static equilibrium, e.g. "platform.x=5 mm" or the stroke "B1=10 um". Repeatable.',
+        'Prescribed coordinate or stroke, relative to static equilibrium, e.g. "platform.x=5 mm" or "B1=10 um". Repeatable.',
     ),
 ]
 
@@ -50,7 +50,7 @@ Temperature: TypeAlias = Annotated[str | None, temperature_option("0 K")]
 
 @dataclass(frozen=True)
 class OperatingPointOptions:
-    """Options of a command for an operating point. True if at least one is used; otherwise the stage is in its undeformed configuration."""
+    """Operating-point options of a command. True if one is used; otherwise, results belong to the undeformed configuration."""
 
     at: At = None
     load: Load = None
@@ -70,7 +70,7 @@ class OperatingPointOptions:
         """Names of the fixed coordinates. Raises `DesignError` for a coordinate with a value, and for repeated coordinates."""
         fixed = tuple(name.strip() for name in self.fixed or ())
         require(
-            Finding(f"--fixed {name}", "--fixed accepts no value", f'Use --at "{name}" --fixed {name.partition("=")[0]}')
+            Finding(f"--fixed {name}", "takes only the name of a coordinate", f'Use --at "{name}" --fixed {name.partition("=")[0]}')
             for name in fixed
             if "=" in name
         )
@@ -78,7 +78,7 @@ class OperatingPointOptions:
         return fixed
 
     def brought(self, model: Nonlinear) -> dict[str, float]:
-        """Read the prescribed coordinates, by name in SI units."""
+        """Return the values of the prescribed coordinates by name, in SI units."""
         return read_pairs(self.at or (), "--at", lambda name, value, where: parse(value, quantity_of(model, name), where=where))
 
     @property
@@ -115,7 +115,7 @@ class CommandStage:
         return elastic_model(self.mechanism, self.model) if loaded is None else loaded
 
     def body(self, result: Any) -> Any:
-        """Combine a result with the operating point, or with the effect of the permanent load, for a JSON document."""
+        """Return the JSON body of a result, together with the operating point or the effect of the permanent load."""
         if self.operating_point is not None:
             return SideBySide((result, {"operating_point": self.operating_point}))
         return result if self.effect is None else SideBySide((result, {"loaded": self.effect}))
@@ -156,7 +156,7 @@ def _operating_point_tables(found: OperatingPoint) -> Iterator[Table]:
 
 
 def loads_of(model: Nonlinear, texts: Sequence[str], option: str = "--load") -> dict[str, float]:
-    """Read loads from texts NAME=VALUE of an `option`, by name in SI units."""
+    """Read loads from the texts NAME=VALUE of an `option`. Returns their values by name, in SI units."""
     units = {channel.name: channel.unit for channel in model.inputs}
 
     def read(name: str, value: str, where: str) -> float:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:  # the table of commands loads no models
 
 
 class ModesModel(Protocol):
-    """Function that returns the modes of a stage: if `computing`, computed, else from the cache, or `None` if they are not there."""
+    """Function that returns the modes of a stage. Unless `computing`, it only reads the cache, and returns `None` for missing modes."""
 
     def __call__(self, mechanism: Mechanism, *, computing: bool) -> FeaModes | None:
         """Return the modes of a stage."""
@@ -27,6 +27,6 @@ class Models:
     homes: Mapping[str, str]
 
     def modes(self, name: str) -> ModesModel:
-        """Return the model of this name; raises `KeyError` if the application does not have it."""
+        """Return the model with this name; raises `KeyError` if the application has no such model."""
         module, _, function = self.homes[name].partition(":")
         return cast("ModesModel", getattr(import_module(module), function))

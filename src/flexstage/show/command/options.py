@@ -22,7 +22,7 @@ _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 def text_option(name: str, metavar: str, about: str, default: str = "") -> Any:
-    """Define a text option. Its help is `about`, and a sentence with the default value if there is one."""
+    """Define a text option. Its help is `about`, followed by a sentence with the default value if there is one."""
     return typer.Option(name, metavar=metavar, help=f"{about} Default: {default}." if default else about, show_default=False)
 
 
@@ -145,8 +145,8 @@ temperature_option = partial(text_option, "--temperature", "VALUE", 'Uniform tem
 parameters_option = partial(
     text_option, "--parameters", "ADDRESSES", 'Parameters by address, e.g. "neck.thickness, steel.density". Repeatable.'
 )
-order_option = partial(typer.Option, "--order", max=5, help="Order of the elements.")
-modes_option = partial(typer.Option, "--modes", help="Number of lowest modes.")
+order_option = partial(typer.Option, "--order", max=5, help="Polynomial order of the elements.")
+modes_option = partial(typer.Option, "--modes", help="Number of modes, starting with the lowest.")
 STEPS = typer.Option(
     "--steps",
     metavar="N",

@@ -83,7 +83,7 @@ def require_writable(wanted: Sequence[tuple[str, str | Path | None]], read: Iter
 
 
 def _problems(outputs: Iterable[tuple[str, str | Path | None]], read: Iterable[Path]) -> Iterator[Finding]:
-    taken = {_real_path(path): "read by this command" for path in read}
+    taken = {_real_path(path): "also an input of this command" for path in read}
     spoken: str | None = None
     for option, target in outputs:
         if target is not None and str(target) == STDOUT:

@@ -40,7 +40,7 @@ def print_styled(text: str) -> None:
 
 
 def print_bytes(data: bytes) -> None:
-    """Print bytes to stdout as they are."""
+    """Print bytes to stdout unchanged."""
     sys.stdout.flush()
     sys.stdout.buffer.write(data)
     sys.stdout.buffer.flush()

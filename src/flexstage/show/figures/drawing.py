@@ -1,4 +1,4 @@
-"""A figure as a separate file: SVG, PDF or PNG by the ending of the name."""
+"""A figure as a separate file: SVG, PDF or PNG according to the ending of its name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FORMATS = (".svg", ".pdf", ".png")
 
 
 def format_of(name: str) -> str:
-    """Return the format of a figure file, by the ending of its name. Raises `DesignError` for an unknown ending.
+    """Return the format of a figure file from the ending of its name. Raises `DesignError` for an unknown ending.
 
     >>> format_of("plan.SVG")
     '.svg'

@@ -10,7 +10,7 @@ from flexstage.base.number import Array
 
 
 def hull(points: Array) -> Array:
-    """Convex outline (k, 2) of points (n, 2), counter-clockwise (Andrew's monotone chain).
+    """Return the convex outline (k, 2) of points (n, 2), counter-clockwise (Andrew's monotone chain).
 
     >>> hull(np.array([[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]])).tolist()
     [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]

@@ -1,4 +1,4 @@
-"""Frequency responses: magnitude and phase over frequency, with the platform's modes marked."""
+"""Frequency responses: magnitude and phase as functions of frequency, with the platform's modes marked."""
 
 from __future__ import annotations
 

@@ -101,7 +101,7 @@ def simplification(solid: Solid) -> str:
 
 
 def solid_skin(solid: Solid) -> DrawnSurface:
-    """Build the surface of an outline in its own frame: centre at the origin, axis of a cylinder along x. Only edges of holes are drawn.
+    """Build the surface of an outline in its own frame: centre at the origin, axis of a cylinder along x. Holes are drawn as edges.
 
     >>> len(solid_skin(Block("steel", (0.1, 0.1, 0.01))).triangles)
     12

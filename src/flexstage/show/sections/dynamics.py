@@ -83,7 +83,7 @@ def response_section(analysis: Analysis) -> Section | None:
     if response is not None and np.size(response.values):
         figure = response_figure(response, analysis.modes)
         drawn = to_svg(figure, "strokes", "Response of the platform to the strokes")
-        caption = "Platform motion per stroke, for each output with the actuator that moves it most. Dotted: the platform's modes."
+        caption = "Platform motion per stroke: each output for the actuator that moves it most. Dotted: the platform's modes."
         blocks.append(Picture(drawn, caption, reading=reading(figure, _mode_spots(analysis.modes))))
     if ground is not None and np.size(ground.values):
         figure = response_figure(ground, analysis.modes)

@@ -71,11 +71,11 @@ def budget_table(lost: LostMotion) -> Table | None:
     if not lost.budget:
         return None
     budgets = {name: named_budget(lost, name) for name in lost.loss.rows}
-    notes = [f"{_OWN_AND_OTHERS}, with all axes added up. Negative contributions increase the gain."]
+    notes = [f"{_OWN_AND_OTHERS}; their axes are added up. Negative contributions increase the gain."]
     return make_table("Lost-motion budget", ["link", *(Column(name) for name in budgets)], share_rows(budgets, "loss"), notes=notes)
 
 
-_OWN_AND_OTHERS = "Links without a unit's name are parts of the actuator's own unit; links with a unit's name are parts of another unit"
+_OWN_AND_OTHERS = "Links without a unit's name belong to the actuator's own unit; links with a unit's name belong to another unit"
 
 
 def named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
@@ -174,7 +174,7 @@ def crosstalk_table(lost: LostMotion) -> Table:
     >>> crosstalk_table(fs.lost_motion(fs.ideal(stage), fs.lumped(stage))).texts()[4][4]
     '0.96632'
     """
-    note = "Rows: motion as actuator strokes. Columns: commanded actuator. Without elasticity, this is the identity matrix."
+    note = "Rows: motion, converted to actuator strokes. Columns: commanded actuator. Without elasticity, this is the identity matrix."
     return matrix_table("Gain and crosstalk, R_a V+ T", lost.transfer, notes=[note])
 
 

@@ -37,7 +37,7 @@ def verdict_table(verdicts: Sequence[Verdict], *, explained: bool = False) -> Ta
 
 
 def is_met(verdict: Verdict) -> bool:
-    """Whether a requirement is met by every design.
+    """Return whether every design meets a requirement.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import judge

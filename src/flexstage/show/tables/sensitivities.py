@@ -24,7 +24,7 @@ def frequency_sensitivity_table(found: Sensitivities, *, modes: int = 6, top: in
     relative = found.relative_frequency
     values = relative.values[:, :modes]
     heads = [f"{name} ({frequency:.5g} Hz)" for name, frequency in zip(relative.columns[:modes], found.frequencies, strict=False)]
-    note = "Relative change of the frequency per relative change of the parameter. For repeated modes, the change of their mean frequency."
+    note = "Relative change of the frequency (for repeated modes, of their mean frequency) per relative change of the parameter."
     return _ranking_table("Sensitivities of the frequencies", found, values, heads=heads, top=top, note=note)
 
 

@@ -83,7 +83,7 @@ def state(
 
 def superelement(
     design: Design,
-    solid: Annotated[str, typer.Argument(metavar="SOLID", help="Body or link in the solid.", show_default=False)],
+    solid: Annotated[str, typer.Argument(metavar="SOLID", help="Body or link that belongs to the solid.", show_default=False)],
     *,
     output: Annotated[Path, output_option("FRAME.NPZ", "NPZ file of stiffness and mass.")],
     order: Annotated[int, order_option(min=1)] = 3,

@@ -82,7 +82,7 @@ Accuracy: TypeAlias = Annotated[
 ]
 Order: TypeAlias = Annotated[
     int | None,
-    order_option(min=2, help="Order of the elements. Default: raised until the accuracy is met.", show_default=False),
+    order_option(min=2, help="Polynomial order of the elements. Default: raised until the accuracy is met.", show_default=False),
 ]
 Memory: TypeAlias = Annotated[
     str | None,

@@ -31,10 +31,10 @@ def optimise(
 ) -> CommandResult:
     """Find the best design within ranges and limits.
 
-    The search uses exact derivatives and several starts. Prints active constraints, their multipliers and rounded values. With two
-    objectives, computes a Pareto front.
+    The search uses exact derivatives and several starts. Prints active constraints with their multipliers, and the design with rounded
+    values. With two objectives, computes a Pareto front.
 
-    Contradictory limits are an error (exit code 2). An interrupted search ends with the best design found.
+    If limits contradict each other, the exit code is 2. An interrupted search ends with the best design found.
     """
     asked = load_study(study)
     definition = load_optimisation(asked, str(study))

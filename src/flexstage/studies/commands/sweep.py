@@ -31,7 +31,7 @@ def sweep(
     resume: Resume = False,
     workers: Workers = None,
 ) -> CommandResult:
-    """Analyse many designs of a study.
+    """Analyse many designs with varied parameters.
 
     The study file selects a grid, a Latin hypercube, a Sobol sequence, or Saltelli's plan for Sobol indices.
 

@@ -27,9 +27,9 @@ def tolerance(
     resume: Resume = False,
     workers: Workers = None,
 ) -> CommandResult:
-    """Analyse tolerances: yield and allowances.
+    """Compute production yield and allowable tolerances.
 
-    The table [scatter] of the study file defines the deviations.
+    The table [scatter] of the study file defines the distributions of dimensions and material properties.
 
     Prints distributions, yield, variance contributions, allowable tolerances and crosstalk.
     """

@@ -17,7 +17,7 @@ class ObjectiveDirection(Enum):
 
     @property
     def sense(self) -> Sense:
-        """Sense of a limit on the better side."""
+        """Sense of a limit that better designs meet."""
         return Sense.AT_LEAST if self is ObjectiveDirection.MAXIMISE else Sense.AT_MOST
 
 

@@ -66,7 +66,7 @@ class Start:
     """One start: its first and last design (0 to 1 in each range), its final objective `value` [SI] and largest relative `violation`.
 
     `history` (k, 2) contains the objective and the largest violation of each accepted design. `agrees`: the final design is feasible, and
-    its objective differs from the best one by a relative 1e-4 at most.
+    its objective differs from the best one by at most 0.01 %.
     """
 
     TABLE: ClassVar[Layout] = Layout("Starts", "value violation evaluated end agrees", head="start")
@@ -140,8 +140,8 @@ class RoundedPoint(DesignPoint):
 class Contradiction:
     """Minimal set of limits that contradict each other within the ranges.
 
-    `violation` is the minimum, over all designs, of the largest relative violation. `point` is the design at this minimum; relative
-    violations of the named limits are equal or less.
+    `violation` is the minimum, over all designs, of the largest relative violation. `point` is the design at this minimum, where no named
+    limit is violated by more.
     """
 
     limits: tuple[Requirement, ...]

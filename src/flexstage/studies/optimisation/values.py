@@ -88,8 +88,8 @@ class Values:
     """Evaluator of the `measures` of a study's designs.
 
     Derivatives are exact (complex step through the formulas of the models; analytical for eigenvalues), except for `map_error` and
-    `opening`, which are computed from real corners and outlines. Their derivatives are central differences with steps of a thousandth of
-    the range, for which rounding and curvature have equal effects.
+    `opening`, whose corners and outlines are computed in real numbers only. Their derivatives are central differences with steps of a
+    thousandth of the range, for which rounding and curvature have equal effects.
     """
 
     study: Study

@@ -19,7 +19,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Interaction:
-    """Means of a response over one variable, for low, middle and high values of another.
+    """Means of a response as a function of one variable, for low, middle and high values of another.
 
     `over`, `by` and `response` are the indices of both variables and of the response. `share` is the fraction of the response's variance
     that only both variables together explain. `places` (b,) and `levels` (3,) are mean values of the variables in SI. `means` (3, b) are

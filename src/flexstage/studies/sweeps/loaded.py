@@ -24,7 +24,7 @@ _MARGIN = 2.0
 
 
 def needs_load_check(study: Study) -> bool:
-    """Whether designs need individual stability checks, because the load factor at a range end is close to the limit.
+    """Return whether designs need individual stability checks, because the load factor at a range end is close to the limit.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> needs_load_check(neck_study())

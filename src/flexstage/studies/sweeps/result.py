@@ -94,7 +94,7 @@ class StudyResult(InNotebook):
 
     @property
     def failures(self) -> Annotated[tuple[Failure, ...], VIEW]:
-        """Designs without values."""
+        """Failed designs, which have no values."""
         return self.results.failed
 
 

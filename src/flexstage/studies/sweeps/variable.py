@@ -27,9 +27,9 @@ _STEP = 1e-20
 class Variable:
     """One variable of a study, from `low` to `high` in the SI unit of `quantity`, which sets the numbers at all its `addresses`.
 
-    `relative`: low and high are factors on the design's value at each address. `logarithmic`: equal steps are equal ratios. `levels` is the
-    number of values of a grid in the range, ends included. `step` [SI] is the manufacturing increment; rounded values are multiples of it.
-    With a `variant`, the addresses are parameters of that case, from which the design is rebuilt.
+    `relative`: low and high are factors on the design's value at each address. `logarithmic`: equally spaced values have equal ratios.
+    `levels` is the number of values of a grid in the range, ends included. `step` [SI] is the manufacturing increment; rounded values are
+    multiples of it. With a `variant`, the addresses are parameters of that case, from which the design is rebuilt.
     """
 
     name: str

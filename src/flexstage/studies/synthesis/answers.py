@@ -74,9 +74,9 @@ def design(  # noqa: PLR0913 (its options)
     """Design stages for a specification: every architecture that has the required motions, with every allowed actuator of the catalogue.
 
     First, bounds exclude pairs (`flexstage.studies.synthesis.bounds`). The others are optimised within the requirements by
-    `studies.optimise`, and again with corrected limits as long as elastic bodies or large displacements miss a requirement. For the first
-    three answers, `verify` (e.g. `solid.required_values`) repeats this with finite elements, `tolerance` computes the yield, and
-    `close_loop` (e.g. `control.sensitivity_crossover`) computes the sensitivity crossover of the control loop. An empty `architectures`
+    `studies.optimise`, and again with corrected limits as long as a requirement is missed with elastic bodies or at large displacements.
+    For the first three answers, `verify` (e.g. `solid.required_values`) repeats this with finite elements, `tolerance` computes the yield,
+    and `close_loop` (e.g. `control.sensitivity_crossover`) computes the sensitivity crossover of the control loop. An empty `architectures`
     means all.
 
     `finished` receives each result of a pair as soon as it is known; a later result of the same pair replaces it.

@@ -79,7 +79,7 @@ class Architecture:
     """Text of its design file, if it is not a file of the folder."""
 
     def is_for(self, motions: frozenset[str]) -> bool:
-        """Whether the architecture has exactly these motions.
+        """Return whether the architecture has exactly these motions.
 
         >>> architectures()["guide"].is_for(frozenset({"z"})), architectures()["guide"].is_for(frozenset({"rz"}))
         (True, False)

@@ -1,4 +1,4 @@
-"""Values of the requirements with elastic bodies or large displacements, and the limits that the search then needs."""
+"""Values of required quantities with elastic bodies or large displacements, and the limits that the search then needs."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ _CLOSE = 1e-4
 
 
 Estimator = Callable[[Mechanism], Estimate]
-"""Function that computes the values of a stage's requirements by another model."""
+"""Function that computes the required quantities of a stage by another model."""
 
 
 def elastic_values(stage: Mechanism) -> Estimate:
-    """Return the values of a stage's requirements with elastic bodies, estimated from their outlines.
+    """Return the required quantities of a stage with elastic bodies, whose flexibility is estimated from outlines.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> round(elastic_values(parallelogram()).values["frequency.platform.1"])
@@ -43,14 +43,14 @@ def elastic_values(stage: Mechanism) -> Estimate:
 
 
 def displaced_values(stage: Mechanism) -> Estimate:
-    """Return the worst values of a stage's requirements over the corners of its required displacements, at large displacements.
+    """Return the worst value of each required quantity over the corners of the required displacements, with geometric nonlinearity.
 
     If there are more than three required displacements, each is reached alone.
 
     Frequencies and stiffnesses are multiplied by their ratios in the models linearised at the corners and at rest. Stresses include
     stretch. A stroke is the lumped stroke times the smallest ratio of linear to nonlinear inputs at the corners, so that it is sufficient
-    exactly if the actuators reach the corners. Requirements that do not depend on the displacement are left out. Raises `DesignError`
-    without equilibrium, and for outlines that overlap at a corner.
+    exactly if the actuators reach the corners. Quantities that do not depend on the displacement are left out. Raises `DesignError` without
+    equilibrium, and for outlines that overlap at a corner.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> {key: round(value) for key, value in displaced_values(parallelogram()).values.items() if key.startswith("frequency")}
@@ -119,9 +119,9 @@ def _at_corners(bench: StageResults) -> _Corners:
 
 
 def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Mapping[str, float], ...]) -> dict[str, str]:
-    """Return the limits for the lumped model with which better models also meet the requirements. Empty if they do already.
+    """Return limits for the lumped model with which better models also meet the requirements; none if they already do.
 
-    Each value changes by the ratio of a better model and the lumped model (space mapping): a limit becomes limit / ratio if that is
+    Each value changes by the ratio of a better model to the lumped model (space mapping): a limit becomes limit / ratio if that is
     stricter. Raises `DesignError` if a missed requirement has no such ratio.
 
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -72,7 +72,7 @@ def energy_groups(spec: Specification, pair: CandidatePair) -> list[tuple[float,
 
 
 def demand(spec: Specification, pair: CandidatePair) -> float:
-    """Return the ratio of the required energy and that of the actuators. The pairs with the smallest ratio are searched first."""
+    """Return the ratio of the required energy to the energy of the actuators. The pairs with the smallest ratio are searched first."""
     frequency = spec.least(FREQUENCY_KEYS[0])
     return 0.0 if frequency is None else max(bounds.efficiency(frequency, *each, spec.masses) for each in energy_groups(spec, pair))
 
@@ -105,7 +105,7 @@ def _energy_shortfalls(spec: Specification, pair: CandidatePair, frequency: floa
             needed = bounds.required_energy(moved, spec.masses, frequency)
             reason = (
                 f"{', '.join(moved)}: the actuators store {energy:.3g} J, but {needed:.3g} J is needed; "
-                f"at most {100 * factor:.0f} % of the displacement, or {best:.4g} Hz"
+                f"at most {100 * factor:.0f} % of the displacement, or {best:.4g} Hz, is possible"
             )
             yield Shortfall("frequency", best, frequency, "Hz", reason, universal=energy == whole)
 
@@ -117,7 +117,7 @@ def _force_shortfalls(spec: Specification, pair: CandidatePair, frequency: float
             continue  # the arm of the force is a matter of the box
         best = bounds.force_frequency_bound(source, value, spec.masses[axis])
         if best < frequency:
-            reason = f"{source.count} coils of {source.force:.3g} N continuously, with the best lever"
+            reason = f"{source.count} coils with a continuous force of {source.force:.3g} N and the best lever"
             yield Shortfall("frequency", best, frequency, "Hz", reason, universal=True)
 
 
@@ -131,7 +131,7 @@ def _stroke_shortfalls(spec: Specification, pair: CandidatePair) -> Iterator[Sho
         flat = max(moved["x"], moved["y"])
         least = 1.0 / math.hypot(0.5 / moved["z"], 0.5 / (flat * math.cos(math.pi / 6.0)))
         if stroke < least:
-            reason = f"struts with {1e6 * stroke:.4g} um of stroke at any slope, but x and z need {1e6 * least:.4g} um"
+            reason = f"the stroke of the struts is {1e6 * stroke:.4g} um, but x and z need {1e6 * least:.4g} um at any slope"
             yield Shortfall("motion.z", moved["z"] * stroke / least, moved["z"], "m", reason)
 
 

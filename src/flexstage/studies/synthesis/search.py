@@ -1,4 +1,4 @@
-"""Search of one architecture with one actuator: optimisation within the requirements, corrected by better models."""
+"""Search for one architecture with one actuator: optimisation within the requirements, corrected by better models."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ from flexstage.studies.tolerances.file import loads_tolerance
 from flexstage.studies.tolerances.run import tolerance
 
 _ROUNDS = 4
-"""Searches of a pair until better models keep the requirements: the first, and three with corrected limits."""
+"""Largest number of searches of a pair until better models meet the requirements: one, and three with corrected limits."""
 _LARGE = 0.1
-"""Displacement over the thickness of the thinnest flexure beyond which large displacements are computed."""
+"""Ratio of displacement to thickness of the thinnest flexure beyond which the model of large displacements is used."""
 
 
 @dataclass(frozen=True)
 class Relaxation:
-    """The best value [SI] of a requirement with all others kept, found by search; `required` are the words of the specification."""
+    """The best value [SI] of a required quantity if all other requirements are met; `required` is the text of the specification."""
 
     measure: str
     required: str
@@ -51,10 +51,10 @@ class Relaxation:
 
 @dataclass(frozen=True)
 class FailedPair:
-    """A pair without a design that keeps all requirements: the least violation, relative, and the requirements that contradict.
+    """A pair without a design that meets all requirements: the least relative violation, and the contradicting requirements.
 
-    `relaxed`: values at which one of them could be kept with all others; searched for the least violations if no pair has an answer.
-    `corrected`: stricter limits that keep the requirements by better models.
+    `relaxed` are the best values of single requirements if all others are met. They are computed for the pairs with the least violations,
+    if no pair has an answer. `corrected` are stricter limits with which better models meet the requirements.
     """
 
     architecture: str
@@ -68,7 +68,7 @@ class FailedPair:
 
 @dataclass(frozen=True)
 class FrontPoint:
-    """A design of the front of two goals: both values [SI], the second in `unit`, and the named numbers [SI] that are searched."""
+    """A design of the front of two goals: both values [SI], the second in `unit`, and the varied named numbers [SI]."""
 
     goal: float
     second: float
@@ -78,19 +78,19 @@ class FrontPoint:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """A stage that keeps all requirements: the text of its design file and study, goal [SI] and active requirements.
+    """A stage that meets all requirements: the text of its design file and study, its goal [SI] and the active requirements.
 
-    `values` are those of the lumped model, `elastic` those with elastic bodies, estimated from their outlines, `displaced` the worst at the
-    corners of the displacements, where these are large. `verified` are those of finite elements with their estimated relative `errors`,
-    if requested; `unverified` is the reason without them. `rounds` is the number of searches until all these met the requirements.
+    `values` are the required quantities by the lumped model, `elastic` those with elastic bodies, estimated from outlines. `displaced` are
+    the worst values at the corners of large displacements. `verified` are values by finite elements with estimated relative `errors`, if
+    requested; `unverified` is the reason for their absence. `rounds` is the number of searches until all these values met the requirements.
 
-    `manufactured` is the yield: the share of stages with scatter of dimensions that keep all requirements, lumped, if requested.
-    `crossover` is the lowest sensitivity crossover of its control loop with the default controller, if requested.
-    `front` are its best designs in two goals, if there are two.
-    `binding` are the active requirements and range ends with their sensitivities, before dimensions are rounded to steps.
+    `manufactured` is the production yield by the lumped model, if requested: the fraction of stages with scatter of dimensions that meet
+    all requirements. `crossover` is the lowest sensitivity crossover of the control loop with the default controller, if requested. `front`
+    are the Pareto-optimal designs, if there are two goals. `binding` are the active requirements and range ends with their sensitivities,
+    before dimensions are rounded.
 
-    `efficiency` is the stroke energy that it uses as a share of that of its actuators, at most 1 by `bounds.frequency_bound`; `None` of
-    coils. `warnings` are those of `flexstage check`.
+    `efficiency` is the fraction of the actuators' stroke energy that the stage uses (at most 1, see `bounds.efficiency`), `None` for coils.
+    `warnings` are those of `flexstage check`.
     """
 
     architecture: str
@@ -125,12 +125,12 @@ class Answer:
 
     @property
     def pair(self) -> Annotated[str, INNER]:
-        """Name of its pair: architecture and actuator."""
+        """Name of the pair: architecture and actuator."""
         return f"{self.architecture} with {self.actuator}"
 
     @property
     def file(self) -> str:
-        """Name of its files, without ending."""
+        """Name of the files, without ending."""
         sign = "".join(each if each.isalnum() else "-" for each in self.actuator.lower()).strip("-")
         return f"{self.architecture}-{sign}"
 
@@ -143,10 +143,10 @@ def search(
     answer: Answer | None = None,
     verify: Estimator | None = None,
 ) -> Answer | FailedPair:
-    """Optimise one pair, and again with corrected limits while better models miss a requirement.
+    """Optimise one pair, and repeat this with corrected limits as long as a better model misses a requirement.
 
-    These are elastic bodies, large displacements, and with `verify` finite elements instead of elastic bodies, from an earlier `answer` on.
-    An architecture that cannot be drawn or analysed is a failed pair with its reason.
+    Better models include elastic bodies (with `verify`, finite elements) and large displacements. The search may continue from an earlier
+    `answer`. For an architecture that cannot be drawn or analysed, the result is a failed pair with the reason.
 
     >>> from flexstage.studies.synthesis.architecture import architectures, catalogue_actuators
     >>> from flexstage.studies.synthesis.specification import example
@@ -198,7 +198,7 @@ def _estimated(answer: Answer, spec: Specification, pair: CandidatePair, verify:
 
 
 def manufacturing_yield(answer: Answer) -> float | None:
-    """Return the yield of an answer, from its tolerance study."""
+    """Return the production yield of an answer, from its tolerance study."""
     with temporary_folder() as folder:
         (folder / DESIGN).write_text(answer.design, encoding="utf-8")
         found = tolerance(loads_tolerance(answer.scatter, folder=folder), how=Run(workers=1))
@@ -209,7 +209,7 @@ def manufacturing_yield(answer: Answer) -> float | None:
 def relaxations(
     spec: Specification, pair: CandidatePair, failed: FailedPair, progress: Callable[[str], None] | None = None
 ) -> Iterator[Relaxation]:
-    """Yield the best value of each contradicting requirement with the others kept; those along x and y are relaxed together."""
+    """Yield the best value of each contradicting requirement if all others are met; those along x and y are relaxed together."""
     stage = loads(draw(pair.architecture, spec, pair.actuator))
     lines = {line.key: line for line in requirements(stage)}
     done = set[str]()
@@ -235,7 +235,7 @@ def optimum(
     replaced: Mapping[str, str | None],
     progress: Callable[[str], None] | None = None,
 ) -> Optimum:
-    """The optimum of a pair for a goal with some requirements `replaced`. Raises `DesignError` where it cannot be drawn or analysed."""
+    """Return the optimum of a pair for a goal, with some requirements `replaced`. Raises `DesignError` if the analysis fails."""
     study = _study(spec, pair, [goal], replaced)
     found = optimise(study, load_optimisation(study), progress)
     if found.interrupted:
@@ -246,7 +246,7 @@ def optimum(
 def front(
     spec: Specification, pair: CandidatePair, replaced: Mapping[str, str], progress: Callable[[str], None] | None = None
 ) -> tuple[FrontPoint, ...]:
-    """The front of a pair for the two goals of a specification, with some requirements `replaced`."""
+    """Return the Pareto front of a pair for the two goals of a specification, with some requirements `replaced`."""
     study = _study(spec, pair, specified_goals(pair.architecture, spec), replaced)
     found = pareto_front(study, load_optimisation(study), progress)
     if found.interrupted:

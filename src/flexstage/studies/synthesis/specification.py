@@ -278,7 +278,7 @@ def _requirement_findings(spec: Specification) -> Iterator[Finding]:
             if key in (*FREQUENCY_KEYS, "safety"):
                 spec.least(key, RATIO if key == "safety" else FREQUENCY)
             elif key.startswith("stroke."):
-                yield Finding(where, "strokes are required by motion", f'Use e.g. motion.{key.removeprefix("stroke.")} = "50 um"')
+                yield Finding(where, "strokes must be specified in motion", f'Use e.g. motion.{key.removeprefix("stroke.")} = "50 um"')
             else:
                 requirement(frame, key, text, where)
         except DesignError as error:

@@ -76,7 +76,7 @@ _BLOCK_NUMBERS = {
     "half_y": "(payload_width + reach_y + sqrt((payload_width - reach_y)*(payload_width - reach_y)))/4",
 }
 _OWN = r"\b(skin|length_[xyz]|leaf_thickness|wire|half_[xyz]|payload_length|payload_width|(?:leaf|wire)_(?:slenderness_)?[xyz])\b"
-"""Names of numbers and parts that each of several guides in series has."""
+"""Names of numbers and parts that are separate for each of several guides in series."""
 _CLEARANCE = 2e-3
 """Gap below a block on a tray, in addition to its displacement [m]."""
 _HEADER = """# {title}: a block on wires and leaves, found by a search on a ground structure.
@@ -170,7 +170,7 @@ def _reason(motions: frozenset[str]) -> str:
     """Why no parallel guide has the motions."""
     span = pure_force_span(reciprocal_space(twists_of(motions)))
     free = (axis for axis, row in zip(COMPONENTS, span, strict=True) if axis not in motions and np.linalg.norm(row) < 0.5)
-    return f"no pure force that does no work on the motions {_listed(motions)} constrains {' or '.join(free)}"
+    return f"pure forces that do no work on the motions {_listed(motions)} do not constrain {' or '.join(free)}"
 
 
 def _listed(motions: frozenset[str]) -> str:
@@ -186,7 +186,7 @@ def synthesise(spec: Specification) -> list[Architecture]:
 
 @dataclass(frozen=True)
 class Layer:
-    """One of the guides in series, with its actuators: number 1 carries the platform, each other one the tray of the guide above."""
+    """One of the guides in series, with its actuators: number 1 carries the platform; each other carries the tray of the guide above."""
 
     number: int
     guide: Guide
@@ -195,30 +195,30 @@ class Layer:
 
     @property
     def body(self) -> str:
-        """Name of the body that it guides."""
+        """Name of the guided body."""
         return "platform" if self.number == 1 else f"tray_{self.number}"
 
     @property
     def base(self) -> str:
-        """Name of the body that it is on."""
+        """Name of the body on which the guide is mounted."""
         return "ground" if self.last else f"tray_{self.number + 1}"
 
     @property
     def strut(self) -> str:
-        """Name of the unit of its actuators."""
+        """Name of the unit of the guide's actuators."""
         return "strut" if self.number == 1 else f"strut_{self.number}"
 
     @property
     def elements(self) -> list[tuple[str, str]]:
-        """Parts of its elements, each with the axis of their length."""
+        """Parts of the guide's elements, each with the axis of their length."""
         return sorted({(_part(each), "xyz"[each.place.face]) for each in self.guide.elements})
 
     def named(self, text: str) -> str:
-        """A text with the names of its own numbers and parts."""
+        """Return a text with the names of this guide's own numbers and parts."""
         return text if self.number == 1 else re.sub(_OWN, rf"\1_{self.number}", text)
 
     def point(self, place: Place, outside: str = "") -> str:
-        """The formulas of a point on a face of its block, or outside of it."""
+        """Return the formulas of a point on a face of the block, or at a distance `outside` of it."""
         texts = ["0 mm" if not each else f"{'-' if each < 0 else ''}pitch_{axis}" for each, axis in zip(place.grid, "xyz", strict=True)]
         sign = "-" if place.side < 0 else ""
         texts[place.face] = f"{sign}half_{'xyz'[place.face]}" + (f" {sign or '+'} {outside}" if outside else "")
@@ -227,7 +227,7 @@ class Layer:
         return json.dumps(texts)
 
     def ends(self, *, stacks: bool) -> dict[Place, str]:
-        """Places of its elements and struts, with the distances of their ends from its block."""
+        """Return the places of elements and struts, with the distances of their ends from the block."""
         ends = {each.place: f"length_{'xyz'[each.place.face]}" for each in self.guide.elements}
         return ends | (dict.fromkeys(self.guide.actuators, "strut") if stacks else {})
 

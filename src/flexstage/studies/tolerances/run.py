@@ -42,7 +42,7 @@ class Toleranced(StudyResult):
 
     @property
     def scatter(self) -> Annotated[tuple[Scatter, ...], VIEW]:
-        """The deviations."""
+        """The entries of `[scatter]`."""
         return self.study.scatters
 
     @property

@@ -24,7 +24,7 @@ _GAP = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Slopes:
-    """Values (r,) of the nominal design, derivatives (r, d) by the deviations in SI, and the mask of `smooth` (r,) responses.
+    """Values (r,) of the nominal design, derivatives (r, d) with respect to the deviations in SI, and the mask of `smooth` (r,) responses.
 
     A response that is not smooth (the lowest of two equal frequencies, the largest of three equal losses) changes in the same direction
     for any deviation. Its derivatives belong to one of the equal values or, for frequencies, to their mean.
@@ -39,7 +39,7 @@ def slopes(study: Tolerance) -> Slopes:
     """Compute derivatives of all columns of a study by complex step; those of frequencies, by d lambda = phi^T (dK - lambda dM) phi.
 
     Smoothness is tested in eight random directions, with steps of a thousandth of the scatter in both senses. A response is smooth if both
-    changes are opposite, and equal to those by the derivative.
+    changes are opposite, and equal to those that the derivative predicts.
 
     >>> from flexstage.studies.tolerances.example import leaf_study
     >>> found = slopes(leaf_study())

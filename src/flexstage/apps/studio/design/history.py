@@ -37,7 +37,7 @@ class Stored:
         return cls(path, text.replace("\r\n", "\n") if ending == "\r\n" else text, _digest(raw), mark, ending)
 
     def write(self, text: str, *, over: bool) -> Stored:
-        """Write a text to the file, completely or not at all. Refused after a change by another program, unless `over`."""
+        """Write a text to the file, completely or not at all. Refused if another program has changed the file, unless `over`."""
         found = _digest(self.path.read_bytes()) if self.path.exists() else ""
         if found != self.digest and not over:
             what = "changed on disk by another program" if found else "removed by another program"

@@ -13,7 +13,7 @@ from flexstage.base.finding import Finding, refuse, require, suggest_nearest
 
 @lru_cache(maxsize=1)
 def snippets() -> tuple[Snippet, ...]:
-    """All snippets of the palette."""
+    """Return all snippets of the palette."""
     found = tomllib.loads(resources.files("flexstage.apps.studio").joinpath("palette.toml").read_text(encoding="utf-8"))
     return tuple(
         Snippet(name, each["group"], each["title"], each["text"].strip("\n") + "\n", each["fields"]) for name, each in found.items()
@@ -39,14 +39,14 @@ def insert(text: str, snippet: str, fields: Mapping[str, str]) -> str:
 
 
 def gallery() -> Mapping[str, str]:
-    """Summaries of the shipped cases."""
+    """Return the summaries of the shipped cases."""
     from flexstage.cases.registry import CASES  # takes long to import
 
     return {name: each.summary for name, each in CASES.items()}
 
 
 def shipped(case: str) -> str:
-    """The design file of a shipped case. Raises `DesignError` for an unknown one."""
+    """Return the design file of a shipped case. Raises `DesignError` for an unknown case."""
     from flexstage.cases.registry import shipped_case
 
     found = shipped_case(case)

@@ -32,14 +32,14 @@ from flexstage.show.display import field_unit, preferred_unit
 from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS
 
 _REACH = 0.5
-"""Range of a slider in both directions, over the value."""
+"""Range of a slider in both directions, relative to the value."""
 _FROM_NOUGHT = 10.0
 """Range of a slider from zero, in the display unit."""
 
 
 @SESSION.keep(8)
 def design(text: str, file: str) -> Mechanism:
-    """The design in a text; raises `DesignError` with all errors."""
+    """Return the design in a text; raises `DesignError` with all errors."""
     return loads(text, where=Path(file).name, folder=Path(file).parent)
 
 
@@ -67,7 +67,7 @@ def read(text: str, file: str, stored: str) -> Reading:
 
 
 def problems_of(findings: Iterable[Finding], text: str, file: str) -> tuple[Problem, ...]:
-    """Findings with line and column in the text."""
+    """Return the findings with their line and column in the text."""
     rows, lines = text.splitlines(), line_numbers(text)
     return tuple(_problem(each, rows, lines, Path(file).name) for each in findings)
 
@@ -80,7 +80,7 @@ def link_lines(mechanism: Mechanism, lines: Mapping[str, int]) -> dict[str, int 
 
 
 def address_of(mechanism: Mechanism, link: PlacedLink | PlacedSuperelement) -> str:
-    """Address at which the description defines a link, e.g. `units.vertical.links.pivot`."""
+    """Return the address at which the description defines a link, e.g. `units.vertical.links.pivot`."""
     drawn = link.described if isinstance(link, PlacedLink) else link
     return ".".join(link_path(mechanism, drawn.drawn.removeprefix("links.")))
 
@@ -193,7 +193,7 @@ def _gauges(assembly: Assembly) -> Iterator[Channel]:
 
 
 def finite(value: Any) -> float | None:
-    """A number of the first design, or None if it is absent or not finite."""
+    """Return the number of the first design, or `None` if it is absent or not finite."""
     found = np.nan if value is None else float(np.ravel(np.real(value))[0])
     return found if np.isfinite(found) else None
 

@@ -18,7 +18,7 @@ _EDGE = 1e-7
 
 
 def binding(setting: Setting, problem: Problem, point: Point) -> tuple[Binding, ...]:
-    """Find the binding limits and range ends of an optimum, sorted by their effect on the objective for a tenth of their value.
+    """Find the binding limits and range ends of an optimum, sorted by their effect per change relative to the limit or the range.
 
     The multipliers belong to the convex model around the optimum with unit curvature; its solution is the optimum itself. For min c_0 with
     c_i <= e_i, they are -d c_0 / d e_i. As derivatives, they are valid for small changes, and one-sided for repeated modes.

@@ -18,7 +18,7 @@ _COUNTS = 1e-4
 
 
 def contradictions(setting: Setting, starts: Sequence[Array], told: CountReport | None = None) -> tuple[Contradiction, ...]:
-    """Find irreducible infeasible sets of limits, from any of the starts. Returns none if all limits can be met.
+    """Find irreducible infeasible sets of limits, from any of the starts. Returns an empty tuple if all limits can be met.
 
     The largest relative violation is minimised. Then limits are removed one at a time as long as the others remain infeasible. The
     resulting set is irreducible: if any one of its limits is removed, the others can be met. The remaining limits are searched for further

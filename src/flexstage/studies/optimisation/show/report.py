@@ -33,7 +33,7 @@ def optimise_report(found: Optimum) -> str:
     study = found.study
     warnings = () if found.final is None else require_stable(study, values_of(study, found.final.shares))
     objective, variables, limits, *rest = optimise_tables(found)
-    search = Picture(to_svg(convergence_figure(found), "search", "objective over accepted designs, variables in their ranges"), _SEARCH)
+    search = Picture(to_svg(convergence_figure(found), "search", "objective of accepted designs, variables in their ranges"), _SEARCH)
     final = None if found.final is None else study.mechanism_for(values_of(study, found.final.shares))
     stages = {"stage": stage_data(study.design if final is None else final)} | (
         {} if final is None else {"before": stage_data(study.design)}

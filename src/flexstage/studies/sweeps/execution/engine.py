@@ -72,7 +72,7 @@ class Engine:
 
 
 def engine_covers(study: Study) -> bool:
-    """Whether the engine supports a study: it needs the standard `mechanism_for`, its own `mechanism_at` (complex values), or `numbers`.
+    """Return whether the engine supports a study: with the standard `mechanism_for`, its own `mechanism_at` (complex values), or `numbers`.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> engine_covers(neck_study())

@@ -41,7 +41,7 @@ _ABOUT = (
 
 @dataclass(frozen=True)
 class Failure:
-    """A design or sample without values: its number and the reason."""
+    """A failed design or sample, which has no values: its number and the reason."""
 
     design: int
     reason: str
@@ -73,7 +73,7 @@ class Results:
 
     @property
     def failed(self) -> tuple[Failure, ...]:
-        """Designs without values."""
+        """Failed designs, which have no values."""
         return tuple(Failure(design, reason) for design, reason in self.failures.items())
 
     def column(self, name: str) -> Array:
@@ -205,7 +205,7 @@ def _damage_findings(file: Hdf) -> Iterator[Finding]:
         yield Finding(f"{file.path}: facts", "missing", advice)
     for name in ("variables", "responses"):
         if len(_labels(file, name, "units")) != shapes[name][1]:
-            yield Finding(f"{file.path}: {name}", "number of units differs from names", advice)
+            yield Finding(f"{file.path}: {name}", "number of units differs from number of names", advice)
 
 
 def _is_count(value: Attribute | None) -> bool:

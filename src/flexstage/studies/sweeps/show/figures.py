@@ -54,7 +54,7 @@ def display(of: Variable | Measure, values: Array) -> Display:
 
 
 def effects_figure(study: Study, found: Effects) -> Any:
-    """Plot the mean of each response over each variable. All panels of a response have the same scale, so that slopes can be compared."""
+    """Plot the mean of each response as a function of each variable. Panels of a response have the same scale, to compare slopes."""
     rows, columns = len(found.responses), len(found.variables)
     with style_context():
         figure = canvas(FULL, 0.55 + 1.25 * rows)

@@ -21,7 +21,7 @@ from flexstage.studies.sweeps.show.figures import designs_figure, effects_figure
 from flexstage.studies.sweeps.show.interaction_figures import strongest_figure
 from flexstage.studies.sweeps.show.tables import failure_table, limit_notes, pair_table, share_table, variable_table
 
-_STEEP = "All panels of a row have one scale. The values are means over all designs, in which the other variables vary too."
+_STEEP = "All panels of a row have the same scale. The values are means over all designs, in which the other variables vary too."
 _STRONGEST = "The strongest pairs of variables. Lines that are not parallel show interaction. Above each panel: fraction of the variance."
 
 
@@ -30,7 +30,7 @@ def sweep_report(sweep: Sweep) -> str:
     study, results, found = sweep.study, sweep.results, sweep.effects
     effects = designs = None
     if found.used:
-        effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses over the variables"), _STEEP)
+        effects = Picture(to_svg(effects_figure(study, found), "effects", "mean responses as functions of the variables"), _STEEP)
         designs = Picture(to_svg(designs_figure(study, results), "designs", "designs over parallel axes"), _parallel(study, found))
     data = stage_data(study.design)
     sections: list[Section | None] = [
@@ -54,7 +54,7 @@ def study_head(study: Study, kind: str, said: Headline) -> Head:
 def _headline(study: Study, results: Results) -> Headline:
     """Number of designs, and of feasible ones."""
     count, failed = len(results.designs), len(results.failures)
-    text = f"{count} designs of {len(study.variables)} variables" + (f", {failed} of them without values" if failed else "")
+    text = f"{count} designs of {len(study.variables)} variables" + (f"; {failed} of them failed and have no values" if failed else "")
     if not study.limits or not count:
         return Headline(f"{text}.")
     kept = int(np.sum(study.feasible(results.responses)))
@@ -73,5 +73,7 @@ def _interactions(study: Study, found: Effects) -> list[Block]:
         return []
     blocks: list[Block] = [pair_table(found)]
     if found.strongest:
-        blocks.append(Picture(to_svg(strongest_figure(study, found), "strongest", "mean responses over pairs of variables"), _STRONGEST))
+        blocks.append(
+            Picture(to_svg(strongest_figure(study, found), "strongest", "mean responses as functions of pairs of variables"), _STRONGEST)
+        )
     return blocks

@@ -105,7 +105,7 @@ def pair_table(found: Effects) -> Table:
     ]
     less = "No pair" if not rows else "No other pair"
     notes = ["Fraction of the variance that only both variables together explain."]
-    notes += [f"{less} explains 1 % of the variance of a response."] if len(rows) < _MOST_PAIRS else []
+    notes += [f"{less} explains at least 1 % of the variance of a response."] if len(rows) < _MOST_PAIRS else []
     notes += _error_note(found, 1)
     return make_table("Interactions", ["variables", *(Column(name) for name in found.responses)], rows, notes=notes)
 

@@ -164,7 +164,7 @@ def _allowed_notes(allowed: Allowance) -> list[str]:
 
 
 def crosstalk_table(found: Toleranced, crosstalk: Crosstalk) -> Table:
-    """Tabulate the deviations of the pose per unit of command, and the worst deviation."""
+    """Tabulate standard deviations of the pose per unit of command. A note contains the largest crosstalk of all samples."""
     opened = crosstalk.kind == OPEN
     title = "Crosstalk in open loop, with the nominal R_a" if opened else "Crosstalk in closed loop, with the nominal R_s^-1"
     heads = [Column("", numeric=False), *(Column(name, "urad" if name.startswith("r") else "um") for name in crosstalk.coordinates)]
@@ -174,7 +174,7 @@ def crosstalk_table(found: Toleranced, crosstalk: Crosstalk) -> Table:
     ]
     reference = ", ".join(number(round(1e3 * float(value), 6) + 0.0, 6) for value in _reference(found))
     where = f"At {crosstalk.point}, ({reference}) mm"
-    note = f"{where}: standard deviation over the samples, in row unit per unit of command. Diagonal: deviation of the gain."
+    note = f"{where}: standard deviation over the samples, in row unit per unit of command. Diagonal: standard deviation of the gain."
     how = "The command corrects the nominal lost motion, with voltages of the nominal stacks" if opened else "The loop is ideal"
     return make_table(title, heads, rows, notes=[note, f"{_worst(crosstalk)} {how}."])
 
