@@ -8,22 +8,22 @@ from tests.hygiene.source import expect_none
 from tools.weight import weigh, weights
 
 CEILINGS = {
-    "base": 27_600,
+    "base": 27_700,
     "spatial": 3_900,
     "parts": 38_100,
     "beams": 25_900,
     "mechanism": 56_400,
     "cases": 1_200,
     "models": 97_900,
-    "analysis": 70_900,
+    "analysis": 71_000,
     "show": 63_700,
     "solid": 76_700,
-    "experiment": 98_800,
-    "control": 154_000,
-    "studies": 69_700,
-    "apps": 39_300,
+    "experiment": 98_900,
+    "control": 153_900,
+    "studies": 69_900,
+    "apps": 39_400,
     ".": 400,
-    "all": 824_000,
+    "all": 824_500,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 
