@@ -47,13 +47,13 @@ def loop_tables(found: LoopStudy) -> list[Table | None]:
 def short_tables(found: LoopStudy) -> list[Table | str | None]:
     """Tabulate loop, bandwidth, margins, time responses, positioning noise and hysteresis, without notes.
 
-    For an unstable loop, the loop table keeps its note with the reason of the instability.
+    The loop table keeps the note on the tuning, which names missed limits, and for an unstable loop all notes.
     """
     margins, noise = margin_tables(replace(found, disk_margin=None)), error_tables(replace(found, static_errors=None))
     parts = [*_charge_tables(found), *_damping_tables(found), *measured_tables(found), *time_tables(found.runs), *noise]
     shown = [replace(each, notes=()) for each in (loop_table(found), *margins, *parts) if each is not None]
-    if not found.stability.stable:
-        shown[0] = loop_table(found)
+    first = loop_table(found)
+    shown[0] = first if not found.stability.stable else replace(first, notes=first.notes[: found.controller.tuning is not None])
     return [*shown, "Use --full for all tables and notes, --report FILE for a page with figures."]
 
 
