@@ -44,7 +44,8 @@ def hysteresis(  # noqa: PLR0913 (its options)
 ) -> CommandResult:
     """Identify the hysteresis of a stack.
 
-    Fits an invertible Prandtl-Ishlinskii model to a record of voltage and stroke. Other sections of the record validate the model.
+    Fits an invertible Prandtl-Ishlinskii model to a record of voltage and stroke. The model is validated on sections of the record left out
+    of the fit.
 
     With a step record, the command also fits the creep.
     """

@@ -74,10 +74,10 @@ def loop(  # noqa: PLR0913  a loop has that many knobs
 ) -> CommandResult | None:
     """Close the control loop of a stage.
 
-    Tunes a controller, and prints bandwidth, stability margins, settling and positioning noise by source.
+    Tunes a controller, and prints bandwidth, stability margins, settling time and positioning noise by source.
 
-    Default plant: the lumped model, 10 kHz sampling, one sample of delay. Default controller: PI with notch filters, or PID for
-    force-driven stages. The tuning is optimised for a peak sensitivity of 6 dB at most; --quick omits the optimisation.
+    By default, the plant is the lumped model, sampled at 10 kHz with one sample of delay. The controller is PI with notch filters, or PID
+    for force-driven stages. It is optimised for a peak sensitivity of at most 6 dB; --quick omits the optimisation.
 
     With --at, --load, --fixed or --temperature, the plant is linearised at that operating point.
 
