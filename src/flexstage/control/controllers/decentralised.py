@@ -79,7 +79,7 @@ class Decentralised(CheckedFields):
 
 
 def loop_systems(control: Decentralised, step: float | None = None) -> tuple[System, ...]:
-    """Return law and notches of each loop in series, as a system with inputs `error`, `pose`, `applied` and output `command` [m].
+    """Return control law and notches of each loop in series, as a system with inputs `error`, `pose`, `applied` and output `command` [m].
 
     >>> from flexstage.control.controllers.pi import PI
     >>> from flexstage.control.controllers.loops import platform_loops
@@ -152,8 +152,8 @@ def _drop_unused_poses(control: System, poses: list[str]) -> System:
 
 def _findings(control: Decentralised) -> Iterator[Finding]:
     count = len(control.loops.names)
-    for kind, given in (("laws", control.laws), ("sets of notches", control.notches), ("prefilters", control.prefilters)):
-        if len(given) != count and (given or kind == "laws"):
+    for kind, given in (("control laws", control.laws), ("sets of notches", control.notches), ("prefilters", control.prefilters)):
+        if len(given) != count and (given or kind == "control laws"):
             yield Finding(
                 "controller", f"{len(given)} {kind} for {count} loops ({', '.join(control.loops.names)})", "Use one for each loop"
             )

@@ -104,9 +104,9 @@ def modal_loops(coordinates: Coordinates, shapes: Array, strokes: Array | None =
     """Define one loop for each of the platform's modes: sense = Phi^-1, drive = R_a Phi.
 
     `shapes` (6, f) are the platform's twists in these modes, columns of `Modes.platform_shapes` (`loop_modes` selects them), of any scale.
-    With massless links the loops are exactly decoupled, each an oscillator of static gain 1 (Phi^T K Phi = Omega^2). The masses of the
-    actuation units and lost motion cause the remaining crosstalk. `strokes` (n, f) replaces R_a. Raises `DesignError` for shapes that do
-    not span the coordinates.
+    With massless links the loops are exactly decoupled, each an oscillator of static gain 1 (Phi^T K Phi = Omega^2). Lost motion and the
+    masses of the actuation units cause crosstalk. `strokes` (n, f) replaces R_a. Raises `DesignError` for shapes that do not span the
+    coordinates.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.plant_models.coordinates import coordinates

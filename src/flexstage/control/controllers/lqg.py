@@ -43,11 +43,11 @@ class Disturbances:
 class LQG:
     """LQG controller with integrators, for a model: u = -K x^ + K_z z + N r.
 
-    The estimate is x^ = x- + M (y - C x-) with x- = A x^ + B u of the sample before, the integral z+ = z + T e. The sampled `model` has
-    inputs `command.<actuator>` and outputs `pose.<c>`. `regulator` is K (n, s), `integral` K_z (n, f), `observer` M (s, f). `feedforward`
-    (n, f) is the matrix of static strokes for a reference, which determines N; default: no feedforward. `tracking` [s] is the anti-windup
-    time of the integrators; the observer uses the applied strokes directly. `weights` are the design weights, `expected` the disturbances
-    assumed by the observer, if known.
+    The estimate is x^ = x- + M (y - C x-), with the prediction x- = A x^ + B u from the previous sample. The integral is z+ = z + T e. The
+    sampled `model` has inputs `command.<actuator>` and outputs `pose.<c>`. `regulator` is K (n, s), `integral` K_z (n, f), `observer` M (s,
+    f). `feedforward` (n, f) is the matrix of static strokes for a reference, which determines N; default: no feedforward. `tracking` [s] is
+    the anti-windup time of the integrators; the observer uses the applied strokes directly. `weights` are the design weights, `expected`
+    the disturbances assumed by the observer, if known.
     """
 
     model: System

@@ -60,7 +60,7 @@ class PositiveFeedback:
         return law_system(A, B, C, np.zeros((1, 3)), step, kept=[True, True, self.tracking != 0.0])
 
     def feedback(self, rate: complex) -> complex:
-        """Compute the positive feedback of the pose at a complex rate s [1/s]."""
+        """Compute the filter's transfer function from pose to command at a complex rate s [1/s]."""
         w = 2.0 * np.pi * self.frequency
         return (self.velocity * rate + self.position * w**2) / (rate**2 + 2.0 * self.damping * w * rate + w**2)
 
@@ -68,7 +68,7 @@ class PositiveFeedback:
 def place_poles(frequency: float, damping: float, static: float = 1.0) -> PositiveFeedback:
     """Place the poles of an undamped mode and of the filter at the roots of (s^2 + 2 sigma s + sigma^2 + w^2)^2, sigma = `damping` w.
 
-    The mode w^2 g / (s^2 + w^2), g = `static`, and the filter keep their frequency, and get the same decay rate (Bhikkaji et al. 2007: four
+    The mode w^2 g / (s^2 + w^2), g = `static`, and the filter keep the frequency w, and get the same decay rate (Bhikkaji et al. 2007: four
     parameters place four poles).
 
     >>> law = place_poles(100.0, 0.2)

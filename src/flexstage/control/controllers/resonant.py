@@ -60,7 +60,7 @@ class IntegralResonant(CheckedFields):
 
 
 def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
-    """Compute the gains that damp an undamped mode at `frequency` [Hz] by zeta = `damping`, the highest ratio with their feed-through.
+    """Compute the gains that give an undamped mode at `frequency` [Hz] the ratio zeta = `damping`, the highest with this feed-through.
 
     d = g (1 + 2 zeta)^2 / ((1 + 2 zeta)^2 - 1), k d = w_p (1 + 2 zeta)^(1/2) (Namavar, Fleming & Aphale 2014). w_p is the mode's angular
     frequency, g = `static` the plant's static gain, `tracking` k_t [1/s]. Raises `DesignError` for numbers that are not positive.
