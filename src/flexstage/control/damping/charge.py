@@ -21,7 +21,7 @@ from flexstage.models.linear.model import Channel, LinearModel
 
 @dataclass(frozen=True, eq=False)
 class ChargedStacks:
-    """Stacks of the `actuators` at constant charge: each is `stiffer` (n,) by the factor 1/(1 - k^2) above its corner frequency.
+    """Stacks of the `actuators` at constant charge, and their stiffness ratios `stiffer` (n,), 1/(1 - k^2) above the corner frequency.
 
     `corners` (n,) [Hz] are the corner frequencies below which the drive acts as a voltage drive. `residual_hysteresis` (n,) are the
     fractions of hysteresis and creep that remain above the corners. The plant's modes are at `by_volts` (k,) [Hz] with constant voltage,

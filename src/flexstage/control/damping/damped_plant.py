@@ -38,8 +38,8 @@ class DampedMode:
         "frequency zero ratio most alone damped_frequency damped_ratio",
         notes=(
             (
-                "Transmission zero z: the frequency without the stacks' axial stiffness. Maximum damping: (w - z)/(2 z), with one leg "
-                "or decoupled legs. Isolated mode: damping ratio with this gain, without other modes, structural damping and amplifier lag."
+                "The transmission zero z is the frequency without the stacks' axial stiffness. The maximum damping (w - z)/(2 z) applies "
+                "to one leg or decoupled legs. The isolated mode has this gain, but no other modes, structural damping or amplifier lag."
             ),
         ),
     )
@@ -66,7 +66,7 @@ class ActiveDamping:
     TABLE: ClassVar[Layout] = Layout(
         "Remaining stiffness with IFF",
         "left_at_rest softest softest_at",
-        notes=("Fraction of the platform's stiffness that remains: at rest, and the lowest below half the first mode's frequency.",),
+        notes=("Fraction of the platform's stiffness that remains at rest, and its minimum below half the first mode's frequency.",),
     )
 
     legs: tuple[str, ...]
@@ -116,7 +116,7 @@ def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Pl
 def around_legs(
     given: Plant, legs: tuple[Leg, ...], inner: Sequence[System], outputs: Iterable[str], heard: tuple[Channel, ...] = ()
 ) -> System:
-    """Connect an inner system around each leg. Its input is `tension.<actuator>` [N] plus `heard`, its output an additional stroke."""
+    """Connect an inner system around each leg. Its input is `tension.<actuator>` [N] plus one of `heard`, its output a further stroke."""
     entries, links = {each.actuator: f"entry.{each.actuator}" for each in legs}, dict[str, dict[str, float]]()
     for number, (each, sign) in enumerate(zip(legs, tension_signs(given, legs), strict=True)):
         links[entries[each.actuator]] = {each.actuator: 1.0, inner[number].output_names[0]: 1.0}
