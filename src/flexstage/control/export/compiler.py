@@ -1,4 +1,4 @@
-"""The C compiler of this machine, for exported code."""
+"""The C compiler of this computer, for exported code."""
 
 from __future__ import annotations
 

@@ -72,7 +72,7 @@ def hardware_findings(path: str | os.PathLike[str]) -> Iterator[Finding]:
 
 
 def controller_files(path: str | os.PathLike[str], given: Machine, about: str = "", legs: SampledLegs | None = None) -> dict[Path, str]:
-    """Generate the controller of a machine as C99: texts by file of `controller.c` and its header. The stem is the prefix of C names.
+    """Generate the controller of a loop as C99: texts by file of `controller.c` and its header. The stem is the prefix of C names.
 
     With `legs` the code includes the force feedback of these legs. Raises `DesignError` for a name without `.c` or a reserved name.
 
@@ -89,7 +89,7 @@ def controller_files(path: str | os.PathLike[str], given: Machine, about: str = 
 
 
 def whole_controller(given: Machine, name: str, about: str = "", legs: SampledLegs | None = None) -> Program:
-    """Generate the controller program of a machine, including sampled force feedback in `legs`."""
+    """Generate the controller program of a loop, including sampled force feedback in `legs`."""
     outer = controller_code(given, name, about)
     return outer if legs is None else with_legs(outer, given, legs)
 
@@ -118,7 +118,7 @@ def hardware_files(
 
 @check_arguments
 def write_controller(path: str | os.PathLike[str], given: Machine, about: str = "") -> tuple[Path, Path]:
-    """Write the controller of a machine as C99: `controller.c` and its header, both or none (see `controller_files`).
+    """Write the controller of a loop as C99: `controller.c` and its header, both or none (see `controller_files`).
 
     Also raises `DesignError` if a file cannot be written.
 

@@ -18,7 +18,7 @@ LARGEST = number(Precision.DOUBLE.largest)
 
 
 def controller_code(given: Machine, name: str = "controller", about: str = "") -> Program:
-    """Generate the part of a machine that a computer executes: pose, error, controller, inverse hysteresis, converter, limits, voltages.
+    """Generate the part of a loop that a computer executes: pose, error, controller, inverse hysteresis, converter, limits, voltages.
 
     Inputs are `reference.<c>` and the readings `<gauge>` in the gauges' units. Outputs are `pose`, `error`, `command`, the strokes `asked`
     (before the limits) and `given` (applied), both [m] from the bias, `volts` if the stacks' ranges are known, and `status`. The

@@ -47,9 +47,9 @@ def hardware_code(
     about: str = "",
     legs: SampledLegs | None = None,
 ) -> Hardware:
-    """Generate the controller of a machine as C99 for hardware; `law` is the law of single PI or PID loops, if any.
+    """Generate the controller of a loop as C99 for hardware; `law` is the controller if it consists of single PI or PID loops.
 
-    The gains of these loops are adjustable. Any other law has modal form with fixed gains. `tested` is a simulation of the machine: the
+    The gains of these loops are adjustable. Any other controller has modal form with fixed gains. `tested` is a simulation of the loop: the
     generated test replays its reference and readings and compares the strokes. The step uses no library call and no heap. Sums have a fixed
     order, rounding is to nearest, contraction is off, subnormals are kept. Finite inputs therefore give the same bits on every IEEE 754
     processor. With `legs` a second function, `<name>_damp`, runs the sampled force feedback; the test also replays tensions. Raises

@@ -43,7 +43,7 @@ class Core:
 
 
 def law_as_c(given: Machine, law: Decentralised | None) -> Core:
-    """Generate the law of a machine as C: PI or PID loops individually, any other law in modal form."""
+    """Generate the controller of a loop as C: PI or PID loops individually, any other controller in modal form."""
     if law is not None and all(isinstance(each, (PI, PID)) for each in law.laws):
         return _single_loops(given, law)
     linear = parts(replace(given, controller=modal_form(given.controller)))
@@ -52,7 +52,7 @@ def law_as_c(given: Machine, law: Decentralised | None) -> Core:
 
 
 def matrix_core(linear: Parts) -> Core:
-    """Generate any law from the matrices of plant and controller: z+ = A z + ..., command = C z + ...
+    """Generate any controller from its matrices and the plant's: z+ = A z + ..., command = C z + ...
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

@@ -24,14 +24,14 @@ def with_legs(outer: Program, given: Machine, legs: SampledLegs) -> Program:
     """Generate a controller program with inner loops, stepped every `legs.step`; the pose controller's outputs are held in between.
 
     Further inputs are `tension.<actuator>` [N], positive in tension. Outputs are `added`, the strokes of force feedback, and `total`, the
-    strokes of both loops within the amplifiers' limits; `volts` are the voltages of `total`. The last valid value replaces a tension that
-    is not finite, and `tension_status` reports this.
+    total strokes (controller plus force feedback) within the amplifiers' limits; `volts` are the voltages of `total`. The last valid value
+    replaces a tension that is not finite, and `tension_status` reports this.
     """
     strokes = {channel.name: channel for channel in given.strokes()}
     own, total = [strokes[name] for name in legs.actuators], given.strokes("total.")
     further = (
         Signal("added", tuple(Channel(f"added.{each.name}", each.unit) for each in own), "strokes added by force feedback"),
-        Signal("total", total, "strokes of both loops, within the amplifiers' limits"),
+        Signal("total", total, "total strokes (controller plus force feedback), within the amplifiers' limits"),
         Signal("tension_status", tuple(Channel(f"status.tension.{each.name}", "1") for each in own), _STATUS),
     )
     before = f"Call the step every {outer.step:.12g} s"
@@ -109,8 +109,8 @@ def legs_beside(outer: Program, given: Machine, legs: SampledLegs, precision: Pr
     flops = (6 if legs.order == 1 else 12) * len(places) + 5 * m
     notes = (
         f"Force feedback in the legs of {', '.join(legs.actuators)}. Call it every {legs.step:.12g} s, {legs.turns} times per call of "
-        f"the step ({flops} additions and multiplications). It computes the strokes of both loops, within the amplifiers' limits, "
-        "from tensions [N]. Send these strokes to the amplifiers, not those of the step."
+        f"the step ({flops} additions and multiplications). It computes the total strokes (controller plus force feedback), "
+        "within the amplifiers' limits, from tensions [N]. Send these strokes to the amplifiers, not the strokes of the step."
     )
     body = (
         f"double added[{m}] = {{0.0}}, gives[{len(places)}] = {{0.0}};",

@@ -12,7 +12,7 @@ from flexstage.models.linear.model import Channel
 
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Werror")
 FLAGS = ("-std=c99", "-O3", "-ffp-contract=off", "-fPIC", "-shared", *WARNINGS)
-"""Compiler flags. Contraction (fused multiply-add) is off: products and sums are rounded equally on every machine."""
+"""Compiler flags. Contraction (fused multiply-add) is off: products and sums are rounded equally on every computer."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,8 @@ class Program:
     """Fixed-step C99 program: the body of `code` is run every `step` [s].
 
     The header declares `<name>_input`, `_output`, `_state`, `<name>_init(state)` and `<name>_step(state, in, out)`. All numbers are
-    doubles, in SI units. It uses no heap; only tables are static. With `settings` both functions also have an argument `<name>_parameters`
-    (settings and an enable flag), and call no library function.
+    doubles, in SI units. The code uses no heap; only tables are static. With `settings` both functions also have an argument
+    `<name>_parameters` (settings and an enable flag), and call no library function.
     """
 
     name: str

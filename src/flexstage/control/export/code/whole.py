@@ -15,7 +15,7 @@ from flexstage.control.simulation.parts import parts
 
 
 def loop_code(given: Machine, name: str = "loop") -> Program:
-    """Generate the program of the whole loop of a machine; inputs are reference, disturbances and noise.
+    """Generate the program of a whole loop; inputs are reference, disturbances and noise.
 
     Outputs are poses, commands, voltages, readings, strokes and motions. One step equals one sample of `simulate`, except for the order of
     summation. Raises `DesignError` for a hysteresis without a C form.

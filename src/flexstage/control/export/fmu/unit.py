@@ -1,4 +1,4 @@
-"""Functional mock-up units as files: description, sources, and the library for this machine."""
+"""Functional mock-up units as files: description, sources, and the library for this computer."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _FOLDERS = {("linux", "x86_64"): ("linux64", "so"), ("darwin", "x86_64"): ("darw
 
 
 def fmu(program: Program, *, sources_only: bool = False) -> bytes:
-    """Build an FMI 2.0 co-simulation unit (`.fmu`) of a program: `modelDescription.xml`, sources, and a library for this machine.
+    """Build an FMI 2.0 co-simulation unit (`.fmu`) of a program: `modelDescription.xml`, sources, and a library for this computer.
 
     A communication step of the importer runs all samples of the program within the step. Sample times are multiples of the program's step
     from the start. All samples use the inputs set before the communication step. Equal program and compiler give equal bytes. Raises
-    `DesignError` without a compiler, or if FMI 2.0 has no name for this machine type; `sources_only` omits the library.
+    `DesignError` without a compiler, or if FMI 2.0 has no name for this type of computer; `sources_only` omits the library.
 
     >>> from flexstage.control.export.code.controller import controller_code
     >>> from flexstage.control.example import integral_loop
