@@ -88,7 +88,11 @@ def record_findings(volts: Array, strokes: Array) -> list[Finding]:
 
 def _channel_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     if volts.ndim != 1 or volts.shape != strokes.shape:
-        yield Finding("record", f"different lengths (got volts {volts.shape}, strokes {strokes.shape})", "Use one of each for every sample")
+        yield Finding(
+            "record",
+            f"different lengths (got volts {volts.shape}, strokes {strokes.shape})",
+            "Use one voltage and one stroke for every sample",
+        )
         return
     if len(volts) < _FEWEST:
         yield Finding("record", f"too few samples (got {len(volts)}, expected at least {_FEWEST})", "Record more samples")

@@ -94,7 +94,7 @@ class Creep:
 
 @dataclass(frozen=True, eq=False)
 class CreepFit:
-    """Exponential fit of logarithmic creep: the `creep`, the fitted `span` of times [s], and the largest relative `error` in it."""
+    """Exponential fit of logarithmic creep: the `creep`, the fitted `span` of times [s], and the largest relative `error` in this span."""
 
     creep: Creep
     span: tuple[float, float]

@@ -70,7 +70,7 @@ def _step(volts: Array) -> tuple[int, int]:
 def _step_findings(times: Array, volts: Array, strokes: Array) -> Iterator[Finding]:
     if not (times.shape == volts.shape == strokes.shape and times.ndim == 1 and len(times) > _FEWEST):
         shapes = f"different lengths (got times {times.shape}, volts {volts.shape}, strokes {strokes.shape})"
-        yield Finding("record", shapes, f"Use one of each for every sample, more than {_FEWEST} samples")
+        yield Finding("record", shapes, f"Use one time, voltage and stroke for every sample, and more than {_FEWEST} samples")
         return
     if not all(np.all(np.isfinite(each)) for each in (times, volts, strokes)):
         yield Finding("record", "a sample is not finite", "Truncate the record before this sample")

@@ -65,7 +65,7 @@ def _extrapolate(knots: Array, values: Array) -> tuple[Array, Array]:
 
 
 def form_of(volts: tuple[float, float], plays: int, pieces: int, *, reach: float = 0.5) -> Form:
-    """Choose `plays` thresholds, evenly spaced from 0 to below `reach` of the range, and an envelope of `pieces` equal pieces.
+    """Choose `plays` thresholds, evenly spaced from 0 to below the fraction `reach` of the range, and an envelope of `pieces` equal pieces.
 
     >>> form_of((0.0, 1000.0), 4, 1).thresholds.tolist()
     [0.0, 125.0, 250.0, 375.0]
@@ -175,7 +175,7 @@ def _bounded_least_squares(matrix: Array, target: Array, lower: Array) -> Array:
 def drift_of(plays: Array, strokes: Array) -> float:
     """Estimate drift [m] over a record: the part of the strokes (k,) that is linear in time and not explained by plays (k, n).
 
-    Returns zero for an insignificant drift: the rms error without it is less than a fifth higher.
+    Returns zero for an insignificant drift: omitting it raises the rms error by less than a fifth.
 
     >>> plays = np.array([[0.0], [1.0], [0.0], [1.0]])
     >>> round(drift_of(plays, np.array([0.0, 1.01, 0.02, 1.03])), 6)

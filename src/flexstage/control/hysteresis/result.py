@@ -20,7 +20,7 @@ SMALL_ERROR = Graded(0.02)
 
 @dataclass(frozen=True)
 class Trial:
-    """Model size tried: numbers of `plays` and envelope `pieces`, `reach` (largest threshold over the range), and error.
+    """One tried model size: numbers of `plays` and envelope `pieces`, `reach` (largest threshold relative to the range), and error.
 
     `error` is the cross-validation error relative to the stroke. Each of several parts of the record is excluded from one fit; the rms
     error is computed over the excluded parts.

@@ -44,8 +44,8 @@ class StackTest(InNotebook):
         "hysteresis.range hysteresis.stroke hysteresis.width hysteresis.branches hysteresis.inner hysteresis.rms hysteresis.largest "
         "hysteresis.validation inverse_rms hysteresis.drift creep.law.rate",
         notes=(
-            "Width, errors and drift: relative to the stroke. Error of the inverse: relative to the voltage range.",
-            "Loop width: largest distance between the branches. Validation: error on parts of the record that were not fitted.",
+            "Width, errors and drift are relative to the stroke, the error of the inverse to the voltage range.",
+            "The loop width is the largest distance between the branches. Validation is the error on sections left out of the fit.",
         ),
     )
 

@@ -23,10 +23,10 @@ class BoucWen(Hysteresis):
 
     (Low and Guo, J. Microelectromech. Syst. 4, 1995, 230-237, exponent 1.) `gain` d and `lag` A in m/V, `beta` and `gamma` in 1/V. The
     model is rate independent. For a monotonic voltage change e = |dv|, s = sign(dv) and g = s h, dg/de = A - (beta -+ gamma) g for g below
-    and above 0. Exact solution with c = beta - gamma and C = beta + gamma:
+    and above 0. The exact solution with c = beta - gamma and C = beta + gamma is
 
-        g < 0:   g <- g e^{-c e} + A (1 - e^{-c e})/c   up to e* = ln(1 - c g/A)/c, where g reaches 0 g >= 0:  g <- g e^{-C e} + A (1 -
-        e^{-C e})/C   for the remaining change
+        g < 0:   g <- g e^{-c e} + A (1 - e^{-c e})/c   up to e* = ln(1 - c g/A)/c, where g reaches 0
+        g >= 0:  g <- g e^{-C e} + A (1 - e^{-C e})/C   for the remaining change
 
     The state (axes, 2) is (v, h). Inner loops do not close, unlike in every Prandtl-Ishlinskii model. Raises `DesignError` unless -beta <
     gamma <= beta (otherwise loops would not dissipate energy), and for a stroke that falls with rising voltage.
@@ -48,7 +48,7 @@ class BoucWen(Hysteresis):
         return len(self.gain)
 
     def start(self, value: Array) -> Array:
-        """Return the state (axes, 2) after a monotonic path from 0 V to the voltages (axes,)."""
+        """Return the state (axes, 2) after a monotonic change from 0 V to the voltages (axes,)."""
         return self.step(np.zeros((self.axes, 2)), np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[0]
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:

@@ -13,7 +13,7 @@ from flexstage.base.number import Array, freeze
 
 
 def freeze_rows(record: Any, *names: str) -> None:
-    """Convert the named arrays of a frozen record to read-only arrays (axes, m)."""
+    """Convert the named arrays of a frozen dataclass to read-only arrays (axes, m)."""
     for name in names:
         object.__setattr__(record, name, freeze(np.atleast_2d(np.asarray(getattr(record, name), dtype=float))))
 
@@ -63,7 +63,9 @@ def _findings(envelope: Envelope) -> Iterator[Finding]:
     knots, values = envelope.knots, envelope.values
     if knots.shape != values.shape or knots.ndim != 2 or knots.shape[1] < 2:
         yield Finding(
-            "envelope", f"different lengths (got knots {knots.shape}, values {values.shape})", "Use equal numbers of both, at least two"
+            "envelope",
+            f"different lengths (got knots {knots.shape}, values {values.shape})",
+            "Use equal numbers of knots and values, at least two",
         )
     elif not np.all(np.isfinite(knots)) or not np.all(np.isfinite(values)):
         yield Finding("envelope", "a knot or a value is not finite", "Correct the knots and values")

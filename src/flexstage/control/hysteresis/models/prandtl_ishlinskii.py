@@ -51,7 +51,7 @@ class PrandtlIshlinskii(Hysteresis):
         return len(self.thresholds)
 
     def start(self, value: Array) -> Array:
-        """Return play outputs (axes, n) after a monotonic path from the initial state, all 0, to the input (axes,)."""
+        """Return play outputs (axes, n) after a monotonic change from the initial state, all 0, to the input (axes,)."""
         effective = self.before.at(np.broadcast_to(np.asarray(value, dtype=float), (self.axes,)))[:, None]
         return np.maximum(effective - self.thresholds, np.minimum(effective + self.thresholds, 0.0))
 
@@ -68,7 +68,7 @@ def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
         yield Finding(
             "hysteresis",
             f"different lengths (got thresholds {thresholds.shape}, weights {weights.shape})",
-            "Use equal numbers of both, at least one",
+            "Use equal numbers of thresholds and weights, at least one",
         )
         return
     if not np.all(np.isfinite(thresholds)) or not np.all(np.isfinite(weights)):
@@ -84,5 +84,5 @@ def _findings(model: PrandtlIshlinskii) -> Iterator[Finding]:
             yield Finding(
                 f"envelope {name}",
                 f"wrong number of axes (got {envelope.axes}, expected {model.axes}, as for the plays)",
-                "Use one per axis, or one for all",
+                "Use one envelope per axis, or one for all",
             )

@@ -24,7 +24,7 @@ class Hysteresis(Protocol):
         ...
 
     def start(self, value: Array) -> Array:
-        """Return the state after a monotonic path from the initial state to the input `value` (axes,)."""
+        """Return the state after a monotonic change from the initial state to the input `value` (axes,)."""
         ...
 
     def step(self, state: Array, value: Array) -> tuple[Array, Array]:

@@ -34,9 +34,9 @@ def stack_figure(test: StackTest) -> Any:
         axes[1].plot(found.volts[rows], 100.0 * (found.modelled - found.strokes)[rows] / found.stroke, color=_MODEL, linewidth=0.8)
         axes[2].plot(found.range, found.range, color=INK, linewidth=0.6, linestyle=":")
         axes[2].plot(found.volts[rows], test.inverse_volts[rows], color=_UNDONE, linewidth=0.8, label="inverse of the record")
-        labels = (f"stroke [{form.unit}]", "error [% of stroke]", "volts of the inverse [V]")
+        labels = (f"stroke [{form.unit}]", "error [% of stroke]", "inverse model [V]")
         for panel, label in zip(axes, labels, strict=True):
-            panel.set_xlabel("volts applied [V]")
+            panel.set_xlabel("applied voltage [V]")
             panel.set_ylabel(to_typography(label), labelpad=1.0)
         for panel in (axes[0], axes[2]):
             legend_above(panel, 2)

@@ -12,9 +12,9 @@ from flexstage.show.page import Head, Headline, Picture, Prose, page, section
 from flexstage.show.tables.caveats import warning_table
 
 _METHOD = (
-    "Generalised Prandtl-Ishlinskii model: a monotonic envelope of the voltage, then plays with fixed thresholds and weights of 0 or more, "
-    "by least squares. Its size is the smallest with a cross-validation error within 5 % of the best. Samples that "
-    "depend on the unknown history are omitted. The inverse is exact; its deviation from the applied voltage is the model error."
+    "The generalised Prandtl-Ishlinskii model is a monotonic envelope of the voltage, then plays with fixed thresholds and weights of 0 or "
+    "more. It is fitted by least squares, and is the smallest model with at most 1.05 times the smallest cross-validation error. Samples "
+    "that depend on the unknown history are omitted. The inverse is exact: its deviation from the applied voltage is the model error."
 )
 
 
@@ -25,7 +25,9 @@ def hysteresis_report(test: StackTest) -> str:
     >>> hysteresis_report(example_test())[:15]
     '<!doctype html>'
     """
-    drawn = to_svg(stack_figure(test), "stack", "Loops of the stack with the model, the model's error, and the volts of the inverse")
+    drawn = to_svg(
+        stack_figure(test), "stack", "Loops of the stack with the model, the model's error, and the voltage of the inverse model"
+    )
     caption = "Grey: record. Blue: model and its error. Green: voltage of the inverse for the recorded strokes."
     stack, plays = stack_tables(test)
     sections = [
