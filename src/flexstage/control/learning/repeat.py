@@ -30,10 +30,10 @@ class Repeater:
     """Repetitive controller d = z^-P (W d + L e) of the error e: taps `keep` (2m+1,) of W and `teach` (2m+1, f, f) of L.
 
     Both filters are noncausal by m samples, and include the fraction of a sample in the `period` P [samples]. W is the low-pass filter of
-    the `band`. `contraction` is the largest ||W - G L|| over all frequencies, in lengths; G are the loop's responses with shifted modes.
-    With a contraction below 1 the loop is stable and repeating errors decay (Inoue, Nakano et al., IFAC World Congress 1981; Tomizuka, Tsao
-    & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353). `amplifies` is the largest ||(I + W z) (I + (W - G L) z)^-1|| over |z| = 1:
-    amplification between the harmonics.
+    the `band`. `contraction` is the largest ||W - G L|| over all frequencies, with coordinates scaled to lengths; G are the loop's
+    responses with shifted modes. With a contraction below 1 the loop is stable and repeating errors decay (Inoue, Nakano et al., IFAC World
+    Congress 1981; Tomizuka, Tsao & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353). `amplifies` is the largest ||(I + W z) (I + (W - G L)
+    z)^-1|| over |z| = 1: amplification between the harmonics.
     """
 
     period: float
@@ -58,8 +58,8 @@ class Repeater:
 def repeater(closed: Loop, control: System, period: float, gain: float, spread: float) -> Repeater:
     """Design the filters for a `period` [s] in the widest band in which errors decrease, for relative mode shifts up to `spread`.
 
-    `gain` is the gain of the loop's inverse. Finite filters also act beyond their band; therefore the band is narrower than for iterative
-    learning. Raises `DesignError` as `robust_band` does, and for a period too short for filters whose band contains a harmonic.
+    `gain` multiplies the inverse model of the loop. Finite filters also act beyond their band; therefore the band is narrower than for
+    iterative learning. Raises `DesignError` as `robust_band` does, and for a period too short for filters whose band contains a harmonic.
     """
     step, end = closed.step or 1.0, robust_band(closed, control, gain, spread).band.end
     lines = np.append(line_grid(closed, spread), 0.5 / step * (1.0 - 1e-9))
