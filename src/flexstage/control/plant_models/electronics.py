@@ -39,10 +39,10 @@ class ChargeHold(CheckedFields):
 class AmplifierSettings(amplifier.Amplifier):
     """Amplifier data that the design file does not contain; absent values impose no limit.
 
-    `slew` [V/s] is the maximum voltage rate, `noise_density` [V/Hz^(1/2)] is one-sided and white before the amplifier's lag, `bits` belong
-    to the converter before the amplifier. An amplifier of voice coils controls the current: `bandwidth`, `current` and `bits` apply, and
-    its noise is `current_noise` [A/Hz^(1/2)]. An amplifier with `charge` controls the charge of its stack. Commands, range, slew, noise and
-    steps are then in volts that give the same charge to an unloaded stack.
+    `slew` [V/s] is the maximum voltage rate, `noise_density` [V/Hz^(1/2)] is one-sided and white before the amplifier's lag, `bits` is the
+    resolution of the converter before the amplifier. An amplifier of voice coils controls the current: `bandwidth`, `current` and `bits`
+    apply, and its noise is `current_noise` [A/Hz^(1/2)]. An amplifier with `charge` controls the charge of its stack. Commands, range,
+    slew, noise and steps are then in volts that give the same charge to an unloaded stack.
     """
 
     slew: float | None = None
@@ -294,7 +294,7 @@ def _first_stated(*values: Any) -> Any:
 def _amplifier_findings(name: str, setting: AmplifierSettings, piezo: ChargedActuator) -> Iterator[Finding]:
     if setting.resistance is not None and setting.bandwidth is not None:
         what = f"both bandwidth ({setting.bandwidth:g} Hz) and resistance ({setting.resistance:g} ohm) are specified"
-        yield Finding(name, what, "Specify only the one with the lower corner frequency")
+        yield Finding(name, what, "Specify only the key with the lower corner frequency")
     stated = {"resistance": setting.resistance, "current": setting.current, "leakage": setting.charge and setting.charge.leakage}
     for key, value in stated.items():
         if value is not None and piezo.capacitance is None:

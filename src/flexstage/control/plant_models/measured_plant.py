@@ -129,7 +129,7 @@ def _stage_findings(given: Plant, found: Identified, pairs: Pairs) -> Iterator[F
     ours = ", ".join(f"{each:.4g}" for each in given.frequencies[:6])
     theirs = ", ".join(f"{each:.4g}" for each in found.frequencies[:6])
     if not count:
-        what = f"all its modes ({theirs} Hz) are above the stage's lowest modes ({ours} Hz): probably another stage, or too short"
+        what = f"all its modes ({theirs} Hz) are above the stage's lowest modes ({ours} Hz): probably another stage, or a record too short"
         yield Finding("--record", what, "Record longer or in a lower band, or use the design of the tested stage")
     elif alike < _LEAST * count or not len(pairs.found):
         what = f"only {alike} of its {count} lowest modes ({theirs} Hz) match the stage ({ours} Hz): probably another stage"
@@ -145,7 +145,7 @@ def _channel_findings(loop: Coordinates, found: Identified) -> Iterator[Finding]
             if name not in names:
                 yield Finding(
                     f"--record: {name}",
-                    f"no {kind} channel of this name in the record",
+                    f"no {kind} channel in the record has this name",
                     f"{suggest_nearest(name, names)}; a loop needs all actuators and gauges",
                 )
                 continue

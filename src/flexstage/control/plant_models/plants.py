@@ -81,8 +81,8 @@ def plant(
     """Build the plant of a stage's model; `kinematics` defines its loop's coordinates.
 
     `modes` is the number of modes to retain. Default: all modes below half the sampling rate; of a continuous loop, all modes. At least as
-    many as loop coordinates are retained, and both modes of a pair (frequencies within 0.1 %). The static compliance of the others remains.
-    `points` are further bodies or points for motion outputs, `links` the links for axial force outputs `<link>.fx` [N]. Raises
+    many as loop coordinates are retained, and both modes of a pair (frequencies within 0.1 %). The static compliance of omitted modes is
+    kept. `points` are further bodies or points for motion outputs, `links` the links for axial force outputs `<link>.fx` [N]. Raises
     `DesignError` for a batch of designs, for gauges that cannot observe the pose, actuators that cannot produce it, and a design without
     damping.
 
