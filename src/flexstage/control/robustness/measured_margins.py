@@ -47,7 +47,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class ReadChannel:
-    """Measured margins of one loop, the others closed: upper gain factor, `phase` [rad], and the frequency up to which |S_ii| < 1."""
+    """Measured margins of one loop, with the others closed: upper gain factor, `phase` [rad], and the frequency up to which |S_ii| < 1."""
 
     channel: Annotated[str, INNER]
     gain_high: Reading

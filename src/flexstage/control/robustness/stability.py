@@ -47,7 +47,7 @@ class Verdict(InNotebook):
     `slowest_pole` is the least stable pole. `poles` (k,) are all poles as rates [1/s] (ln z / T of a sampled loop), least stable first.
     With all commands multiplied by one factor, the loop is stable for factors from `gain_low` to `gain_high`. For a stable loop this
     interval contains 1 (0 and infinite: no limit within a factor of 1000). For an unstable loop it is the nearest interval below 1 (NaN:
-    none down to 1/1000). `sentence` summarises it.
+    none down to 1/1000). `sentence` summarises the verdict.
     """
 
     stable: bool

@@ -72,13 +72,13 @@ class Margins(InNotebook):
         return {each.channel: each for each in self.channels}
 
     def of(self, channel: str) -> ChannelMargins:
-        """Return the margins of the channel of this name."""
+        """Return the margins of the channel with this name."""
         return self.loops[channel]
 
 
 @check_arguments
 def margins(closed: Loop, cut: LoopBreak, found: Curves | None = None) -> Margins:
-    """Compute margins of one loop at a time, the others closed; `found` are its `curves` if already known.
+    """Compute margins of one loop at a time, with the others closed; `found` are its `curves` if already known.
 
     Gain limits are at frequencies of a real S_ii = 1/(1 + L_i) below 0 or above 1 (L_i real and negative), phase and delay limits at a real
     part of 1/2 (|L_i| = 1). They are exact to rounding error; the frequencies resolve L_i. `peak` gives alpha_i = 1/||S_ii - 1/2|| (Seiler,
