@@ -58,8 +58,8 @@ def comparison_report(mechanism: Mechanism, asked: LoopSetup, found: Comparison)
     lines = {name: each for name, each in detuned.items() if each is not None and len(each.gains)}
     caption = (
         "Each dot is a controller as tuned; its line is the same controller with reduced output, down to a tenth. Values are the worst "
-        "of all coordinates in the linear loop. Noise is the geometric mean, with rotations times the stage's length. A filled dot is "
-        "Pareto-optimal: no other controller is at least as good in all four quantities."
+        "of all coordinates in the linear loop, but the noise is the geometric mean, with rotations times the stage's length. A filled dot "
+        "is Pareto-optimal: no other controller is at least as good in all four quantities."
     )
     drawn = Picture(
         to_svg(

@@ -82,7 +82,7 @@ def loop_table(found: LoopStudy) -> Table:
         notes.append(
             "The sensitivity S is the error per disturbance: above 1, the loop amplifies it. The complementary sensitivity is T = 1 - S."
         )
-        notes.append("Peak sensitivities are for the modes as modelled.")
+        notes.append("Peak sensitivities are computed without mode shifts.")
     if not found.retention.complete or found.retention.frequency is not None:
         notes.append(_retained(found.retention))
     if found.controller.tuning is not None:
@@ -168,7 +168,7 @@ def measured_tables(found: LoopStudy) -> list[Table]:
     low, high = seen.band
     notes = [
         f"Computed at {seen.lines} frequencies from {number(low, 4)} to {number(high, 4)} Hz; between them, a peak may be higher.",
-        "Noise reduces the gain margin where the response is small.",
+        "Measurement noise lowers the computed gain margin where the response is small.",
         "The loop was tuned with the identified model. The design model does not include the identified delay.",
     ]
     readings = ("value", "low", "high", "fitted", "predicted")
@@ -211,13 +211,13 @@ def error_tables(found: LoopStudy) -> list[Table | None]:
 
 def static_error_tables(found: RestErrors) -> list[Table]:
     """Tabulate static open-loop errors, without and with correction of lost motion; rows are reached, columns commanded coordinates."""
-    errors = {"ideal mapping R_a": found.ideal_map, "lost-motion gains": found.lost_motion_gains}
+    errors = {"the ideal mapping R_a": found.ideal_map, "lost-motion gains": found.lost_motion_gains}
     if found.other_gains is not None:
         errors[f"lost-motion gains of the {found.other_model.value} model"] = found.other_gains
-    largest = ", ".join(f"{name} {percent(each.largest, 3)}" for name, each in errors.items())
+    largest = ", ".join(f"{percent(each.largest, 3)} with {name}" for name, each in errors.items())
     notes = [
         "The error is the commanded minus the reached pose, for strokes from the ideal mapping R_a.",
-        f"Largest error, with rotations as lengths: {largest}.",
+        f"The largest error, with rotations as lengths, is {largest}.",
     ]
     error, corrected = found.ideal_map.error, found.lost_motion_gains.error
     return [
@@ -268,7 +268,7 @@ def comparison_tables(found: Comparison) -> list[Table | None]:
     slow = [name for name, each in named.items() if each.slowly_rounding]
     notes = [
         *([f"Quantisation is counted as white noise, but is not white with {'; '.join(slow)}; see flexstage loop."] if slow else []),
-        f"Best in {best}. Not dominated in crossover, noise, settling and delay margin: {'; '.join(map(kind_name, found.front))}.",
+        f"Best in {best}. Pareto-optimal in crossover, noise, settling and delay margin: {'; '.join(map(kind_name, found.front))}.",
         *(f"{kind_name(name)} is not possible: {reason}" for name, reason in found.reasons.items()),
     ]
     table = result_table(named, notes=notes)
