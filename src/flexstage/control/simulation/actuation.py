@@ -24,7 +24,7 @@ def rounder(steps: Array) -> Callable[[Array], Array]:
 
 
 class Actuation:
-    """Simulated actuators of a machine, with their last applied strokes and states of hysteresis and inverse. They start at the bias.
+    """Simulated actuators of a loop, with their last applied strokes and states of hysteresis and inverse. They start at the bias.
 
     >>> from dataclasses import replace
     >>> from flexstage.control.example import integral_loop

@@ -22,7 +22,7 @@ class ExternalInputs:
 
 
 def inflow(given: Machine, count: int, disturbances: Mapping[str, Array]) -> ExternalInputs:
-    """Arrange named series (n,) of `count` samples in the order of a machine's inputs; missing series are zero.
+    """Arrange named series (n,) of `count` samples in the order of the loop's inputs; missing series are zero.
 
     Names are the plant's further inputs (`ground.x`, `platform.fz`) and `noise.<gauge>`, `noise.<actuator>` [m]. Raises `DesignError` for
     unknown names, different lengths, and numbers that are not finite. A non-finite `noise.<gauge>` marks a lost reading.

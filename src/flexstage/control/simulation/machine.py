@@ -230,7 +230,9 @@ def _electric(given: Machine) -> Iterator[Finding]:
             continue
         if model.axes != len(given.actuators):
             yield Finding(
-                name, f"wrong number of axes (got {model.axes}, expected {len(given.actuators)}, the actuators)", "Use one per actuator"
+                name,
+                f"wrong number of axes (got {model.axes}, expected {len(given.actuators)}, the actuators)",
+                "Use one axis per actuator",
             )
         for actuator, gain in zip(given.actuators, given.amplifiers.gain, strict=True):
             if np.isnan(gain):

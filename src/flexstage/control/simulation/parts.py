@@ -38,7 +38,7 @@ class Parts:
 
 
 def parts(given: Machine) -> Parts:
-    """Partition the matrices of a machine; the error is replaced by reference minus pose.
+    """Partition the matrices of a loop; the error is replaced by reference minus pose.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
