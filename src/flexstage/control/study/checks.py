@@ -62,7 +62,7 @@ def _trajectory(found: TrajectorySetup) -> Iterator[Finding]:
     if missing and len(missing) < len(limits):
         yield Finding(
             "trajectory",
-            f"limits of the motion incomplete ({' and '.join(missing)} missing)",
+            f"the limits of the motion are incomplete ({' and '.join(missing)} missing)",
             "Specify speed, acceleration and jerk, or none of these keys for a step",
         )
 

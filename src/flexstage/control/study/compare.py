@@ -79,7 +79,7 @@ class ComparedController:
         "crossover worst_noise slowest_settling largest_overshoot delay_margin peak gauge_share",
         head="controller",
         notes=(
-            "Values are the worst of all coordinates. Noise of the gauges is their fraction of the mean square, quantisation included.",
+            "Values are the worst of all coordinates. Noise of the gauges is their fraction of the mean square, including quantisation.",
             "{self.tuned}.",
         ),
     )
@@ -121,7 +121,7 @@ class ComparedController:
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """Criteria by name, smaller is better: the worst value of all coordinates; of noise the mean logarithm (absent without noise)."""
+        """Criteria by name (smaller is better): worst values of all coordinates, but the mean logarithm of noise (if any)."""
         return {
             "rejection": -self.crossover,
             **({"noise": float(np.mean(np.log(self.noise)))} if np.all(self.noise > 0.0) else {}),

@@ -94,8 +94,9 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None
 
     With a `solid`, the model is the nominal finite-element stage, with the kinematics of the ideal stage.
 
-    Raises `DesignError` for errors of the set-up, for gauges that cannot observe the pose, and for actuators that cannot produce it. Also
-    for missing stack data that amplifiers need, for a sampling rate too low for the platform's modes, and for a model without stiffness.
+    Raises `DesignError` for errors of the set-up, for gauges that cannot observe the pose, and for actuators that cannot produce it. It is
+    also raised for missing stack data that amplifiers need, for a sampling rate too low for the platform's modes, and for a model without
+    stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = resolve(double_triangle(), LoopSetup())
@@ -205,8 +206,8 @@ def on_test(given: ResolvedSetup, found: Identified) -> ResolvedSetup:
     >>> on_test(resolve(parallelogram(), LoopSetup()), identify(one_mode_record()))
     Traceback (most recent call last):
         ...
-    flexstage.base.finding.DesignError: --record: B: no input channel of this name in the record. Use u; a loop needs all.
-    --record: S: no output channel of this name in the record. Use y; a loop needs all.
+    flexstage.base.finding.DesignError: --record: B: no input channel in the record has this name. Use u; a loop needs ...
+    --record: S: no output channel in the record has this name. Use y; a loop needs all actuators and gauges.
     """
     if given.setup.damping is not None:
         raise refuse(

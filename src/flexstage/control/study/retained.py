@@ -21,8 +21,8 @@ from flexstage.experiment.progress import part
 def control_and_modes(given: ResolvedSetup, gains: Array) -> tuple[ResolvedSetup, Control, Retention]:
     """Design the controller for the retained modes, add the modes that are significant with it, and repeat until no mode is added.
 
-    Modes are never removed, because that could repeat endlessly. A number of modes in the set-up is kept. `gains` (n, f) map poses to
-    strokes. Raises `DesignError` as `make_controller` does.
+    Modes are never removed, because that could repeat endlessly. A number of modes specified in the set-up is not changed. `gains` (n, f)
+    map poses to strokes. Raises `DesignError` as `make_controller` does.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.study.resolve import resolve

@@ -106,7 +106,7 @@ class CoilHeat:
 
 @dataclass(frozen=True)
 class LegUse:
-    """Amplifier load: the largest stroke `added` by force feedback, and the `largest` total stroke of both loops [m].
+    """Amplifier load: the largest stroke `added` by force feedback, and the `largest` total stroke, controller included [m].
 
     `fastest` [m/s] is the largest rate of the total stroke between samples. `reach` [m] is the amplifier's stroke limit in the direction of
     the largest stroke, `slew` [m/s] its rate limit (infinite: no limit).
@@ -116,7 +116,12 @@ class LegUse:
         "Force feedback and amplifiers",
         "added stroke_share speed_share is_held",
         head="trajectory, actuator",
-        notes=("Stroke and speed of both loops together, relative to the amplifier's limits. The simulation does not apply these limits.",),
+        notes=(
+            (
+                "Total stroke and speed (controller plus force feedback) are relative to the amplifier's limits. "
+                "The simulation does not apply these limits."
+            ),
+        ),
     )
 
     added: Annotated[float, DISPLACEMENT, Heading("largest added stroke", digits=3, varying=True)]

@@ -58,8 +58,8 @@ class Stacks:
 class Sweep:
     """Open-loop sweep with decreasing amplitude: requested strokes `wanted` (k, n) [m], and actual strokes.
 
-    Actual strokes (k, n) [m] are `bare`, without the inverse, and with the `inverse`. `width` (n,) is each stack's loop width relative to
-    its stroke.
+    `bare` and `inverse` (k, n) [m] are the actual strokes without and with the inverse model. `width` (n,) is each stack's loop width
+    relative to its stroke.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -86,12 +86,12 @@ class Sweep:
 
     @property
     def rms_error_inverse(self) -> Annotated[Array, SHARE, Along("actuators"), Heading("rms error with inverse", digits=3)]:
-        """Rms error (n,) with the inverse."""
+        """Rms error (n,) with the inverse model, relative to the swept range."""
         return self._error(self.inverse)
 
     @property
     def improvement(self) -> Annotated[Array, Along("actuators"), Heading("improvement factor", digits=3, infinite="exact")]:
-        """Ratio of the errors without and with inverse (n,); infinite if the inverse is exact within rounding error."""
+        """Ratio of the errors without and with the inverse model (n,); infinite if the inverse is exact within rounding error."""
         exact = self.rms_error_inverse <= _EXACT
         return np.where(exact, np.inf, self.rms_error / np.where(exact, 1.0, self.rms_error_inverse))
 

@@ -71,7 +71,9 @@ class AmplifierSetup(AmplifierForm):
         """Check for both a bandwidth and a resistance."""
         if self.bandwidth is not None and self.resistance is not None:
             yield Finding(
-                "amplifier", "bandwidth and resistance are both specified", "Remove one of them: the resistance determines the bandwidth"
+                "amplifier",
+                "bandwidth and resistance are both specified",
+                "Remove bandwidth or resistance: the resistance determines the bandwidth",
             )
 
 
@@ -107,5 +109,5 @@ class ChargeSetup(AmplifierSetup):
             yield Finding("amplifier.coupling", "charge drive needs the electromechanical coupling of the stack", advice)
         if (self.corner is None) == (self.leakage is None):
             given = "are both specified" if self.corner is not None else "are both missing"
-            advice = 'Specify one of them, e.g. corner = "0.1 Hz": every charge drive has leakage'
+            advice = 'Specify corner or leakage, e.g. corner = "0.1 Hz": every charge drive has leakage'
             yield Finding("amplifier", f"corner and leakage {given}", advice)
