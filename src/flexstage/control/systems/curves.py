@@ -22,7 +22,7 @@ _ROUNDS, _MOST = 8, 20_000
 class Curves:
     """Sensitivity S = (I + L)^-1 of a loop opened at `cut`, complex (f, n, n) over `frequencies` (f,) [Hz].
 
-    A single loop, the others closed, has L_i = 1/S_ii - 1. `response` evaluates S at any frequency.
+    A single loop, with the others closed, has L_i = 1/S_ii - 1. `response` evaluates S at any frequency.
     """
 
     cut: LoopBreak
@@ -33,7 +33,7 @@ class Curves:
 
     @property
     def loops(self) -> Array:
-        """Single loops L_i, the others closed, complex (f, n)."""
+        """Single loops L_i, with the others closed, complex (f, n)."""
         own = np.diagonal(self.sensitivity, axis1=1, axis2=2)
         return np.where(own == 0.0, np.inf, 1.0 / np.where(own == 0.0, 1.0, own) - 1.0)
 
@@ -107,7 +107,7 @@ def points_around(rates: Array) -> Array:
 
 
 def dense_frequencies(poles: Array, step: float | None) -> Array:
-    """Return frequencies [Hz] that resolve a system of these poles: some per decade, and more around each resonance.
+    """Return frequencies [Hz] that resolve a system with these poles: some per decade, and more around each resonance.
 
     >>> found = dense_frequencies(np.array([-1.0 + 100.0j, -1.0 - 100.0j]), None)
     >>> round(float(found[0]), 4), round(float(found[-1])), len(found)

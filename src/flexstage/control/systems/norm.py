@@ -29,9 +29,9 @@ class Peak:
 
 
 def peak(system: System) -> Peak:
-    """Compute the H-infinity norm of a stable system H, the supremum of its largest singular value over omega, to a relative 1e-9.
+    """Compute the H-infinity norm of a stable system H, the supremum of its largest singular value, relative accuracy 1e-9.
 
-    The accuracy is 1e-6 if the value at half the sampling rate, or the direct gain of a continuous system, is within 1e-6 of the largest.
+    The accuracy is only 1e-6 if the value at half the sampling rate, or the direct gain of a continuous system, is within 1e-6 of the peak.
     Gamma is a singular value of H if and only if the Hamiltonian matrix of gamma has an eigenvalue on the imaginary axis (Bruinsma and
     Steinbuch, Systems & Control Letters 14, 1990). No peak between frequencies is therefore missed. Sampled systems are mapped by z = (1 +
     s)/(1 - s), which preserves the norm. Raises `DesignError` for an unstable system, which has no steady response.
