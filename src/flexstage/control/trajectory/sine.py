@@ -33,7 +33,7 @@ class Sine(CheckedFields):
 
     @property
     def duration(self) -> float:
-        """Infinite duration."""
+        """Duration [s], infinite."""
         return np.inf
 
     def at(self, times: Array) -> Array:

@@ -41,7 +41,7 @@ class Spiral(CheckedFields):
 
     @property
     def duration(self) -> float:
-        """Time at the final radius [s]."""
+        """Duration of the spiral [s]."""
         return self._progress.duration
 
     def at(self, times: Array) -> Array:
