@@ -53,12 +53,12 @@ _EXPECTED = 1e-9
 def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...] = ()) -> Tuning:
     """Optimise a controller for the objective of a specification.
 
-    Optimises law and notches of every loop, with their width and depth. A crossover beyond a mode is possible if margins hold for all mode
-    shifts. The search starts from a grid around the modes. It also starts from the controller of highest bandwidth (`tune`) if the grid's
-    result is not better. If that controller has its crossover beyond the modes, the grid is omitted. The result is at least as good for the
-    objective (`merit`) as that controller. Its stability follows from eigenvalues, its robustness from the coupled peak of S of the sampled
-    loop, for mode shifts within the spread. `known` tunings of a plant with fewer modes are tried first. Raises `DesignError` for an
-    unstable open loop, for contradictory requirements, and for each unmet requirement.
+    Optimises the control law of every loop, and the width and depth of its notches. A crossover beyond a mode is possible if margins hold
+    for all mode shifts. The search starts from a grid around the modes. It also starts from the controller of highest bandwidth (`tune`) if
+    the grid's result is not better. If that controller has its crossover beyond the modes, the grid is omitted. The result is at least as
+    good for the objective (`merit`) as that controller. Its stability follows from eigenvalues, its robustness from the coupled peak of S
+    of the sampled loop, for mode shifts within the spread. `known` tunings of a plant with fewer modes are tried first. Raises
+    `DesignError` for an unstable open loop, for contradictory requirements, and for each unmet requirement.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -87,7 +87,7 @@ def find(plant: Plant, loops: Loops, spec: TuningSpec, known: tuple[Tuning, ...]
         raise KeyboardInterrupt(f"Nothing was written. The best controller so far: {reason}.") from None
     best = _best_of(spec, plain, found)
     if best is None and begun is not None and not any((spec.rejection, spec.settling, spec.delay_margin)):
-        return replace(begun, reason=f"{begun.reason}; none stable with mode shifts up to {100.0 * farthest(spec):g} % was found")
+        return replace(begun, reason=f"{begun.reason}; no controller found is stable with mode shifts up to {100.0 * farthest(spec):g} %")
     if best is None:
         raise DesignError([_none_found(spec, refused)])
     require(best.unmet)
@@ -160,7 +160,7 @@ def _begun(within: Field, controller: Decentralised | LQG) -> _Candidate | None:
     if within.spec.prefilter and isinstance(controller, Decentralised):
         controller = replace(controller, prefilters=prefilters(within, known_loops(within, controller)))
     return _candidate(
-        within, controller, _judge(within, controller), note="; it is the controller of highest bandwidth, without a better one"
+        within, controller, _judge(within, controller), note="; this is the controller of highest bandwidth: the search found none better"
     )
 
 
@@ -226,7 +226,7 @@ def _none_found(spec: TuningSpec, refused: tuple[Finding, ...]) -> Finding:
     beyond = f", stable with mode shifts up to {100.0 * farthest(spec):g} %," if spec.spread else ""
     that = f" that {' and '.join(wanted)}" if wanted else ""
     before = "".join(f"; tuning without search also failed: {each.what}" for each in refused)
-    what = f"no {spec.family.name} found with a peak of S up to {spec.sensitivity:g}{beyond}{that}{before}"
+    what = f"no {spec.family.name} controller found with a peak of S up to {spec.sensitivity:g}{beyond}{that}{before}"
     return Finding("controller.goal", what, f"Relax the requirements, {advice}" if wanted else f"{advice[0].upper()}{advice[1:]}")
 
 

@@ -265,5 +265,5 @@ def _over(own: Array, slopes: Array) -> tuple[Array, Array]:
 
 
 def keeps(passed: float) -> bool:
-    """Whether the largest relative violation `passed` counts as met, within the resolution of the frequency grid."""
+    """Whether the largest relative violation `passed` is within the resolution of the frequency grid, and thus negligible."""
     return passed <= _KEPT

@@ -83,7 +83,11 @@ def spec_findings(spec: TuningSpec, step: float | None) -> Iterator[Finding]:
         yield Finding("controller.goal", what, f"Use a rejection below {least:.4g} Hz, or a delay margin below {most:.4g} ms")
     if spec.settling is not None and delay > 0.5 * spec.settling:
         what = f"a settling time of {1e3 * spec.settling:g} ms conflicts with a delay margin of {1e3 * delay:g} ms"
-        yield Finding("controller.goal", what, "Keep one of them: the delay margin of a loop is only a fraction of its settling time")
+        yield Finding(
+            "controller.goal",
+            what,
+            "Keep only one of these requirements: the delay margin of a loop is only a fraction of its settling time",
+        )
 
 
 @dataclass(frozen=True)

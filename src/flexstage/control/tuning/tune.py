@@ -33,10 +33,11 @@ def tune(plant: Plant, loops: Loops, spec: TuningSpec) -> Tuning:
     """Tune a controller to a specification without objective, evaluated on the whole sampled loop.
 
     Every loop has a gain of 1 at the required bandwidth (default: the highest found, by trial from fast to slow and then by bisection). The
-    family's law with the lowest peak of S is selected, first without additional notches, then with them. The whole loop must be stable by
-    its eigenvalues, with a peak of S below the limit, also for all mode shifts within the spread. PI and PID then get the strongest
-    integrators within the same peak of S (Astrom, Panagopoulos & Hagglund, Automatica 34 (1998) 585). LQG is tuned by its weights, in
-    platform coordinates. Raises `DesignError` for an unreachable bandwidth, with the reason, the highest bandwidth found, and a remedy.
+    controller of the family with the lowest peak of S is selected, first without additional notches, then with them. The whole loop must be
+    stable by its eigenvalues, with a peak of S below the limit, also for all mode shifts within the spread. PI and PID then get the
+    strongest integrators within the same peak of S (Astrom, Panagopoulos & Hagglund, Automatica 34 (1998) 585). LQG is tuned by its
+    weights, in platform coordinates. Raises `DesignError` for an unreachable bandwidth, with the reason, the highest bandwidth found, and a
+    remedy.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop
@@ -144,7 +145,7 @@ def _findings(plant: Plant, spec: TuningSpec) -> Iterator[Finding]:
 def _no_bandwidth(seen: View, spec: TuningSpec) -> Finding:
     places = trial_bandwidths(seen, spec.family.steps)
     best, advice = BandwidthTrial(seen, spec, places[-1]).best(), _help(seen, spec, places[-1])
-    what = f"no bandwidth is reached ({_tried(places)}); at the lowest, {_reason(spec, best, places[-1])}"
+    what = f"no bandwidth is reached ({_tried(places)}); at the lowest bandwidth, {_reason(spec, best, places[-1])}"
     return Finding("tuning", what, f"{advice[:1].upper()}{advice[1:]}")
 
 
@@ -155,7 +156,7 @@ def _unreached(seen: View, spec: TuningSpec, best: Attempt | None, wanted: float
     if trial is not None and reached is not None:
         top = _three_digits(trial.frequency)
         rest = f"the highest bandwidth found is {top} Hz with {_controller_name(spec, reached)} ({tried})"
-        ask = f"Use a higher one, up to {top} Hz" if wanted < trial.frequency else f"Use {top} Hz or less"
+        ask = f"Use a higher bandwidth, up to {top} Hz" if wanted < trial.frequency else f"Use {top} Hz or less"
     what = f"at {_three_digits(wanted)} Hz, {_reason(spec, best, wanted)}; {rest}"
     return Finding("bandwidth", what, f"{ask}; {_help(seen, spec, wanted)}")
 
@@ -167,7 +168,7 @@ def _tried(places: list[float]) -> str:
 def _reason(spec: TuningSpec, best: Attempt | None, wanted: float) -> str:
     """Reason of failure at a bandwidth."""
     if best is None:
-        return f"{spec.family.name} has no law with a loop gain of 1"
+        return f"no gains of {spec.family.name} result in a loop gain of 1"
     found, called = best.judgement, _controller_name(spec, best)
     if not found.stable:
         return f"the loop with {called} is unstable (growth rate {found.growth:.3g} 1/s{_offset_text(found)})"
