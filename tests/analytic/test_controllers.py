@@ -229,7 +229,7 @@ BAD = {
     "depth is -0.5": lambda: Notch(100.0, -0.5),
     "feed-through must be positive (got -2)": lambda: IntegralResonant(100.0, -2.0),
     "its damping is 0": lambda: resonant_law(100.0, 0.0),
-    "1 laws for 2 loops (x, y)": lambda: Decentralised(platform_loops(coordinates(ideal(case("xy-stage")))), (PI(),)),
+    "1 control laws for 2 loops (x, y)": lambda: Decentralised(platform_loops(coordinates(ideal(case("xy-stage")))), (PI(),)),
     "wrong shape (got (1, 1), expected": lambda: Decentralised(
         platform_loops(coordinates(ideal(case("xy-stage")))), (PI(), PI()), (), np.eye(1)
     ),

@@ -269,7 +269,9 @@ def test_machines_that_cannot_be_are_named():
     known = full_loop()
     with pytest.raises(DesignError, match=r"got 0\.0001 s for the plant, 0\.001 s for the controller"):
         replace(known, controller=replace(known.controller, step=1e-3))
-    with pytest.raises(DesignError, match=r"hysteresis: wrong number of axes \(got 1, expected 6, the actuators\)\. Use one per actuator"):
+    with pytest.raises(
+        DesignError, match=r"hysteresis: wrong number of axes \(got 1, expected 6, the actuators\)\. Use one axis per actuator"
+    ):
         replace(known, hysteresis=plays().__class__([0.0], [1.0]))
     with pytest.raises(DesignError, match=r"B1: hysteresis needs the stack's voltage range, which is missing"):
         replace(known, amplifiers=replace(known.amplifiers, gain=np.full(6, np.nan)))

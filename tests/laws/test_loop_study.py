@@ -159,7 +159,7 @@ def test_static_errors_are_by_coordinate_reached_and_commanded() -> None:
     table, corrected = static_error_tables(found)
     assert {cell.text for row in corrected.rows for cell in row[1:]} == {"0"}
     assert float(table.rows[0][1].text) == pytest.approx(found.ideal_map.error.at("x", "x").item(), rel=1e-4)
-    assert any(f"ideal mapping R_a {percent(found.ideal_map.largest, 3)}" in note for note in table.notes)
+    assert any(f"{percent(found.ideal_map.largest, 3)} with the ideal mapping R_a" in note for note in table.notes)
 
 
 def test_crosstalk_is_told_in_every_unit() -> None:

@@ -197,7 +197,7 @@ def test_a_record_of_another_stage_is_refused() -> None:
         loop_study(parallelogram(), SETUP, test=swept(parallelogram(), lines, 0.0, faster=1.9))
     found = swept(parallelogram(), lines, 0.0).found
     renamed = replace(found, outputs=tuple(replace(each, name=f"T{each.name}") for each in found.outputs))
-    with pytest.raises(DesignError, match="no output channel of this name in the record"):
+    with pytest.raises(DesignError, match="no output channel in the record has this name"):
         loop_study(parallelogram(), SETUP, test=Identification(found.responses, renamed))
     volts = replace(found, inputs=tuple(replace(each, unit="V") for each in found.inputs))
     with pytest.raises(DesignError, match='got "V", expected m'):

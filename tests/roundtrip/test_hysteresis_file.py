@@ -64,7 +64,7 @@ def test_files_on_disk(tmp_path):
         (HEAD + PLAYS.replace('"50 V"', "50"), "thresholds"),
         (HEAD + PLAYS.replace("50 V", "-50 V"), "thresholds of axis 0 must ascend (got -50 after 0)"),
         (HEAD + PLAYS.replace('"0 V", ', ""), "got thresholds (1, 1), weights (1, 2)"),
-        (HEAD + PLAYS + 'envelope = { volts = ["0 V", "9 V"], effective = ["0 V"] }', "Use equal numbers of both"),
+        (HEAD + PLAYS + 'envelope = { volts = ["0 V", "9 V"], effective = ["0 V"] }', "Use equal numbers of knots and values"),
         (
             HEAD + PLAYS + 'offset = "1 um"\nouter = { plays = ["0 um", "1 um"], strokes = ["0 um", "1 um"] }',
             "conflicts with the outer envelope",

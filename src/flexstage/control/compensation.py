@@ -67,7 +67,7 @@ def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflectio
     twist = np.asarray(deflection)
     if twist.shape != (6,):
         raise refuse(
-            "deflection", f"not a twist (got shape {twist.shape}, expected 6 components)", "Use the platform's twist, of one design"
+            "deflection", f"not a twist (got shape {twist.shape}, expected 6 components)", "Use the platform's twist for a single design"
         )
     return Compensation(gains, -gains.values @ (kinematics.projection @ twist), lost.provenance)
 

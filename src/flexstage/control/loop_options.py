@@ -68,12 +68,14 @@ class LoopOptions:
         Axes | None,
         word_option("--coordinates", Axes, "Coordinates of the single loops. Default: platform.", show_default=False),
     ] = None
-    bandwidth: Annotated[str | None, text_option("--bandwidth", "VALUE", "Bandwidth of plain tuning. Default: optimised.")] = None
+    bandwidth: Annotated[
+        str | None, text_option("--bandwidth", "VALUE", "Bandwidth of plain tuning. Default: the controller is optimised.")
+    ] = None
     tune_for: Annotated[
         TuningObjective | None,
         word_option("--tune-for", TuningObjective, "Objective of optimisation-based tuning. Default: balance.", show_default=False),
     ] = None
-    quick: Annotated[bool, typer.Option("--quick", help="Plain tuning: the highest bandwidth that Ms allows, without optimisation.")] = (
+    quick: Annotated[bool, typer.Option("--quick", help="Plain tuning for the highest bandwidth that Ms allows, without optimisation.")] = (
         False
     )
     max_sensitivity: Annotated[
@@ -81,7 +83,7 @@ class LoopOptions:
     ] = None
     force_feedback: Annotated[
         str | None,
-        text_option("--force-feedback", "RATIO", "Modal damping by integral force feedback in the legs, e.g. 50%. Default: none."),
+        text_option("--force-feedback", "RATIO", "Damping ratio of modes by integral force feedback in the legs, e.g. 50%. Default: none."),
     ] = None
     tracking: Annotated[
         Following | None,
@@ -103,7 +105,7 @@ class LoopOptions:
             "Amplitude of a step or sine, e.g. x=1um. Default: 1 um or 10 urad (sine: first axis only). Repeatable.",
         ),
     ] = None
-    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until settled.")] = None
+    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Simulated duration in seconds. Default: until settled.")] = None
     feedforward: Annotated[
         list[str] | None,
         text_option(
@@ -127,7 +129,7 @@ class LoopOptions:
     model: Annotated[Model | None, ELASTIC_MODEL] = None
 
     def read(self) -> tuple[LoopSetup, list[Finding]]:
-        """Read the options: the set-up without invalid ones, and their findings."""
+        """Return the set-up with all valid options, and the findings of invalid options."""
         changes, findings = dict[str, SetupChange](), list[Finding]()
         for each in (self._plain(), self._compensate(), self._floor(), self._trajectory(), self._amplifier()):
             try:

@@ -37,8 +37,8 @@ class NoiseBudget(InNotebook):
 
     `squares` (p, k) [unit^2] has a row for each of `outputs` and a column for each of `sources`. `density` (f, p, k) is one-sided
     [unit^2/Hz] over `frequencies` (f,) [Hz]: floor vibration at its true frequencies, white sources up to half the sampling rate, with
-    aliasing. `changes` (g,) is the rms change of each of the `gauges` from sample to sample, in its resolution steps, without rounding
-    (NaN: no rounding). `notes` list the assumptions and missing data of each kind of source.
+    aliasing. `changes` (g,) are the rms changes of the readings of `gauges` between samples, before rounding, in resolution steps (NaN: no
+    rounding). `notes` list the assumptions and missing data of each kind of source.
     """
 
     outputs: Annotated[tuple[Channel, ...], INNER]
@@ -92,7 +92,7 @@ class NoiseBudget(InNotebook):
 
     @property
     def steps_per_sample(self) -> Annotated[Mapping[str, float], VIEW]:
-        """Rms change of each rounding gauge from sample to sample, in its steps."""
+        """Rms change of the reading of each rounding gauge between samples, in resolution steps."""
         return {name: float(each) for name, each in zip(self.gauges, self.changes, strict=True) if not np.isnan(each)}
 
     @property
