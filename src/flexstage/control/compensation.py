@@ -17,7 +17,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 @dataclass(frozen=True, eq=False)
 class Compensation:
-    """Open-loop compensation of a commanded pose: strokes a = `gains` xi + `offset`.
+    """Open-loop compensation: the strokes for a commanded pose xi are a = `gains` xi + `offset`.
 
     `gains` (n, f) map coordinates to strokes: R_a, or gains that correct lost motion. `offset` (n,) [m] are the strokes that balance the
     loads. `provenance` names the model.

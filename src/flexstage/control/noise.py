@@ -184,7 +184,7 @@ def _white_density(white: System, sources: tuple[Source, ...], frequencies: Arra
 
 
 def band_spectra(closed: Loop, floor: Mapping[str, Spectrum], outputs: tuple[str, ...]) -> dict[str, Spectrum]:
-    """Collect the spectra integrated over a band, by plant input: of the floor, of amplifiers without lag, and of leg sensors.
+    """Collect by plant input the spectra to integrate over a band: floor, amplifiers without lag, and leg sensors.
 
     >>> from flexstage.control.example import integral_loop
     >>> list(band_spectra(integral_loop(), {"ground.x": Spectrum(1e-18)}, ("relative.x",)))

@@ -121,7 +121,7 @@ def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[
 
 
 def gauge_noise(given: Plant, gauge: str, density: float) -> System:
-    """Return a system from unit white inputs to samples of a gauge's noise: white of a `density`, after lag and filter (sampled loops).
+    """Return a system from unit white inputs to samples of gauge noise, which has a white `density` before lag and filter (sampled loops).
 
     >>> from flexstage.control.example import integral_loop
     >>> found = gauge_noise(integral_loop().plant, "S", 1e-12)

@@ -33,7 +33,7 @@ def hysteresis(  # noqa: PLR0913 (its options)
     stroke: Annotated[
         str | None, text_option("--stroke", "NAME", "Channel of the stroke. Default: the channel with a unit of length.")
     ] = None,
-    step: Annotated[Path | None, text_option("--step", "RECORD", "Record of a voltage step, for creep.")] = None,
+    step: Annotated[Path | None, text_option("--step", "RECORD", "Record of a voltage step, to fit creep.")] = None,
     limits: Annotated[
         tuple[str, str] | None, text_option("--limits", "LOW HIGH", 'Voltage range of the stack, e.g. "0 V" "1000 V".')
     ] = None,

@@ -22,7 +22,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Family:
-    """Controller family with a `name`: `laws` returns laws C with |C g| = 1 at the crossover of a plant g.
+    """Controller family `name`: `laws` returns control laws C with |C g| = 1 at the crossover of a plant g.
 
     The arguments of `laws` are a `Place` and the sampling interval [s] (None: continuous). For each loop, tuning selects the law with the
     lowest peak of S. If `notched`, it adds notches at modes that need them. `others` names the kinds to suggest if the specification is not
@@ -37,7 +37,7 @@ class Family:
 
 
 def tracking_gain(place: Place, turning: float, feedback: complex) -> float | None:
-    """Solve |k/s - Q| |g| = 1 for the integral gain k [1/s], with the pose `feedback` Q at s = j `turning`; None without a solution.
+    """Solve |k/s - Q| |g| = 1 for the integral gain k [1/s] at s = j `turning`, with the pose `feedback` Q; None without a solution.
 
     >>> round(tracking_gain(Place(1.0, 0.5 + 0.0j, 1.0, None), 2.0, 0.0j), 9)
     4.0

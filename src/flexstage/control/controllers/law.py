@@ -34,7 +34,7 @@ class Law(Protocol):
 
 
 def law_system(A: Array, B: Array, C: Array, D: Array, step: float | None, *, kept: Sequence[bool]) -> System:
-    """Construct a law's system from A (n, n), B (n, 3), C (1, n), D (1, 3), discretised by Tustin's rule if `step` [s] is specified.
+    """Construct a control law's system from A (n, n), B (n, 3), C (1, n), D (1, 3); with `step` [s] it is discretised by Tustin's rule.
 
     Keeps only the states marked in `kept`. In a sampled law the applied input acts one sample later, because it is known only after the
     command.

@@ -44,7 +44,7 @@ class PI(CheckedFields):
         return (1.0 + self.proportional) / self.integral if self.integral else np.inf
 
     def system(self, step: float | None = None) -> System:
-        """Return the linear system (see `Law`), by Tustin's rule. Raises `DesignError` for a tracking time below one sample."""
+        """Return the linear system (see `Law`), discretised by Tustin's rule. Raises `DesignError` for a tracking time below one sample."""
         require(slow_tracking_findings("PI", self.tracking, step))
         direct = np.array([[self.proportional, 0.0, 0.0]])
         entry = np.array([[self.integral, 0.0, tracking_rate(self.tracking_time, step)]])

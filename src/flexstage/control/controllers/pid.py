@@ -51,7 +51,10 @@ class PID(CheckedFields):
         return PI(self.proportional, self.integral, self.tracking).tracking_time
 
     def system(self, step: float | None = None) -> System:
-        """Return the linear system (see `Law`), by Tustin's rule. Raises `DesignError` for a filter above half the sampling rate."""
+        """Return the linear system (see `Law`), discretised by Tustin's rule.
+
+        Raises `DesignError` for a filter above half the sampling rate.
+        """
         require(slow_tracking_findings("PID", self.tracking, step))
         require(corner_findings("PID", "the derivative's filter at", self.filter, step, ", or lower the filter") if self.derivative else ())
         corner = 2.0 * np.pi * self.filter

@@ -50,7 +50,10 @@ class PositiveFeedback:
         )
 
     def system(self, step: float | None = None) -> System:
-        """Return the linear system (see `Law`), by Tustin's rule. Raises `DesignError` for a filter above half the sampling rate."""
+        """Return the linear system (see `Law`), discretised by Tustin's rule.
+
+        Raises `DesignError` for a filter above half the sampling rate.
+        """
         require(corner_findings("positive feedback", "its filter at", self.frequency, step))
         w = 2.0 * np.pi * self.frequency
         A = np.array([[0.0, 1.0, 0.0], [-(w**2), -2.0 * self.damping * w, 0.0], [0.0, 0.0, 0.0]])

@@ -47,7 +47,7 @@ class Prefilter(CheckedFields):
         )
 
     def system(self, step: float | None = None) -> System:
-        """Return the filter from `reference` to `shaped`, by Tustin's rule, prewarped at a frequency below 0.4 of the sampling rate."""
+        """Return the filter from `reference` to `shaped`, by Tustin's rule, prewarped if `frequency` is below 0.4 of the sampling rate."""
         omega = 2.0 * np.pi * self.frequency
         A = np.array([[0.0, omega], [-omega, -2.0 * self.damping * omega]])
         slope = 0.0 if self.lead is None else self.frequency / self.lead

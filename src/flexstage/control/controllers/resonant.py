@@ -45,7 +45,10 @@ class IntegralResonant(CheckedFields):
         require(found)
 
     def system(self, step: float | None = None) -> System:
-        """Return the linear system (see `Law`), by Tustin's rule. Raises `DesignError` for a corner above half the sampling rate."""
+        """Return the linear system (see `Law`), discretised by Tustin's rule.
+
+        Raises `DesignError` for a corner above half the sampling rate.
+        """
         pole = self.gain * self.feedthrough
         require(slow_tracking_findings("integral resonant control", self.tracking_time, step))
         require(corner_findings("integral resonant control", "its corner k d / (2 pi) =", pole / (2.0 * np.pi), step))

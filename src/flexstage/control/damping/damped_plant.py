@@ -181,7 +181,7 @@ def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: fl
 
 
 def felt_most(given: Plant) -> Array:
-    """Find the modes with the largest residues in a plant's loop: their indices, one per coordinate."""
+    """Return the indices of the modes with the largest residues in a plant's loop, one per coordinate."""
     return np.argsort(-resonances(given))[: len(given.coordinates.names)]
 
 
@@ -190,7 +190,7 @@ def _ratios(poles: Array) -> Array:
 
 
 def describe_damping(given: Plant, damped: Plant, law: ForceFeedback, legs: tuple[Leg, ...], pairs: Pairs) -> ActiveDamping:
-    """Summarise the effect of the inner loops on modes and platform stiffness; `pairs` are the modes with and without axial stiffness."""
+    """Summarise the effect of the inner loops on modes and platform stiffness; `pairs` are modes with and without axial stiffness."""
     gains = law.gain * np.geomspace(1e-2, 1.0, 40)
     poles = follow_poles(given, law, legs, gains)[-1]
     modes = []

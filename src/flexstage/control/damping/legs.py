@@ -36,7 +36,7 @@ class Leg:
 
 
 def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (), asked: str = "damping") -> tuple[Leg, ...]:
-    """Return the legs of all actuators that impose a stroke along their link, with strain `gauges`, or a force sensor at each stack.
+    """Return the legs of all actuators that impose a stroke along their link, with strain `gauges` or with a force sensor at each stack.
 
     With `gauges`, returns only the legs that have a gauge. A gauge on a stack also reads the free stroke: the commanded stroke is
     subtracted. A gauge elsewhere in the leg reads only the tension. Raises `DesignError`, located at `asked`, for stages without stacks,

@@ -37,7 +37,7 @@ _COMMENTS = {
 
 @dataclass(frozen=True)
 class Bend:
-    """Envelope before the plays in a file: input of the plays, `effective` [V], at `volts` [V]."""
+    """Envelope before the plays, as in a file: `effective` [V] is the input of the plays at `volts` [V]."""
 
     volts: _Volts
     effective: _Volts
@@ -45,7 +45,7 @@ class Bend:
 
 @dataclass(frozen=True)
 class OuterBend:
-    """Envelope after the plays in a file: `strokes` [m] at weighted sums of the play outputs, `plays` [m]."""
+    """Envelope after the plays, as in a file: `strokes` [m] belong to the weighted sums `plays` [m] of the play outputs."""
 
     plays: _Strokes
     strokes: _Strokes
@@ -53,7 +53,7 @@ class OuterBend:
 
 @dataclass(frozen=True)
 class StackCreep:
-    """Creep in a file: `rate` per decade of time, relative to the stroke at the `reference` time after a step."""
+    """Creep, as in a file: `rate` per decade of time, relative to the stroke at the `reference` time after a step."""
 
     rate: Annotated[float, RATIO]
     reference: Annotated[float, TIME, POSITIVE] = 0.1
@@ -61,7 +61,7 @@ class StackCreep:
 
 @dataclass(frozen=True)
 class StackHysteresis:
-    """Hysteresis of one stack in a file: thresholds, weights, envelopes, range of the record, model error and source.
+    """Hysteresis of one stack, as in a file: thresholds, weights, envelopes, range of the record, model error and source.
 
     `model` and `log_creep` return its model and creep law; `stack_hysteresis` is the exact inverse conversion.
     """

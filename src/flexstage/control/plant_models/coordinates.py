@@ -26,9 +26,9 @@ _MISSING = 1e-9
 class Coordinates:
     """The f coordinates of a loop: ideal motions xi of a stage (x ... rz, or a subset).
 
-    `pose` (f, g) maps gauge readings to xi, (R_s V)^+: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, least squares for more. `gauges` are
-    the single gauges; sums of gauges are included in `pose`. `strokes` (n, f) maps xi to strokes, R_a of Eq. 13; `back` (f, n) is its
-    (least-squares) inverse. For force actuators `back` is the static motion per unit input, and `strokes` its pseudo-inverse, the
+    `pose` (f, g) = (R_s V)^+ maps gauge readings to xi: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, a least-squares solution for more.
+    `gauges` are the single gauges; sums of gauges are included in `pose`. `strokes` (n, f) maps xi to strokes, R_a of Eq. 13; `back` (f, n)
+    is its (least-squares) inverse. For force actuators `back` is the static motion per unit input, and `strokes` its pseudo-inverse, the
     minimum-norm inputs [A, N]. `units` are m or rad; `length` [m] makes rotations comparable with translations. `gauge_units` and
     `input_units` are units of readings and inputs (default: m).
     """

@@ -35,7 +35,7 @@ _LEAST_LINES = 16
 class Reading:
     """Measured margin: its `value`, and 95 % confidence limits `low` and `high` (None: unknown).
 
-    `fitted` is the value with the tuned plant, `predicted` with the stage's model, both at the same frequency lines (NaN: no limit).
+    `fitted` is the value of the identified plant, `predicted` of the stage's model, both at the same frequency lines (NaN: no limit).
     """
 
     value: Annotated[float, Heading("measured", digits=4)]

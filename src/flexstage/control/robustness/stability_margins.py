@@ -155,7 +155,7 @@ def peaks(closed: Loop, cut: LoopBreak) -> Peaks:
 
 @dataclass(frozen=True)
 class ShiftedPeak:
-    """Peak sensitivity Ms with all plant modes shifted by a relative `shift` up or down, the larger value; infinite if unstable."""
+    """Larger peak sensitivity Ms of two plants, with all modes shifted up and down by a relative `shift`; infinite if unstable."""
 
     TABLE: ClassVar[Layout] = Layout("Peak sensitivity Ms, all modes shifted up or down", "peak", head="shift")
 

@@ -192,7 +192,7 @@ def frequency_section(found: LoopStudy) -> Section | None:
 
 
 def measured_section(found: LoopStudy) -> Section | None:
-    """Build the section of the loop with measured responses, compared with fit and model; `None` without a test."""
+    """Build the section of the loop with measured responses, compared with identified and design model; `None` without a test."""
     if found.measured is None:
         return None
     seen = found.measured.sensitivities

@@ -161,7 +161,7 @@ def margin_tables(found: LoopStudy) -> list[Table | None]:
 
 
 def measured_tables(found: LoopStudy) -> list[Table]:
-    """Tabulate margins from a test's responses, and of fit and model at the same frequencies; none without a test."""
+    """Tabulate margins from a test's responses, and of identified and design model at the same frequencies; none without a test."""
     seen = found.measured
     if seen is None:
         return []

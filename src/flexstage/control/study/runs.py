@@ -256,7 +256,8 @@ def _with_heat(given: ResolvedSetup, run: Run) -> Run:
         told = (None if power is None else float(power), None if warming is None else float(warming))
         heat[channel.name] = CoilHeat(rms, channel.unit, min(ends, default=None), *told)
         if ends and rms > min(ends):
-            what = f"rms input of {channel.name} too large (got {rms:.3g} {channel.unit}, expected {min(ends):.3g} {channel.unit} or less)"
+            most = f"{min(ends):.3g} {channel.unit} or less"
+            what = f"the rms input of {channel.name} is too large (got {rms:.3g} {channel.unit}, expected {most})"
             warnings.append(Finding(f"trajectory {run.course.name}", what, "Pause between trajectories, or reduce the amplitude"))
     return replace(run, heat=Table(heat), warnings=(*run.warnings, *warnings)) if heat else run
 

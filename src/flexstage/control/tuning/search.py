@@ -234,7 +234,7 @@ class Field:
 
     @property
     def size(self) -> int:
-        """Number of responses per evaluation, of all loops at all frequencies and lines, plus `_AS_MANY` for the CPU time of calls."""
+        """Number of responses per evaluation, of all loops at all frequencies and lines, plus an equivalent for the CPU time of calls."""
         return (self.frequencies.size + len(self.slow) * len(self.lines)) * len(self.alike) + _AS_MANY
 
     @property
@@ -830,7 +830,7 @@ def coupled_sensitivities(plants: Array, found: SearchResult, frequencies: Array
 
 
 def closed_by(plants: Array, responses: Array) -> Array:
-    """Compute S (v, f, k, k) of plants with the loops' responses (v, f, k); Cramer's rule for one or two loops, which is faster."""
+    """Compute S (v, f, k, k) of plants with the loops' responses (v, f, k); for one or two loops by Cramer's rule, which is faster."""
     returned = np.eye(plants.shape[-1]) + plants * responses[..., None, :]
     if plants.shape[-1] > 2:
         return np.linalg.inv(returned)

@@ -100,8 +100,8 @@ def trial_bandwidths(seen: View, steps: tuple[float, float]) -> list[float]:
 def highest_bandwidth(seen: View, spec: TuningSpec) -> tuple[BandwidthTrial | None, Attempt | None]:
     """Find the highest bandwidth with the specified margins, within 0.3 %, and its controller; None for both without one.
 
-    The highest successful one of `trial_bandwidths` is refined by bisection up to the next one. Other controllers may reach higher
-    bandwidths.
+    The highest of the `trial_bandwidths` that succeeds is refined by bisection, up to the next higher one. Other controllers may reach
+    higher bandwidths.
 
     >>> from flexstage.control.controllers.loops import platform_loops
     >>> from flexstage.control.example import integral_loop

@@ -94,7 +94,7 @@ def sensitivity_figure(found: Curves, highest: float) -> Any:
 
 
 def measured_figure(found: ReadLines, names: tuple[str, ...]) -> Any:
-    """Plot |S| of every loop from measured responses, with its 95 % interval, and |S| of fit and model; one panel per loop."""
+    """Plot |S| of every loop from measured responses, with its 95 % interval, and |S| of identified and design model."""
     columns = min(3, len(names))
     rows = -(-len(names) // columns)
     with style_context():
