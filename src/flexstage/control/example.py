@@ -31,7 +31,7 @@ def integral(given: Plant, gain: float) -> System:
 
 
 def integral_loop(gain: float = 100.0, given: Hardware | None = None) -> Loop:
-    """Close an integral loop on the shipped parallelogram: lumped model, three modes, 10 kHz, half a sample of delay.
+    """Close an integral loop around the lumped model of the shipped parallelogram: three modes, 10 kHz sampling, half a sample of delay.
 
     >>> integral_loop().system.growth < 0.0
     True

@@ -49,7 +49,7 @@ class SampledLegs:
 
 
 def sample_legs(law: ForceFeedback, legs: tuple[Leg, ...], rate: float, turns: int) -> SampledLegs:
-    """Sample the force feedback at a `rate` [Hz], `turns` samples per pose sample; without the hardware's lag and delay."""
+    """Discretise the force feedback at a `rate` [Hz], with `turns` samples per pose sample, without the hardware's lag and delay."""
     turning = 2.0 * np.pi * law.corner
     share = turning / (2.0 * rate + turning)
     gains = np.array([law.gain / (turning * each.stiffness) for each in legs])

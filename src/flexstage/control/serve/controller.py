@@ -48,7 +48,7 @@ class Generator:
 
 
 class StageController:
-    """Closed-loop stage, in micrometres and microradians; `advance` simulates it.
+    """Simulated closed-loop stage, in micrometres and microradians; `advance` continues the simulation.
 
     Raises `DesignError` as `resolve` and `control_and_modes` do, and for an unstable loop.
     """

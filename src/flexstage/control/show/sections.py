@@ -272,7 +272,7 @@ def error_section(found: LoopStudy) -> Section | None:
         worst = int(np.argmax(swept.rms_error))
         reached = {"without inverse": swept.bare[:, worst], "with inverse": swept.inverse[:, worst]}
         figure = hysteresis_figure(swept.wanted[:, worst], reached)
-        drawn = to_svg(figure, "hysteresis", "Hysteresis of a stack with and without its inverse")
+        drawn = to_svg(figure, "hysteresis", "Hysteresis of a stack with and without the inverse model")
         blocks.append(Picture(drawn, f"Isolated stack of {swept.actuators[worst]}, driven up and down in open loop."))
     return section("Errors and noise", blocks)
 

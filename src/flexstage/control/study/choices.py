@@ -67,7 +67,7 @@ class Compensation(Enum):
     REFERENCE = "reference"
     """The commanded trajectory; the controller corrects the residual error."""
     HYSTERESIS = "hysteresis"
-    """The inverse of the stacks' hysteresis."""
+    """The inverse model of the stacks' hysteresis."""
 
 
 class Following(Enum):

@@ -141,7 +141,7 @@ def _limits(commanded: StepMotion) -> Limits | None:
 
 
 def sampled_course(course: NamedTrajectory, coordinates: Coordinates, step: float, seconds: float) -> tuple[Array, Array]:
-    """Sample a trajectory every `step` [s], for a duration of `seconds`: times (n,) [s] and poses (n, f) [m, rad].
+    """Sample a trajectory every `step` [s], for a duration of `seconds`. Returns times (n,) [s] and poses (n, f) [m, rad].
 
     Raises `DesignError` for a duration too short or too long to simulate.
 

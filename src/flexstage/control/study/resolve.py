@@ -47,7 +47,7 @@ _RESONANCE = 0.01
 
 @dataclass(frozen=True, eq=False)
 class ResolvedSetup:
-    """Set-up resolved for a stage: its kinematics, linear model, plant, and the floor's spectra by input.
+    """Set-up completed for a stage: its kinematics, linear model, plant, and the floor's spectra by input.
 
     `plant` has the retained modes, or the specified number of modes. `whole` has all modes of the model; `stage` has all modes too, but no
     inner loops. `highest` [Hz] is the highest of the f lowest platform modes, for f loop coordinates. If `displaced`, the model is
@@ -90,7 +90,7 @@ class ResolvedSetup:
 
 
 def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None = None, solid: FeaModes | None = None) -> ResolvedSetup:
-    """Resolve a set-up for a stage: nominal, at an operating point, or under permanent load if that is significant.
+    """Complete a set-up for a stage that is nominal, at an operating point, or under permanent load if that is significant.
 
     With a `solid`, the model is the nominal finite-element stage, with the kinematics of the ideal stage.
 

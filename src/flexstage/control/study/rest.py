@@ -40,7 +40,7 @@ class RestErrors(InNotebook):
 
 
 def rest_errors(given: ResolvedSetup, lost: LostMotion) -> RestErrors:
-    """Compute the static errors of a resolved set-up.
+    """Compute the static errors of a completed set-up.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle

@@ -75,7 +75,7 @@ class StepAnswer:
 
     @property
     def cross_axis_error(self) -> Annotated[tuple[str, ...], INNER, Heading("cross-axis error")]:
-        """Largest translation and rotation, each with its axis; values below 0.1 fm or frad are rounding errors and omitted."""
+        """Largest translation and rotation along other axes, by axis. Values below 0.1 fm or frad are rounding errors, and omitted."""
         largest = {
             each.unit: max((other.largest, name) for name, other in self.others.items() if other.unit == each.unit)
             for each in self.others.values()
@@ -142,7 +142,7 @@ class LegUse:
 
     @property
     def speed_share(self) -> Annotated[float | None, INNER, Heading("speed / limit", digits=3, unit="%")]:
-        """Largest total rate relative to the amplifier's limit; absent without a limit."""
+        """Largest rate of the total stroke, relative to the amplifier's limit; absent without a limit."""
         return None if np.isinf(self.slew) else self.fastest / self.slew
 
 
@@ -201,8 +201,8 @@ def runs(
     """Simulate all trajectories of a set-up.
 
     Steps are simulated without noise, other trajectories with noise. Gauge resolution and amplifier limits apply. The stacks have the
-    hysteresis of `stacks`, compensated by its inverse if specified. A loop is simulated until it has settled (see `rest_time`), or for the
-    set-up's duration. `offset` (n,) [m] are strokes already used by loads. Raises `DesignError` for unknown coordinates, and for
+    hysteresis of `stacks`, compensated by the inverse model if specified. A loop is simulated until it has settled (see `rest_time`), or
+    for the set-up's duration. `offset` (n,) [m] are strokes already used by loads. Raises `DesignError` for unknown coordinates, and for
     trajectories beyond the strokes.
 
     >>> from flexstage.cases.parallelogram import parallelogram

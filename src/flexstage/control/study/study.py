@@ -103,7 +103,7 @@ class LoopStudy(InNotebook):
 
     @property
     def setup(self) -> Annotated[LoopSetup, VIEW]:
-        """Keys of the set-up file with the specified values in SI units; null: default from the stage."""
+        """Keys of the set-up file with the specified values in SI units. A null value means the default from the stage."""
         return self.settled.setup
 
     @property

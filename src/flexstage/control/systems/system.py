@@ -230,8 +230,8 @@ Terms = Mapping[str, float]
 def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple[Channel, ...], outputs: Iterable[str]) -> System:
     """Connect systems by signal names: every input in `links` is the weighted sum of outputs and of the new system's `inputs`.
 
-    An input that is not in `links` is connected to the new input, or the output, of the same name. With u = F y + G w: u = (I - F D)^-1 (F
-    C x + G w). Raises `DesignError` for any other input, unknown names, different steps, and an algebraic loop (I - F D singular).
+    An input that is not in `links` is connected to the new input, or the output, with the same name. With u = F y + G w: u = (I - F D)^-1
+    (F C x + G w). Raises `DesignError` for any other input, unknown names, different steps, and an algebraic loop (I - F D singular).
 
     >>> unit = Channel("r", "m")
     >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), (Channel("e", "m"),), (Channel("y", "m"),))

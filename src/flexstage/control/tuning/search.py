@@ -239,7 +239,7 @@ class Field:
 
     @property
     def spread(self) -> list[int]:
-        """Indices of the variants with only mode shifts within the spread; the model first."""
+        """Indices of the variants that have only mode shifts within the spread, the model first."""
         return _spread(self.spec, self.variants)
 
 
@@ -360,7 +360,7 @@ class SearchResult:
 
 
 def search(within: Field, family: Family) -> SearchResult | None:
-    """Search for the best loops: coupled loops together, then all loops at once; `None` without a stable result.
+    """Search for the best loops: first each group of coupled loops, then all loops at once. Returns `None` without a stable result.
 
     PID starts from the PI result. The search is deterministic, with starts on a grid.
     """
@@ -371,7 +371,7 @@ def search(within: Field, family: Family) -> SearchResult | None:
 
 
 def advance(within: Field, known: Decentralised) -> SearchResult:
-    """Improve the loops of a known controller: coupled loops together, then all loops at once."""
+    """Improve the loops of a known controller: first each group of coupled loops, then all loops at once."""
     begun = known_loops(within, known)
     points, reached, noises = list(begun.points), list(begun.reached), list(begun.noises)
     for block in _blocks(within):

@@ -111,7 +111,7 @@ class Judgement:
 
     @property
     def score(self) -> float:
-        """Score, smaller is better: the peak of S; above 1e9 for unstable loops."""
+        """Score (smaller is better): the peak of S, or a value above 1e9 for an unstable loop."""
         return self.peak if self.stable else 1e9 * (1.0 + self.growth)
 
 

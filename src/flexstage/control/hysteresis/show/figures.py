@@ -1,4 +1,4 @@
-"""Figure of a stack's test: loops with the model, the model error, and the voltage of the inverse over the applied voltage."""
+"""Figure of a stack's test: loops with the model, the model error, and the voltage of the inverse model over the applied voltage."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _POINTS = 900
 
 
 def stack_figure(test: StackTest) -> Any:
-    """Plot stroke over voltage (record and model), model error [% of stroke], and the inverse's voltage over the applied voltage.
+    """Plot stroke over voltage (record and model), model error [% of stroke], and the inverse model's voltage over the applied voltage.
 
     >>> from flexstage.control.hysteresis.example import example_test
     >>> len(stack_figure(example_test()).axes)

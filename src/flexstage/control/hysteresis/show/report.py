@@ -19,7 +19,7 @@ _METHOD = (
 
 
 def hysteresis_report(test: StackTest) -> str:
-    """Return the HTML report of a stack's test: loops with the model, model error, inverse, tables.
+    """Return the HTML report of a stack's test: loops with the model, model error, inverse model, tables.
 
     >>> from flexstage.control.hysteresis.example import example_test
     >>> hysteresis_report(example_test())[:15]
@@ -28,7 +28,7 @@ def hysteresis_report(test: StackTest) -> str:
     drawn = to_svg(
         stack_figure(test), "stack", "Loops of the stack with the model, the model's error, and the voltage of the inverse model"
     )
-    caption = "Grey: record. Blue: model and its error. Green: voltage of the inverse for the recorded strokes."
+    caption = "Grey: record. Blue: model and its error. Green: voltage of the inverse model for the recorded strokes."
     stack, plays = stack_tables(test)
     sections = [
         section("Hysteresis", [Picture(drawn, caption), stack, Prose(_METHOD)]),

@@ -1,4 +1,4 @@
-"""Figure of stack hysteresis: actual over requested stroke, with and without the inverse."""
+"""Figure of stack hysteresis: actual over requested stroke, with and without the inverse model."""
 
 from __future__ import annotations
 
