@@ -226,9 +226,9 @@ BAD = {
     "half the sampling rate, 500 Hz": lambda: PID(0.1, 3.0, 1e-3, 700.0).system(1e-3),
     "not below half the sampling rate, 100 Hz": lambda: Notch(110.9).system(5e-3),
     "tracking rate 4000 1/s is too high": lambda: PI(0.0, 4000.0, 1.0 / 4000.0).system(1e-3),
-    "depth is -0.5": lambda: Notch(100.0, -0.5),
+    "depth out of range (got -0.5": lambda: Notch(100.0, -0.5),
     "feed-through must be positive (got -2)": lambda: IntegralResonant(100.0, -2.0),
-    "its damping is 0": lambda: resonant_law(100.0, 0.0),
+    "damping must be positive (got 0)": lambda: resonant_law(100.0, 0.0),
     "1 control laws for 2 loops (x, y)": lambda: Decentralised(platform_loops(coordinates(ideal(case("xy-stage")))), (PI(),)),
     "wrong shape (got (1, 1), expected": lambda: Decentralised(
         platform_loops(coordinates(ideal(case("xy-stage")))), (PI(), PI()), (), np.eye(1)

@@ -56,6 +56,6 @@ def test_prefilters_of_turned_loops_stand_in_their_coordinates():
 
 
 def test_what_no_prefilter_is_is_named():
-    with pytest.raises(DesignError, match="its damping is 0") as caught:
+    with pytest.raises(DesignError, match=r"damping must be positive \(got 0\)") as caught:
         Prefilter(-3.0, 0.0)
     assert len(caught.value.findings) == 2

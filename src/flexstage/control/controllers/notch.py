@@ -41,11 +41,11 @@ class Notch(CheckedFields):
         super().__post_init__()
         where, found = f"notch at {self.frequency:g} Hz", []
         if not 0.0 < self.frequency < np.inf:
-            found.append(Finding(where, "must be a positive frequency", "Use a positive number: the frequency of a mode"))
+            found.append(Finding(where, "frequency must be positive", "Use the frequency of a mode"))
         if not 0.0 <= self.depth <= 1.0:
-            found.append(Finding(where, f"its depth is {self.depth:g}", "Use a gain from 0 to 1 (1: no notch)"))
+            found.append(Finding(where, f"depth out of range (got {self.depth:g}, expected 0 to 1)", "Use 1 for no notch"))
         if not 0.0 < self.damping < np.inf:
-            found.append(Finding(where, f"the damping of its poles is {self.damping:g}", "Use a positive ratio, for example 0.7"))
+            found.append(Finding(where, f"damping of the poles must be positive (got {self.damping:g})", "Use e.g. 0.7"))
         require(found)
 
     def system(self, step: float | None = None) -> System:

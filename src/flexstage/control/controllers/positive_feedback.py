@@ -44,7 +44,7 @@ class PositiveFeedback:
 
     def __post_init__(self) -> None:
         require(
-            Finding("positive feedback", f"its {name} is {value:g}", "Use a positive number")
+            Finding("positive feedback", f"{name} must be positive (got {value:g})", "Use a positive number")
             for name, value in (("frequency", self.frequency), ("damping", self.damping))
             if not value > 0.0
         )

@@ -41,7 +41,7 @@ class Prefilter(CheckedFields):
         super().__post_init__()
         given = {"frequency": self.frequency, "damping": self.damping, "lead": self.lead}
         require(
-            Finding("prefilter", f"its {name} is {value:g}", "Use a positive number")
+            Finding("prefilter", f"{name} must be positive (got {value:g})", "Use a positive number")
             for name, value in given.items()
             if value is not None and not 0.0 < value < np.inf
         )

@@ -74,7 +74,7 @@ def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking
     """
     numbers = {"frequency": frequency, "damping": damping, "static gain": static}
     wrong = [name for name, value in numbers.items() if not value > 0.0]
-    require(Finding("resonance", f"its {name} is {numbers[name]:g}", "Use a positive number") for name in wrong)
+    require(Finding("resonance", f"{name} must be positive (got {numbers[name]:g})", "Use a positive number") for name in wrong)
     ratio = 1.0 + 2.0 * damping
     feedthrough = static * ratio**2 / (ratio**2 - 1.0)
     return IntegralResonant(2.0 * math.pi * frequency * math.sqrt(ratio) / feedthrough, feedthrough, tracking)

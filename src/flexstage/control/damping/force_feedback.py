@@ -31,7 +31,7 @@ class ForceFeedback:
 
     def __post_init__(self) -> None:
         require(
-            Finding("force feedback", f"its {name} is {value:g}", "Use a positive number")
+            Finding("force feedback", f"{name} must be positive (got {value:g})", "Use a positive number")
             for name, value in (("gain", self.gain), ("corner", self.corner), ("lag", self.lag))
             if not value > 0.0
         )

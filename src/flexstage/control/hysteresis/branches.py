@@ -102,7 +102,9 @@ def _channel_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
             yield Finding(name, f"sample {place} is {values[place]}", "Truncate the record before this sample, or correct the channel")
         elif np.ptp(values) <= 1e-9 * np.max(np.abs(values)):
             yield Finding(
-                name, f"all samples equal {values[0]:g}: the channel has no signal", "Check its cable and range, or select another channel"
+                name,
+                f"all samples equal {values[0]:g}: the channel has no signal",
+                "Check the cable and range of this channel, or select another channel",
             )
 
 
@@ -145,7 +147,7 @@ def _loop_findings(volts: Array, strokes: Array) -> Iterator[Finding]:
     )
     ahead = float(np.mean((up - down)[1:-1])) / size
     if ahead > _AHEAD:
-        what = f"at equal voltage the stroke is {ahead:.1%} of its range larger on rising than on falling branches: it leads the voltage"
+        what = f"at equal voltage the stroke is {ahead:.1%} of its range larger on rising than on falling branches, so it leads the voltage"
         yield Finding("record", what, "Check for exchanged channels, or a delayed channel: the stroke of a stack lags")
     drops = [float(np.max(np.maximum.accumulate(mean) - mean)) for mean in means]
     worst = int(np.argmax(drops))

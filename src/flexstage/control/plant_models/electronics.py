@@ -321,17 +321,17 @@ def _findings(given: Hardware) -> Iterable[Finding]:
 
 def _item_findings(name: str, item: Amplifier | Sensor, rate: float | None) -> Iterable[Finding]:
     if not item.bandwidth > 0.0:
-        yield Finding(name, f"its bandwidth is {item.bandwidth:g} Hz", "Use a positive bandwidth, or omit it")
+        yield Finding(name, f"bandwidth must be positive (got {item.bandwidth:g} Hz)", "Correct the bandwidth, or omit the key")
     if item.noise_density is not None and not 0.0 <= item.noise_density < np.inf:
-        yield Finding(name, f"its noise density is {item.noise_density:g}", "Use a number of 0 or more")
+        yield Finding(name, f"noise density must be 0 or more (got {item.noise_density:g})", "Correct the noise density")
     if isinstance(item, Amplifier):
         if not item.low < item.high:
-            yield Finding(name, f"its stroke range is {item.low:g} m to {item.high:g} m", "Use a lower limit below the upper limit")
+            yield Finding(name, f"no stroke range (got {item.low:g} m to {item.high:g} m)", "Use a lower limit below the upper limit")
         return
     if not 0.0 <= item.resolution < np.inf:
-        yield Finding(name, f"its resolution is {item.resolution:g}", "Use 0 or more")
+        yield Finding(name, f"resolution must be 0 or more (got {item.resolution:g})", "Use 0 for no rounding")
     if not 0 <= item.filter_order <= 12:
-        yield Finding(name, f"its filter has order {item.filter_order}", "Use 0 (no filter) to 12")
+        yield Finding(name, f"filter order out of range (got {item.filter_order}, expected 0 to 12)", "Use 0 for no filter")
     if item.filter_order and not 0.0 < item.filter_corner < np.inf:
-        what = f"its filter of order {item.filter_order} has no corner"
+        what = f"the filter of order {item.filter_order} has no corner"
         yield Finding(name, what, "Specify filter_corner, below half the sampling rate" if rate else "Specify filter_corner")

@@ -248,7 +248,7 @@ def sensor_filter(given: Plant) -> System:
 def _findings(model: LinearModel, loop: Coordinates, given: Hardware, points: tuple[str, ...]) -> list[Finding]:
     outputs = [channel.name for channel in model.outputs]
     both = set(loop.actuators) & set(loop.gauges)
-    found = [Finding(name, "an actuator and a gauge have this name", "Rename one of them") for name in sorted(both)]
+    found = [Finding(name, "an actuator and a gauge have this name", "Rename the actuator or the gauge") for name in sorted(both)]
     for name in points:
         if f"{name}.x" not in outputs:
             places = {each.rpartition(".")[0] for each in outputs if each.endswith(".rz")}

@@ -202,11 +202,15 @@ def _findings(given: Plant, controller: System) -> list[Finding]:
         if controller.step is not given.hardware.step:
             kinds = ["continuous" if step is None else f"sampled every {step:g} s" for step in (controller.step, given.hardware.step)]
             found.append(
-                Finding("controller", f"different sampling (got {kinds[0]}, expected {kinds[1]} as the hardware)", "Use one rate for both")
+                Finding(
+                    "controller",
+                    f"different sampling (got {kinds[0]}, expected {kinds[1]} as the hardware)",
+                    "Use one sampling rate for both",
+                )
             )
     elif abs(controller.step / given.hardware.step - 1.0) > 1e-9:
         what = f"different sampling (got {controller.step:g} s, expected {given.hardware.step:g} s as the hardware)"
-        found.append(Finding("controller", what, "Use one rate for both"))
+        found.append(Finding("controller", what, "Use one sampling rate for both"))
     at = given.coordinates
     known = _names((*at.motions("error."), *at.motions("reference."), *at.motions("pose."), *at.commands("applied.")))
     return [

@@ -55,14 +55,18 @@ def from_control(system: Any, inputs: tuple[Channel, ...] | None = None, outputs
     control = _control()
     if not isinstance(system, control.StateSpace | control.TransferFunction):
         raise refuse(
-            "system", f"wrong type (got {type(system).__name__}, expected StateSpace or TransferFunction)", "Linearise or convert it first"
+            "system",
+            f"wrong type (got {type(system).__name__}, expected StateSpace or TransferFunction)",
+            "Linearise or convert the system",
         )
     if isinstance(system, control.TransferFunction) and (system.ninputs, system.noutputs) != (1, 1):
         what = f"unsupported transfer function with {system.ninputs} inputs and {system.noutputs} outputs"
-        raise refuse("system", what, "Convert it to a StateSpace: the realisation of several channels is not unique")
+        raise refuse("system", what, "Convert the system to a StateSpace: the realisation of several channels is not unique")
     found = control.ss(system)
     if found.dt is True or found.dt is None:
-        raise refuse("system", f"its dt is {found.dt} (expected a number)", "Specify dt in seconds, or 0 for a continuous system")
+        raise refuse(
+            "system", f"no sampling time (got dt = {found.dt}, expected a number)", "Specify dt in seconds, or 0 for a continuous system"
+        )
     channels = [_channels(given, found, kind) for given, kind in ((inputs, "input"), (outputs, "output"))]
     matrices = (np.array(matrix, dtype=float) for matrix in (found.A, found.B, found.C, found.D))
     return System(*matrices, inputs=channels[0], outputs=channels[1], step=float(found.dt) or None)
@@ -72,7 +76,7 @@ def _control() -> Any:
     try:
         return importlib.import_module("control")
     except ImportError:
-        raise refuse("python-control", "it is not installed", "Install it with: pip install 'flexstage[control]'") from None
+        raise refuse("python-control", "not installed", "Install python-control: pip install 'flexstage[control]'") from None
 
 
 def _python_names(name: str) -> str:
@@ -84,5 +88,7 @@ def _channels(given: tuple[Channel, ...] | None, system: Any, kind: str) -> tupl
     if given is None:
         return tuple(Channel(label, "1") for label in labels)
     if len(given) != len(labels):
-        require([Finding(f"{kind}s", f"wrong number of names (got {len(given)}, expected {len(labels)})", "Use one channel for each")])
+        require(
+            [Finding(f"{kind}s", f"wrong number of names (got {len(given)}, expected {len(labels)})", f"Use one channel for each {kind}")]
+        )
     return given

@@ -43,7 +43,7 @@ def peak(system: System) -> Peak:
     (5.025189076, 5.025189076)
     """
     if system.growth >= 0.0:
-        raise refuse("peak", f"the system is unstable (growth rate {system.growth:.3g} 1/s)", "Stabilise it first")
+        raise refuse("peak", f"the system is unstable (growth rate {system.growth:.3g} 1/s)", "Stabilise the system first")
     plane = to_plane(system)
     frequencies = _first_frequencies(system)
     best = _highest_of(system, frequencies)

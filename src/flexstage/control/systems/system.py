@@ -289,4 +289,4 @@ def _link_findings(whole: System, links: Mapping[str, Terms], inputs: tuple[Chan
             yield Finding(name, "this input is not connected", "Add a link, or list it among the inputs")
     for name in external:
         if name in whole.output_names:
-            yield Finding(name, "an input and an output have this name", "Rename one of them")
+            yield Finding(name, "an input and an output have this name", "Rename the input or the output")
