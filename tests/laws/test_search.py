@@ -198,7 +198,7 @@ def test_what_cannot_be_had_at_once_is_said(monkeypatch):
 
     monkeypatch.setattr("flexstage.control.tuning.find.tune", refuse)
     with pytest.raises(
-        DesignError, match=r"no PI found with .* that settles within 0\.2 ms; tuning without search also failed: no bandwidth is reached"
+        DesignError, match=r"no PI controller found with .* that settles within 0\.2 ms; tuning without search also failed: no bandwidth is reached"
     ):
         found(settling=2e-4, spread=0.0)
 
