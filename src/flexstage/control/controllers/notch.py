@@ -49,7 +49,7 @@ class Notch(CheckedFields):
         require(found)
 
     def system(self, step: float | None = None) -> System:
-        """Return the filter from `raw` to `notched`, discretised by prewarped Tustin's rule, which is exact at the notch.
+        """Return the filter from `raw` to `notched`, discretised by Tustin's rule with prewarping, so that it is exact at the notch.
 
         Raises `DesignError` for a notch above half the sampling rate.
         """

@@ -39,7 +39,7 @@ def legs(mechanism: Mechanism, model: LinearModel, gauges: tuple[str, ...] = (),
     """Return the legs of all actuators that impose a stroke along their link, with strain `gauges` or with a force sensor at each stack.
 
     With `gauges`, returns only the legs that have a gauge. A gauge on a stack also reads the free stroke: the commanded stroke is
-    subtracted. A gauge elsewhere in the leg reads only the tension. Raises `DesignError`, located at `asked`, for stages without stacks,
+    subtracted. A gauge elsewhere in the leg reads only the tension. Raises `DesignError` at the key `asked` for stages without stacks,
     models without link forces, and gauges outside the legs.
 
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -35,8 +35,8 @@ def identify_hysteresis(volts: Array, strokes: Array, *, limits: Range | None = 
     more and slopes above 0 come from least squares (`fit_form`), so that an inverse exists. Cross-validation selects the number of plays
     and pieces: the smallest model with at most 1.05 times the smallest error. Thresholds up to 0.5 (longer memory) are selected only if
     they reduce the error by a fifth. Samples at which plays still depend on their initial state are used only as history. The model is rate
-    independent: record slowly compared with the stage's first mode, and fast compared with creep. `limits` are the actuator's voltage
-    limits: a record of a smaller range causes a warning.
+    independent: the record must be slow compared with the stage's first mode, and fast compared with creep. `limits` are the actuator's
+    voltage limits: a record of a smaller range causes a warning.
 
     Raises `DesignError` for a record without valid hysteresis (see `record_findings`), drift beyond 2 %, and errors beyond 10 %.
 

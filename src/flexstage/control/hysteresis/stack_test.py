@@ -69,7 +69,7 @@ class StackTest(InNotebook):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes: the size of the model, and the fitted time span of creep."""
+        """Notes on the size of the model, and on the fitted time span of creep."""
         found = self.hysteresis
         plays, knots = found.model.thresholds.shape[1], found.model.before.knots.shape[1]
         size = f"{plays} plays and an envelope of {knots} knots, selected from {len(found.trials)} model sizes."

@@ -33,7 +33,7 @@ class Repeater:
     the `band`. `contraction` is the largest ||W - G L|| over all frequencies, with coordinates scaled to lengths; G are the loop's
     responses with shifted modes. With a contraction below 1 the loop is stable and repeating errors decay (Inoue, Nakano et al., IFAC World
     Congress 1981; Tomizuka, Tsao & Chew, J. Dyn. Syst. Meas. Control 111 (1989) 353). `amplifies` is the largest ||(I + W z) (I + (W - G L)
-    z)^-1|| over |z| = 1: amplification between the harmonics.
+    z)^-1|| over |z| = 1, the amplification between the harmonics.
     """
 
     period: float

@@ -48,7 +48,7 @@ def zv(frequency: float, damping: float) -> Shaper:
 
 
 def zvd(frequency: float, damping: float) -> Shaper:
-    """Construct a zero-vibration-derivative (ZVD) shaper: impulses 1, 2K, K^2 over (1+K)^2, half a damped period apart.
+    """Construct a zero-vibration-derivative (ZVD) shaper: impulses (1, 2K, K^2) / (1+K)^2, half a damped period apart.
 
     The residual vibration is quadratic in the frequency error.
 

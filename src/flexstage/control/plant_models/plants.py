@@ -41,8 +41,8 @@ class Plant:
     wrenches `platform.fx` ... [N, N m]. Outputs: `gap.<gauge>` [m, rad] (its reading after lag and filter, before noise and rounding),
     absolute motions `platform.<c>` and `<point>.<c>` [m, rad], and motions relative to the ground, `relative.<c>` and
     `relative.<point>.<c>`. `states` names its states. `frequencies` [Hz] and `ratios` belong to the retained modes; `left_out` counts the
-    omitted modes, whose compliance is a static term. `note` lists the simplifications. `heard` are noise densities of further inputs, from
-    sensors of inner loops.
+    omitted modes, whose compliance is a static term. `note` lists the simplifications. `heard` are the noise densities of further inputs:
+    noise of sensors of inner loops.
     """
 
     system: Annotated[System, INNER]

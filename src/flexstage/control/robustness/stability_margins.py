@@ -80,9 +80,9 @@ class Margins(InNotebook):
 def margins(closed: Loop, cut: LoopBreak, found: Curves | None = None) -> Margins:
     """Compute margins of one loop at a time, with the others closed; `found` are its `curves` if already known.
 
-    Gain limits are at frequencies of a real S_ii = 1/(1 + L_i) below 0 or above 1 (L_i real and negative), phase and delay limits at a real
-    part of 1/2 (|L_i| = 1). They are exact to rounding error; the frequencies resolve L_i. `peak` gives alpha_i = 1/||S_ii - 1/2|| (Seiler,
-    Packard, Gahinet, IEEE Control Systems 40, 2020). Raises `DesignError` for an unstable loop.
+    Gain limits are at frequencies where S_ii = 1/(1 + L_i) is real, and below 0 or above 1 (L_i real and negative). Phase and delay limits
+    are where its real part is 1/2 (|L_i| = 1). They are exact to rounding error; the frequencies resolve L_i. `peak` gives alpha_i =
+    1/||S_ii - 1/2|| (Seiler, Packard, Gahinet, IEEE Control Systems 40, 2020). Raises `DesignError` for an unstable loop.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = margins(integral_loop(), LoopBreak.POSE).of("x")
@@ -186,8 +186,8 @@ def _shifted_peak(closed: Loop, offset: float) -> float:
 class Bandwidths(InNotebook):
     """Bandwidths [Hz] (n,) by coordinate, each the lowest frequency of a crossing (NaN: none).
 
-    `tracking`: the true motion falls 3 dB below its reference. `complementary`: T_ii falls 3 dB below 1. `rejection`: |S_ii| rises through
-    1, above which the loop amplifies disturbances. `half_rejection`: |S_ii| rises through -3 dB.
+    At `tracking`, the true motion falls 3 dB below its reference. At `complementary`, T_ii falls 3 dB below 1. At `rejection`, |S_ii| rises
+    through 1: above it, the loop amplifies disturbances. At `half_rejection`, |S_ii| rises through -3 dB.
     """
 
     TABLE: ClassVar[Layout] = Layout(

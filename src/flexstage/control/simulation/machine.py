@@ -138,7 +138,7 @@ def machine(
 ) -> Machine:
     """Assemble a plant with hardware and controller for simulation.
 
-    `electric` (from `drive`) maps strokes to volts, which hysteresis and compensation require. `motions` are the plant outputs to keep
+    `electric` maps strokes to volts, which hysteresis and compensation require. `motions` are the plant outputs to keep
     (default: all). Raises `DesignError` for a continuous loop, and as `Machine`.
 
     >>> from flexstage.control.example import integral_loop

@@ -146,7 +146,7 @@ def simulation_result(given: Machine, found: Series) -> Simulated:
 
 @check_arguments
 def tracking(found: Simulated) -> Matrix:
-    """Compute rms and peak tracking error by coordinate: measured by the loop, and of the true platform pose.
+    """Compute rms and peak tracking errors by coordinate: those measured by the loop, and those of the true platform pose.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine

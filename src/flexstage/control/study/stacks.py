@@ -56,7 +56,7 @@ class Stacks:
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """Open-loop sweep with decreasing amplitude: requested strokes `wanted` (k, n) [m], and actual strokes.
+    """Open-loop sweep with decreasing amplitude: `wanted` (k, n) [m] are the requested strokes.
 
     `bare` and `inverse` (k, n) [m] are the actual strokes without and with the inverse model. `width` (n,) is each stack's loop width
     relative to its stroke.

@@ -83,8 +83,8 @@ class System(CheckedFields):
     def transfer(self, frequencies: Array) -> Array:
         """Compute the frequency response H = C (lambda - A)^-1 B + D, (f, p, m) at `frequencies` (f,) [Hz].
 
-        lambda = j omega, or e^{j omega T} for a sampled system. The states are balanced first: modal velocities are about a thousand times
-        larger than modal displacements, and a solution would lose as much accuracy.
+        lambda = j omega, or e^{j omega T} for a sampled system. The states are balanced first, because modal velocities are about a
+        thousand times larger than modal displacements. Without balancing, a solution would lose accuracy by this factor.
         """
         balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
         entry, points = (self.B / scale[:, None]).astype(complex), self._points(frequencies)

@@ -79,7 +79,7 @@ class View:
 
     @cached_property
     def own(self) -> Array:
-        """Diagonal responses (v, f, k) of the loops."""
+        """Responses (v, f, k) from the command of each loop to its pose."""
         return np.einsum("vfkn,nk->vfk", self.responses, self.loops.drive)
 
     @cached_property
@@ -94,7 +94,7 @@ class View:
 
 
 def view(plant: Plant, loops: Loops, spread: float, offsets: tuple[float, ...] | None = None) -> View:
-    """Compute the view of a plant by its loops; `offsets` are relative mode shifts, in ascending magnitude.
+    """Compute the `View` of a plant for its loops; `offsets` are relative mode shifts, in ascending magnitude.
 
     Frequency responses are computed only for offsets within the `spread`. A relative shift s of all modes is equivalent to a time scale:
     the plant is sampled every (1 + s) T instead of T.

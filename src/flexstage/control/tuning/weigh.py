@@ -66,7 +66,7 @@ class RegulatorSpace:
         return with_observer(model, coordinates, weights, observer, self.feedforward)
 
     def outcome(self, point: Array) -> Outcome | None:
-        """Evaluate a point; `None` without a design, or if unstable at the largest mode shifts.
+        """Evaluate a point. Returns `None` without a design, or if the loop is unstable at the largest mode shifts.
 
         The nominal loop is always stable, because regulator and observer are.
         """

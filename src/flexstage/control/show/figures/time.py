@@ -72,7 +72,7 @@ def _settling_band(test: Simulated, name: str) -> float:
 
 
 def error_figure(test: Simulated) -> Any:
-    """Plot the true errors over time, lengths above angles.
+    """Plot the true errors over time, with lengths above angles.
 
     >>> from flexstage.control.example import integral_loop
     >>> from flexstage.control.simulation.machine import machine
