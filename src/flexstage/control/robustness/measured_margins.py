@@ -74,8 +74,8 @@ class ReadLines:
 class MeasuredMargins(InNotebook):
     """Margins of a loop at the frequency lines of a test: peak of S, and margins by coordinate.
 
-    The peak is the largest singular value, rotations as lengths. `lines` is the number of frequency lines within `band` [Hz]. Between lines
-    the response is unknown: a narrower peak may be higher.
+    The peak is the largest singular value, with rotations as lengths. `lines` is the number of frequency lines within `band` [Hz]. Between
+    lines the response is unknown: a narrower peak may be higher.
     """
 
     band: Annotated[tuple[float, float], FREQUENCY]

@@ -56,9 +56,9 @@ class Machine:
     [m] (0: no rounding). A reading that is not finite or beyond `half_range` (g,) [m] (default: unlimited) is replaced by its gauge's last
     valid one. Then follow pose = `pose` (f, g) y, error = reference - pose, and the `controller` (inputs any of `error.<c>`,
     `reference.<c>`, `pose.<c>`, `applied.<actuator>`; outputs `command.<actuator>`). The voltage is computed by the inverse of
-    `compensation`, or is proportional, and is limited by `amplifiers`. The free stroke is computed by `hysteresis` from the voltage
-    (reduced by `relief`), or is proportional. Last, the states of plant and controller are computed for k + 1. `applied` is the amplifiers'
-    output minus the request: zero except at a limit.
+    `compensation`, or is proportional to the command, and is limited by `amplifiers`. The free stroke is computed by `hysteresis` from the
+    voltage (reduced by `relief`), or is proportional to it. Last, the states of plant and controller are computed for k + 1. `applied` is
+    the amplifiers' output minus the request: zero except at a limit.
 
     `plant` is sampled. Its inputs named in `actuators` are strokes, all others disturbances; strokes affect no gauge in the same sample.
     """

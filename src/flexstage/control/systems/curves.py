@@ -61,7 +61,7 @@ def sensitivity(open_loop: System) -> System:
 
 
 def curves(closed: Loop, cut: LoopBreak) -> Curves:
-    """Compute S on frequencies dense around every pole of the closed loop and of each single open loop, refined until every L_i is smooth.
+    """Compute S at frequencies around every pole of the closed loop and of each single open loop, refined until every L_i is smooth.
 
     The frequencies end at half the sampling rate; for a continuous loop at 100 times its fastest pole.
 

@@ -120,7 +120,7 @@ def highest_gain(matrices: Array) -> tuple[float, int]:
 
 
 def crossing_frequency(frequencies: Array, gains: Array) -> float:
-    """Find the first frequency where a gain falls through 1, linear in the logarithms; 0 if it starts below, infinite if it never falls.
+    """Find where a gain first falls through 1, interpolated in logarithms: a frequency, 0 if it starts below 1, or infinity if it never falls.
 
     >>> round(crossing_frequency(np.array([1.0, 10.0, 100.0]), np.array([10.0, 1.25, 0.1])), 2)
     12.26
@@ -136,7 +136,7 @@ def crossing_frequency(frequencies: Array, gains: Array) -> float:
 
 
 def first_rise(sizes: Array, frequencies: Array) -> float:
-    """Find the first upward crossing of 1, linear in the logarithms; the last frequency without one, the first if it starts above.
+    """Find the first upward crossing of 1, interpolated in logarithms; the last frequency without one, the first if it starts above 1.
 
     >>> round(first_rise(np.array([0.1, 0.8, 10.0]), np.array([1.0, 10.0, 100.0])), 2)
     12.26

@@ -22,7 +22,7 @@ def fmu(program: Program, *, sources_only: bool = False) -> bytes:
     """Build an FMI 2.0 co-simulation unit (`.fmu`) of a program: `modelDescription.xml`, sources, and a library for this computer.
 
     A communication step of the importer runs all samples of the program within the step. Sample times are multiples of the program's step
-    from the start. All samples use the inputs set before the communication step. Equal program and compiler give equal bytes. Raises
+    from the start. All samples use the inputs set before the communication step. Equal programs and compilers give identical bytes. Raises
     `DesignError` without a compiler, or if FMI 2.0 has no name for this type of computer; `sources_only` omits the library.
 
     >>> from flexstage.control.export.code.controller import controller_code
