@@ -197,9 +197,8 @@ def test_what_cannot_be_had_at_once_is_said(monkeypatch):
         raise DesignError([Finding("tuning", "no bandwidth is reached, 27 tried", "Try PID")])
 
     monkeypatch.setattr("flexstage.control.tuning.find.tune", refuse)
-    with pytest.raises(
-        DesignError, match=r"no PI controller found with .* that settles within 0\.2 ms; tuning without search also failed: no bandwidth is reached"
-    ):
+    said = r"no PI controller found with .* that settles within 0\.2 ms; tuning without search also failed: no bandwidth is reached"
+    with pytest.raises(DesignError, match=said):
         found(settling=2e-4, spread=0.0)
 
 

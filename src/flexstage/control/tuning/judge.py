@@ -120,7 +120,7 @@ def highest_gain(matrices: Array) -> tuple[float, int]:
 
 
 def crossing_frequency(frequencies: Array, gains: Array) -> float:
-    """Find where a gain first falls through 1, interpolated in logarithms: a frequency, 0 if it starts below 1, or infinity if it never falls.
+    """Find the first frequency where a gain falls through 1, log-interpolated; 0 if it starts below 1, infinite if it never falls.
 
     >>> round(crossing_frequency(np.array([1.0, 10.0, 100.0]), np.array([10.0, 1.25, 0.1])), 2)
     12.26
