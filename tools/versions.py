@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 UV = str(Path(sys.executable).with_name("uv"))
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 EXTRAS = ("tables", "control")
-_TOOLS = ("pytest", "hypothesis", "pyuff")
+_TOOLS = ("pytest", "hypothesis", "pyuff", "pint")
 _TESTS = (*(f"tests/roundtrip/test_{each}.py" for each in ("store", "units", "sheets", "records")), "tests/apps/test_outputs.py")
 """Files of all formats, and the outputs of commands."""
 _WITHOUT_SOLIDS = "not glb"
@@ -67,7 +67,8 @@ def run_tests(venv: Path, python: str, package: str, resolution: str) -> int:
 
 def locked_tools() -> list[str]:
     """The tools of the tests in the versions of the lock file."""
-    pinned = dict(re.findall(r"^([A-Za-z0-9_.-]+)==([^ ;\\]+)", (ROOT / "requirements" / "dev.txt").read_text(), flags=re.MULTILINE))
+    lines = re.findall(r"^([A-Za-z0-9_.-]+)==([^ ;\\]+)", (ROOT / "requirements" / "dev.txt").read_text(), flags=re.MULTILINE)
+    pinned = dict(reversed(lines))  # of several versions the first, for the oldest Python
     return [f"{name}=={pinned[name]}" for name in _TOOLS if name in pinned]
 
 

@@ -35,7 +35,7 @@ from flexstage.apps.studio import solids
 from flexstage.apps.studio.design.palette import insert, snippets
 from flexstage.apps.studio.design.reading import design, read
 from flexstage.apps.studio.design.writing import write
-from flexstage.apps.studio.forms import key_figures
+from flexstage.apps.studio.forms import key_figures, specify
 from flexstage.apps.studio.helper import Urgency
 from flexstage.apps.studio.questions import Bearing, slopes
 from flexstage.apps.studio.results import all_figures, drawn, figures, reach
@@ -827,8 +827,7 @@ together = true
 
 @on_page
 async def test_a_specification_keeps_its_comments_and_has_all_errors_by_address(page, studio):
-    found = await page.ask(say.Specify, text="", file="", values="")
-    assert loads_specification(found.text) is not None
+    assert loads_specification(specify(1, "", "", "").text) is not None
     found = await page.ask(say.Specify, text=SPECIFICATION, file="", values="")
     assert (found.text, found.problems) == (SPECIFICATION, ())
     assert found.values["requirements"] == {"frequency": "at least 500 Hz", "drift.z": "at most 1 um/K"}

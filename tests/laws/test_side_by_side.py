@@ -131,7 +131,7 @@ def test_processes_share_the_kinds_and_change_nothing():
     assert list(alone) == list(shared)
     for name, each in alone.items():
         assert np.array_equal(each.rejection, shared[name].rejection)
-        assert np.array_equal(each.detuned.settling, shared[name].detuned.settling)
+        assert np.array_equal(each.detuned.settling, shared[name].detuned.settling, equal_nan=True)
 
 
 @pytest.mark.full

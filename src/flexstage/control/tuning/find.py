@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
 from flexstage.base.finding import DesignError, Finding, require
 from flexstage.control.controllers.decentralised import Decentralised
+from flexstage.control.controllers.law import Law
 from flexstage.control.controllers.loops import Loops, platform_loops
 from flexstage.control.controllers.lqg import LQG, Disturbances
+from flexstage.control.controllers.pi import PI
+from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.plant_models.plants import Plant
 from flexstage.control.tuning.fit import OneLoop
-from flexstage.control.tuning.judge import closed_growth, judge_loop
+from flexstage.control.tuning.judge import closed_system, judge_loop
 from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.outcome import Outcome, outcome
 from flexstage.control.tuning.search import (
@@ -41,6 +45,10 @@ _TIGHTER = (1.0, 0.97, 0.93)
 """Target peaks of S in successive rounds, as fractions of the limit's excess over 1: peaks may occur between frequencies."""
 _LOOKS = 2
 """Number of passes over all rounds, the second with frequencies dense around missed peaks."""
+_MORE = 0.1
+"""Work after each rejected result, as a fraction of that of the whole search."""
+_FACTORS = (0.98, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5)
+"""Factors on the gains of search results that are unstable with the largest mode shifts, or exceed the peak of S between frequencies."""
 _UNMET = 0.02
 """Relative violation of a requirement that still counts as met."""
 _CORNERS, _DAMPINGS, _LEADS = np.geomspace(0.3, 12.0, 14), (0.6, 0.8, 1.0, 1.4, 2.0, 3.5), (0.7, 1.2, 2.0, 4.0, np.inf)
@@ -120,7 +128,7 @@ def _best_of(spec: TuningSpec, plain: _Candidate | None, candidates: list[_Candi
     """
     is_bound = plain is not None and not plain.unmet and (plain.overshoot <= spec.overshoot or spec.overshoot == TuningSpec.overshoot)
     least = plain.merit if plain is not None and is_bound else -np.inf
-    return max((each for each in candidates if each.merit >= least), key=lambda each: (not each.unmet, each.worth), default=None)
+    return _better(each for each in candidates if each.merit >= least)
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,19 +173,45 @@ def _begun(within: Field, controller: Decentralised | LQG) -> _Candidate | None:
 
 
 def _sought(within: Field, seek: Callable[[Field], SearchResult | None]) -> _Candidate | None:
-    """First search result that keeps the peak of S also between frequencies."""
+    """First search result that keeps the peak of S also between frequencies and is stable with all mode shifts.
+
+    Or a rejected result with lower gains, if it is better: S is then lower also between frequencies and shifts.
+    """
     begun: SearchResult | None = None
     places: tuple[float, ...] = ()
+    rejected = list[Decentralised]()
     for _ in range(_LOOKS):
         for tried, found in _rounds(within, places, begun, seek):
             controller = _controller(tried, found)
             judged = _judge(within, controller)
             if np.isfinite(missed := excess(tried, found)) and (kept := _candidate(within, controller, judged, missed)) is not None:
-                return kept
+                return _better([kept, _slower(within, rejected)])
+            rejected.append(controller)
+            within.work.allow(_MORE)
             begun, places = found, (*places, judged.frequency / (1.0 + judged.offset))
         if begun is None:
             break
+    return _slower(within, rejected)
+
+
+def _better(candidates: Iterable[_Candidate | None]) -> _Candidate | None:
+    """The candidate of most worth, of those without unmet requirements if there are any."""
+    return max((each for each in candidates if each is not None), key=lambda each: (not each.unmet, each.worth), default=None)
+
+
+def _slower(within: Field, rejected: list[Decentralised]) -> _Candidate | None:
+    """The best of rejected controllers with their gains multiplied by the largest factor that makes one of them acceptable."""
+    distinct = {(each.laws, each.notches): each for each in rejected}.values()
+    for factor in _FACTORS:
+        slowed = [replace(each, laws=tuple(_scaled(law, factor) for law in each.laws)) for each in distinct]
+        if best := _better(_candidate(within, each, _judge(within, each)) for each in slowed):
+            return best
     return None
+
+
+def _scaled(law: Law, factor: float) -> Law:
+    gains = {name: factor * getattr(law, name) for name in ("proportional", "integral", "derivative") if hasattr(law, name)}
+    return replace(cast("PI | PID", law), **gains)
 
 
 def _rounds(
@@ -273,12 +307,20 @@ def _growth_findings(seen: View) -> Iterator[Finding]:
 
 
 def _judge(within: Field, controller: Decentralised | LQG) -> Judgement:
-    """Peak and bandwidths within the spread; stability also beyond it."""
+    """Peak and bandwidths within the spread; stability also beyond it. The frequency of an instability there is that of its pole."""
     seen, system = within.seen, controller.system(within.seen.step)
     near = len(seen.responses)
     judged = judge_loop(replace(seen, systems=seen.systems[:near], offsets=seen.offsets[:near]), system)
-    far = [closed_growth(each, system) for each in seen.systems[near:]]
-    return replace(judged, growth=max(judged.growth, *far)) if far else judged
+    far = [closed_system(each, system) for each in seen.systems[near:]]
+    growths = [each.growth for each in far]
+    if not growths or max(growths) <= judged.growth:
+        return judged
+    worst = int(np.argmax(growths))
+    if growths[worst] < 0.0:
+        return replace(judged, growth=growths[worst])
+    poles = far[worst].poles if far[worst].step is None else np.log(far[worst].poles.astype(complex)) / far[worst].step
+    frequency = abs(float(np.imag(poles[np.argmax(np.real(poles))]))) / (2.0 * np.pi)
+    return replace(judged, growth=growths[worst], frequency=frequency, offset=seen.offsets[near + worst])
 
 
 def _controller(within: Field, found: SearchResult) -> Decentralised:

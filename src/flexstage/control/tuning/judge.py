@@ -97,9 +97,20 @@ def closed_growth(plant: System, control: System) -> float:
     >>> abs(closed_growth(pose_plant(closed.plant), closed.controller) / closed.system.growth - 1.0) < 1e-6
     True
     """
+    return closed_system(plant, control).growth
+
+
+def closed_system(plant: System, control: System) -> System:
+    """Connect a plant (commands to pose) with a controller, without inputs or outputs.
+
+    >>> from flexstage.control.controllers.pose_plant import pose_plant
+    >>> from flexstage.control.example import integral_loop
+    >>> len(closed_system(pose_plant(integral_loop().plant), integral_loop().controller).poles)
+    3
+    """
     errors = {f"error.{name.partition('.')[2]}": {name: -1.0} for name in plant.output_names}
     links = {name: errors.get(name, {}) for name in control.input_names if name not in plant.output_names}
-    return connect([plant, control], links, (), ()).growth
+    return connect([plant, control], links, (), ())
 
 
 def highest_gain(matrices: Array) -> tuple[float, int]:

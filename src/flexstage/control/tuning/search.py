@@ -135,11 +135,15 @@ class Work:
     """Counter of the responses evaluated by a search, at most `allowed`; it also reports the progress."""
 
     def __init__(self, allowed: float = _ALLOWED) -> None:
-        self.allowed, self.spent, self._begun = allowed, 0.0, time.process_time()
+        self.allowed, self.spent, self._begun, self._whole = allowed, 0.0, time.process_time(), allowed
 
     def affordable(self, tries: int, size: int) -> int:
         """Return how many tries of a descent remain, at most `tries`, if each evaluates `size` responses."""
         return min(tries, int(max(self.allowed - self.spent, 0.0) / size))
+
+    def allow(self, share: float) -> None:
+        """Leave at least a share of the whole work for what follows."""
+        self.allowed = max(self.allowed, self.spent + share * self._whole)
 
     def count(self, size: int) -> None:
         """Add `size` evaluated responses."""

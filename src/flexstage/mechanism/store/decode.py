@@ -63,8 +63,9 @@ def _unknown_names(raw: dict[str, dict[str, Any]]) -> Iterator[Finding]:
     yield from unknown_entries(raw)
     bodies = {GROUND, *raw.get("bodies", ())}
     for name, link in raw.get("links", {}).items():
-        for body in link.get("joins", ()) if isinstance(link, dict) else ():
-            if isinstance(body, str) and "/" not in body and isinstance(link["joins"], list) and body not in bodies:
+        joins = link.get("joins") if isinstance(link, dict) else None
+        for body in joins if isinstance(joins, list) else ():
+            if isinstance(body, str) and "/" not in body and body not in bodies:
                 yield Finding(f"links.{name}.joins", f'unknown body "{body}"', suggest_nearest(body, bodies))
 
 
