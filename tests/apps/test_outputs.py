@@ -29,9 +29,9 @@ from tests.apps.command import Command, design_in
 BAD_TARGETS = {
     ("--report", "nowhere/report.html"): "nowhere/report.html cannot be written: folder nowhere not found",
     ("--json", "folder"): "it is a folder",
-    ("--mat", "stage.toml"): "read by this command",
-    ("--report", "stage.toml"): "read by this command",
-    ("--xlsx", "stage.toml"): "read by this command",
+    ("--mat", "stage.toml"): "also an input of this command",
+    ("--report", "stage.toml"): "also an input of this command",
+    ("--xlsx", "stage.toml"): "also an input of this command",
 }
 
 
