@@ -104,7 +104,7 @@ def test_bad_input_ends_with_findings(recorded: Command, tmp_path: Path) -> None
     assert "file not found" in ended_badly(recorded, "none.csv")
     assert "no range (got 1000 V to 0 V" in ended_badly(recorded, "stack.csv", "--limits", "1000 V", "0 V")
     assert "step.uff: record: too short after the step" not in ended_badly(recorded, "stack.csv", "--step", "stack.csv")
-    assert "stack.csv is read by this command" in ended_badly(recorded, "stack.csv", "-o", "stack.csv")
+    assert "stack.csv is also an input of this command" in ended_badly(recorded, "stack.csv", "-o", "stack.csv")
 
 
 def test_responses_show_no_hysteresis(recorded: Command, tmp_path: Path) -> None:

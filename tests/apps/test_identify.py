@@ -250,9 +250,9 @@ def test_all_files_are_looked_at(flexstage: Command, tmp_path: Path, record: Rec
         (("record.uff", "--inputs", "B1", "--outputs", "B1"), "as an input and as an output"),
         (("record.uff", "--channels", "S*"), "is an input"),
         (("record.uff", "--stage", "nowhere.toml"), "nowhere.toml"),
-        (("record.uff", "--report", "record.uff"), "read by this command"),
+        (("record.uff", "--report", "record.uff"), "also an input of this command"),
         (("record.uff", "--report", "no/folder.html"), "cannot be written"),
-        (("record.uff", "--stage", "stage.toml", "--report", "stage.toml"), "read by this command"),
+        (("record.uff", "--stage", "stage.toml", "--report", "stage.toml"), "also an input of this command"),
         (("record.uff", "--json", "-", "--report", "-"), "stdout"),
     ],
 )

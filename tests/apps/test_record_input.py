@@ -79,7 +79,7 @@ def test_what_is_no_record_is_refused(
 @pytest.mark.parametrize(
     ("option", "target", "said"),
     [
-        ("--json", "record.uff", "record.uff is read by this command"),
+        ("--json", "record.uff", "record.uff is also an input of this command"),
         ("--json", "missing/out.json", "folder missing not found"),
         ("--json", "folder", "it is a folder"),
         ("--json", "/dev/full", "No space left on device"),

@@ -97,7 +97,7 @@ def test_the_table_gives_the_rms_to_expect(flexstage: Command, tmp_path: Path) -
         (("--input-signal", "both"), ("--input-signal", "must be monitor or command (got both)")),
         (("-o", "record.xyz"), ("record.xyz", ".uff")),
         (("-o", "nowhere/record.uff"), ("nowhere/record.uff cannot be written", "folder nowhere not found")),
-        (("-o", "stage.toml"), ("read by this command",)),
+        (("-o", "stage.toml"), ("also an input of this command",)),
     ],
 )
 def test_bad_input_is_named_and_nothing_written(

@@ -65,7 +65,7 @@ def test_what_does_not_meet_is_warned_of_in_step_and_refused_in_a_mesh(flexstage
     ("arguments", "said"),
     [
         (("-o", "nowhere/a.step"), "folder nowhere not found"),
-        (("-o", "stage.toml"), "read by this command"),
+        (("-o", "stage.toml"), "also an input of this command"),
         (("-o", "."), "it is a folder"),
         (("-o", "a", "--gltf", "./a"), "the output of --output"),
         ((), "--output: missing. Use -o stage.step, --mesh stage.vtu or --gltf stage.glb."),

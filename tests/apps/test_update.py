@@ -58,8 +58,8 @@ def test_tables_say_what_the_test_tells(recorded: Command) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("--parameters", "neck.thickness", "-o", "stage.toml"), "stage.toml is read by this command"),
-        (("--parameters", "neck.thickness", "-o", "record.uff"), "record.uff is read by this command"),
+        (("--parameters", "neck.thickness", "-o", "stage.toml"), "stage.toml is also an input of this command"),
+        (("--parameters", "neck.thickness", "-o", "record.uff"), "record.uff is also an input of this command"),
         (("--parameters", "neck.thicknes", "-o", "u.toml"), "Use thickness"),
         (("--parameters", "front.thickness", "-o", "u.toml"), "Write horizontal/front.thickness or vertical/front.thickness"),
         (("--parameters", "platform.mass", "-o", "u.toml"), "the body's mass follows from its solids"),
