@@ -212,13 +212,13 @@ def _two_axes():
 
 
 def test_budget_is_what_simulation_shows():
-    """Parseval: the sum of all sources' variances and that of 160 runs of the loop agree within their statistical error."""
+    """Parseval: the sum of all sources' variances and that of 200 runs of the loop agree within their statistical error."""
     closed = _two_axes()
     outputs = ("relative.x", "relative.y")
     found = noise_budget(closed, {}, (1.0, 1000.0), outputs)
     assert set(found.kinds) == {Kind.GAUGE, Kind.ROUNDING, Kind.AMPLIFIER, Kind.CONVERTER}
     system, _ = white_system(closed, outputs)
-    random, runs, samples, settled = np.random.default_rng(5), 160, 1200, 400
+    random, runs, samples, settled = np.random.default_rng(5), 200, 1200, 400
     state, squares = np.zeros((len(system.A), runs)), np.zeros((len(outputs), runs))
     for number in range(samples):
         white = random.normal(size=(len(system.inputs), runs))

@@ -166,7 +166,7 @@ def test_architectures_have_no_clash_for_any_values(name: str, tmp_path: Path) -
             share = rng.random()
             value = each.low + share * (each.high - each.low) if each.low <= 0.0 else each.low * (each.high / each.low) ** share
             stage = set_value(stage, f"numbers.{each.name}", value)
-        if any(float(stage.numbers[name].value) < 0.0 for name in ("rim", "gap") if name in stage.numbers):
+        if any(float(stage.numbers[name].value) < 0.0 for name in ("rim", "gap", "lap") if name in stage.numbers):
             continue  # excluded by a limit of the architecture
         assert contact_findings(stage) == ()
         if actuator.kind != "voice_coil":
@@ -436,7 +436,7 @@ def test_finite_elements_raise_the_limits_of_the_next_search(tmp_path: Path) -> 
     assert (answer.rounds, len(tried)) == (3, 2)  # the first two searches for elastic bodies
     assert answer.errors == {"frequency.1": 0.01}
     assert 'frequency.1" = "at least 1 kHz"' in answer.design
-    assert not FULL or 0.0 < (answer.manufactured or 0.0) < 1.0
+    assert not FULL or 0.5 < (answer.manufactured or 0.0) <= 1.0  # the lumped model, which has a margin of a quarter
     (tmp_path / "stage.toml").write_text(answer.design)
     assert "frequency.1" in {each.key for each in loads_tolerance(answer.scatter, folder=tmp_path).limits}
 
