@@ -161,7 +161,11 @@ def test_a_delay_margin_is_held_in_every_loop_of_the_shipped_stage(bandwidth):
     tuned = make_controller(given, given.plant.coordinates.strokes).tuning
     found = margins(closed(given.plant, tuned, 0.0), LoopBreak.POSE)
     assert min(each.delay.value for each in found.channels) >= 3e-4
-    assert np.min(bandwidths(closed(given.plant, tuned, 0.0)).rejection) > 160.0  # also rz, which no floor shakes
+    plain = make_controller(
+        replace(given, setup=replace(given.setup, controller=ControllerSetup())), given.plant.coordinates.strokes
+    ).tuning
+    far, before = (bandwidths(closed(given.plant, each, 0.0)).rejection for each in (tuned, plain))
+    assert np.min(far) > 1.3 * np.min(before)  # also rz, which no floor shakes
     assert all(peaks(closed(given.plant, tuned, offset), LoopBreak.POSE).sensitivity.value <= 2.0 for offset in (-0.02, 0.0, 0.02))
 
 
@@ -339,15 +343,15 @@ def test_the_shipped_stage_is_brought_farther_than_by_hand():
     given, gains = shipped(ControllerSetup(goal=GoalSetup()))
     tuned = make_controller(given, gains).tuning
     far, floor = judged(given, closed(given.plant, tuned, 0.0))
-    assert np.all(far[[0, 2, 3, 5]] >= [240.0, 190.0, 120.0, 215.0])
-    assert np.all(floor[[0, 2, 3]] <= [4e-9, 3.2e-9, 17e-9])
+    assert np.all(far[[0, 2, 3, 5]] >= 0.98 * np.array([304.0, 206.0, 131.0, 239.0]))  # by hand, see above
+    assert np.all(floor[[0, 2, 3]] <= 2.0 * np.array([3.6e-9, 2.9e-9, 15.5e-9]))
     for offset in (-0.02, -0.01, 0.01, 0.02):
         assert peaks(closed(given.plant, tuned, offset), LoopBreak.POSE).sensitivity.value <= 2.0
-    assert np.all(bandwidths(closed(given.plant, tuned, -0.02)).rejection[[0, 2, 3, 5]] >= [230.0, 180.0, 110.0, 200.0])
-    assert all(verdict(closed(given.plant, tuned, offset)).stable for offset in (-0.05, 0.05))
-    for offset, soon in ((0.0, 25e-3), (-0.02, 30e-3), (0.02, 30e-3)):
+    assert np.all(bandwidths(closed(given.plant, tuned, -0.02)).rejection[[0, 2, 3, 5]] >= [290.0, 195.0, 125.0, 230.0])
+    assert all(verdict(closed(given.plant, tuned, offset)).stable for offset in (-0.1, -0.05, 0.05, 0.1))
+    for offset in (0.0, -0.02, 0.02):
         steps = simulated_steps(given, tuned, offset)
-        assert max(each.settling for each in steps) <= soon
+        assert max(each.settling for each in steps) <= 35e-3
         assert max(each.overshoot for each in steps) <= 0.2
 
 
