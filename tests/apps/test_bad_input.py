@@ -153,7 +153,7 @@ def test_bad_changes_are_refused(flexstage: Command, change: str) -> None:
         (("response", "stage.toml", "--input", "B9"), ("B9",)),
         (("response", "stage.toml", "--band", "1 Hz", "1 mm"), ("--band", "frequency")),
         (("response", "stage.toml", "--band", "10 Hz", "1 Hz"), ("--band", "10 Hz")),
-        (("response", "stage.toml", "--input-asd", "ground.z=1 m"), ("--input-asd ground.z=1 m", "amplitude density")),
+        (("response", "stage.toml", "--input-asd", "ground.z=1 m"), ("--input-asd ground.z=1 m", "amplitude spectral density")),
         (("response", "stage.toml", "--input-asd", "B9=1 nm/Hz^0.5"), ("B9", "B1")),
         (("stiffness", "stage.toml", "--point", "chuk"), ("--point", "chuk")),
         (("stiffness", "stage.toml", "--load-point", "chuk"), ("--load-point", "chuk")),

@@ -144,4 +144,4 @@ def test_kernels_that_do_not_load_are_a_note(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setenv("FLEXSTAGE_KERNEL", "wide")
     (row,) = doctor.native_code()
     assert row.verdict is doctor.Verdict.NOTE
-    assert "it is wide" in row.found
+    assert "unsupported value (got wide" in row.found

@@ -53,7 +53,7 @@ def refused(ended: Ended, said: str) -> None:
     ("name", "data", "said"),
     [
         ("missing.uff", None, "missing.uff: file not found"),
-        ("folder", None, "folder: it is a folder"),
+        ("folder", None, "folder: not a regular file (got a folder)"),
         ("empty.h5", b"", "empty.h5: it is empty"),
         ("junk.uff", np.random.default_rng(0).bytes(20_000), "junk.uff: it is neither text nor in a supported format"),
         ("junk.h5", b"\x89HDF\r\n\x1a\n" + np.random.default_rng(0).bytes(20_000), "junk.h5: it cannot be read as HDF5"),

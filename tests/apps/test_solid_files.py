@@ -88,7 +88,7 @@ def test_a_part_without_shape_is_named(flexstage: Command, tmp_path: Path) -> No
     dump(replace(stage, parts={"leaf": Joint((Freedom.X,))}), tmp_path / "joint.toml")
     ended = flexstage("cad", "joint.toml", "-o", "a.step")
     assert ended.code == 2
-    assert "one: a part of kind joint has no shape" in ended.err
+    assert "one: a part of kind joint has neither a shape" in ended.err
 
 
 def test_a_solid_becomes_a_superelement_and_the_table_that_states_it(flexstage: Command, tmp_path: Path) -> None:

@@ -668,7 +668,7 @@ async def test_nonsense_of_a_page_is_answered(page, studio):
     page._answers[0] = asyncio.get_running_loop().create_future()
     await page.connection.send('{"kind": "nothing"}')
     said = await asyncio.wait_for(page._answers[0], PATIENCE)
-    assert "not known" in said.problems[0].what
+    assert "unknown kind" in said.problems[0].what
     said = await page.ask(say.Drag, address="nothing", value=1.0)
     assert said.problems
     said = await page.ask(say.Rest, address=THICKNESS, value=-1.0)

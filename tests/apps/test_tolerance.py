@@ -59,7 +59,7 @@ def test_without_a_specification_there_is_no_yield(study_file, tmp_path, flexsta
     study_file.write_text(STUDY.replace("copies = 40", "copies = 8, requirements = false, crosstalk = false").replace("turn =", "#"))
     done = flexstage("tolerance", "study.toml", "--json", "r.json")
     assert done.code == 0
-    assert "No yield: neither" in " ".join(done.out.split())
+    assert "No yield, because neither" in " ".join(done.out.split())
     told = json.loads((tmp_path / "r.json").read_text())
     assert (told["yield"], told["allowed"]) == (None, None)
 

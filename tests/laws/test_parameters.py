@@ -102,7 +102,7 @@ def test_addresses_are_written_on_top_of_parameters():
         ('arm = { parameter = "plate.side", from = "1 mm", to = "2 mm" }', "Use plate_side"),
         ('arm = { parameter = "short_arm", from = "1 kg", to = "2 kg" }', "must be a length"),
         ('arm = { parameter = ["short_arm", "vertical_turn"], from = "1 mm", to = "2 mm" }', "different quantities"),
-        (NECK + 'b = { address = "parts.neck.thickness", from = "1 mm", to = "2 mm" }', "as variable b does"),
+        (NECK + 'b = { address = "parts.neck.thickness", from = "1 mm", to = "2 mm" }', "and so does variable b"),
         (NECK + 'b = { parameter = "neck_thickness", from = "-1 %", to = "1 %" }', "already set by a"),
     ],
 )

@@ -152,7 +152,7 @@ def test_a_part_without_shape_is_named() -> None:
     joint = replace(base, parts={**base.parts, "leaf": Joint((Freedom.RZ,))})
     finding = only(joint)
     assert finding.where == "leaf"
-    assert "has no shape" in finding.what
+    assert "has neither a shape" in finding.what
 
 
 def test_a_process_of_its_own_finds_the_same() -> None:

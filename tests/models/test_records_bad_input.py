@@ -64,7 +64,7 @@ def names(path: Path) -> tuple[str, ...]:
 
 def test_what_is_no_record_is_told(tmp_path: Path) -> None:
     assert "file not found" in refusal(tmp_path / "none.uff")
-    assert "it is a folder" in refusal(tmp_path)
+    assert "got a folder" in refusal(tmp_path)
     for content, told in {
         b"": "it is empty",
         b"PK\x03\x04...": "spreadsheets",

@@ -247,7 +247,7 @@ def test_a_solid_is_worked_in_one_queue_too(tmp_path: Path) -> None:
     """Both orders of every component; `bare` ones are others, without modes, but give the same figures at rest."""
     stage, ways = propped(6e-3, 7e-3), Ways(Cache(tmp_path))
     whole, bare = (reduction_plan([stage], Resolution(order=2), ways, bare=bare) for bare in (False, True))
-    assert {job.phase for job in whole.jobs} == {job.phase for job in bare.jobs} == {"at order 1", "at order 2"}
+    assert {job.phase for job in whole.jobs} == {job.phase for job in bare.jobs} == {"components at order 1", "components at order 2"}
     assert {job.reduction.modes for job in bare.jobs if isinstance(job, Reduce)} == {0}
     assert whole.needed == {job.key for job in whole.jobs}
     assert not whole.needed & bare.needed
@@ -330,7 +330,7 @@ def test_a_mode_without_a_partner_has_no_theory() -> None:
     for row in apart:
         assert row.theory is None
         assert row.trust is None
-        assert "(required " in row.reason
+        assert " required)" in row.reason
 
 
 def test_a_stack_without_mass_between_the_ground_and_a_mass_is_a_spring() -> None:

@@ -119,7 +119,7 @@ def on_platform(body: Body) -> Mechanism:
             with_bar(replace(lent(), bodies={**lent().bodies, "pad": Body(of="platform")}), "pad"),
             ["bodies.bar.of", '"pad"', '"platform"'],
         ),
-        (with_bar(lent(), "bar"), ["bodies.bar.of", '"bar"', "remove it"]),
+        (with_bar(lent(), "bar"), ["bodies.bar.of", '"bar"', "remove 'of'"]),
         (on_platform(replace(PLATE, of="ground")), ["bodies.platform.of", "cannot belong to another body"]),
         (lent(solids={}, mass=1.0), ["units.leg.bodies.lug", '"platform"', "mass not allowed"]),
         (lent(reference=(0.0, 0.0, 0.0)), ["units.leg.bodies.lug", "reference not allowed"]),

@@ -105,7 +105,7 @@ class LoopOptions:
             "Amplitude of a step or sine, e.g. x=1um. Default: 1 um or 10 urad (sine: first axis only). Repeatable.",
         ),
     ] = None
-    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Simulated duration in seconds. Default: until settled.")] = None
+    seconds: Annotated[float | None, text_option("--seconds", "NUMBER", "Duration in seconds. Default: until settled.")] = None
     feedforward: Annotated[
         list[str] | None,
         text_option(

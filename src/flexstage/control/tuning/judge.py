@@ -106,7 +106,7 @@ def closed_system(plant: System, control: System) -> System:
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop
     >>> len(closed_system(pose_plant(integral_loop().plant), integral_loop().controller).poles)
-    3
+    9
     """
     errors = {f"error.{name.partition('.')[2]}": {name: -1.0} for name in plant.output_names}
     links = {name: errors.get(name, {}) for name in control.input_names if name not in plant.output_names}
