@@ -263,7 +263,9 @@ def test_mat_responses_one_a_variable(tmp_path: Path) -> None:
 def test_a_file_with_both_asks_which_is_meant(tmp_path: Path) -> None:
     path = tmp_path / "a.mat"
     scipy.io.savemat(path, FORM | {"frequencies": LINES, "responses": H})
-    with pytest.raises(DesignError, match=r"contains a record \(u1, u2, y1, y2, y3; 500 samples\) and frequency responses \(64 frequencies\)"):
+    with pytest.raises(
+        DesignError, match=r"contains a record \(u1, u2, y1, y2, y3; 500 samples\) and frequency responses \(64 frequencies\)"
+    ):
         read(path)
     same(record(path, Options(kind=Kind.RECORD)))
     assert responses(path, Options(kind=Kind.RESPONSES)).values.shape == H.shape
