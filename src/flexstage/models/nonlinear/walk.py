@@ -1,7 +1,8 @@
 """Body poses of large stages, computed from the flexures along a spanning tree from the ground, without gaps between links.
 
 A solution step rotates bodies by finite rotations, but displaces them to first order. Along a chain of many links, this difference opens a
-gap at every link, which causes wrong restoring forces.
+gap at every link, which causes wrong restoring forces. Positions are sums along the tree. They are compensated (W. Kahan, Comm. ACM 8,
+1965), because equal links round equally: the errors would add up to a force in all links.
 """
 
 from __future__ import annotations
@@ -63,20 +64,17 @@ def walk_tree(model: Nonlinear, pose: Pose, loads: Loads) -> Pose:
         lies = shape(group.law, pose.strain[number], pose.wrench[number][..., :3], weight)
         ends.append(group.law.length[:, None, None] * lies.end)
         turns.append(lies.end_turn)
-    position, turn = np.array(pose.position), np.array(pose.turn)
+    position, turn, rounded = np.array(pose.position), np.array(pose.turn), np.zeros_like(pose.position)
     for step in tree(model):
         group, link = model.flexures[step.group], step.link
-        one, other, own = int(group.first[link]), int(group.second[link]), group.turn[link]
+        one, other, own = group.first[link], group.second[link], group.turn[link]
         along, across = ends[step.group][link], own @ turns[step.group][link] @ own.T
-        if step.start:
-            turn[:, other] = turn[:, one] @ across
-        else:
-            turn[:, one] = turn[:, other] @ np.swapaxes(across, -1, -2)
+        near, far = (one, other) if step.start else (other, one)
+        turn[:, far] = turn[:, near] @ (across if step.start else np.swapaxes(across, -1, -2))
         reach = _turned(turn[:, one], group.arm_first[link] + along @ own.T) - _turned(turn[:, other], group.arm_second[link])
-        if step.start:
-            position[:, other] = position[:, one] + reach
-        else:
-            position[:, one] = position[:, other] - reach
+        moved = rounded[:, near] + (reach if step.start else -reach)
+        position[:, far] = position[:, near] + moved
+        rounded[:, far] = moved - (position[:, far] - position[:, near])
     return replace(pose, position=position, turn=turn)
 
 
