@@ -19,11 +19,11 @@ CEILINGS = {
     "show": 63_700,
     "solid": 76_700,
     "experiment": 98_900,
-    "control": 154_400,
+    "control": 154_500,
     "studies": 69_900,
     "apps": 39_400,
     ".": 400,
-    "all": 825_000,
+    "all": 825_100,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

@@ -18,7 +18,7 @@ from flexstage.control.controllers.pid import PID
 from flexstage.control.controllers.prefilter import Prefilter
 from flexstage.control.plant_models.plants import Plant
 from flexstage.control.tuning.fit import OneLoop
-from flexstage.control.tuning.judge import closed_system, judge_loop
+from flexstage.control.tuning.judge import closed_growth, closed_system, judge_loop
 from flexstage.control.tuning.laws import LQG_FAMILY, PI_FAMILY, PID_FAMILY
 from flexstage.control.tuning.outcome import Outcome, outcome
 from flexstage.control.tuning.search import (
@@ -175,7 +175,7 @@ def _begun(within: Field, controller: Decentralised | LQG) -> _Candidate | None:
 def _sought(within: Field, seek: Callable[[Field], SearchResult | None]) -> _Candidate | None:
     """First search result that keeps the peak of S also between frequencies and is stable with all mode shifts.
 
-    Or a rejected result with lower gains, if it is better: S is then lower also between frequencies and shifts.
+    Or a rejected result with lower gains, if it serves the objective better: S is then lower also between frequencies and shifts.
     """
     begun: SearchResult | None = None
     places: tuple[float, ...] = ()
@@ -185,10 +185,11 @@ def _sought(within: Field, seek: Callable[[Field], SearchResult | None]) -> _Can
             controller = _controller(tried, found)
             judged = _judge(within, controller)
             if np.isfinite(missed := excess(tried, found)) and (kept := _candidate(within, controller, judged, missed)) is not None:
-                return _better([kept, _slower(within, rejected)])
+                slower = _slower(within, rejected)
+                return kept if slower is None or slower.unmet or slower.merit <= kept.merit else slower
             rejected.append(controller)
             within.work.allow(_MORE)
-            begun, places = found, (*places, judged.frequency / (1.0 + judged.offset))
+            begun, places = found, (*places, judged.frequency / (1.0 + judged.offset), *_unstable_places(within, controller))
         if begun is None:
             break
     return _slower(within, rejected)
@@ -307,20 +308,23 @@ def _growth_findings(seen: View) -> Iterator[Finding]:
 
 
 def _judge(within: Field, controller: Decentralised | LQG) -> Judgement:
-    """Peak and bandwidths within the spread; stability also beyond it. The frequency of an instability there is that of its pole."""
+    """Peak and bandwidths within the spread; stability also beyond it."""
     seen, system = within.seen, controller.system(within.seen.step)
     near = len(seen.responses)
     judged = judge_loop(replace(seen, systems=seen.systems[:near], offsets=seen.offsets[:near]), system)
-    far = [closed_system(each, system) for each in seen.systems[near:]]
-    growths = [each.growth for each in far]
-    if not growths or max(growths) <= judged.growth:
-        return judged
-    worst = int(np.argmax(growths))
-    if growths[worst] < 0.0:
-        return replace(judged, growth=growths[worst])
-    poles = far[worst].poles if far[worst].step is None else np.log(far[worst].poles.astype(complex)) / far[worst].step
-    frequency = abs(float(np.imag(poles[np.argmax(np.real(poles))]))) / (2.0 * np.pi)
-    return replace(judged, growth=growths[worst], frequency=frequency, offset=seen.offsets[near + worst])
+    far = [closed_growth(each, system) for each in seen.systems[near:]]
+    return replace(judged, growth=max(judged.growth, *far)) if far else judged
+
+
+def _unstable_places(within: Field, controller: Decentralised) -> Iterator[float]:
+    """Frequencies [Hz] of the fastest growing motion with each mode shift beyond the spread, at the modes of the model."""
+    seen, system = within.seen, controller.system(within.seen.step)
+    for offset, plant in zip(seen.offsets, seen.systems, strict=True):
+        poles = closed_system(plant, system).poles.astype(complex)
+        rates = poles if system.step is None else np.log(poles) / system.step
+        fastest = rates[np.argmax(np.real(rates))]
+        if abs(offset) > within.spec.spread and fastest.real >= 0.0:
+            yield abs(float(fastest.imag)) / (2.0 * np.pi) / (1.0 + offset)
 
 
 def _controller(within: Field, found: SearchResult) -> Decentralised:
