@@ -172,8 +172,8 @@ def budget(
 
     For force-driven stages in open loop: parasitic motion, gauge noise, quantisation and drift.
 
-    For a stage without stiffness along its drive: closed-loop positioning noise, as in flexstage loop --quick. The options of budget are
-    then not allowed.
+    For a stage without stiffness along its drive: closed-loop positioning noise, as in flexstage loop --quick. Its other options are
+    refused for such a stage.
 
     With --input-asd: also the motion due to actuator noise and floor vibration.
     """
