@@ -125,7 +125,7 @@ def statics(model: LinearModel, *, load_point: str = "platform", read_point: str
 
 
 class FreedomStiffness(Result):
-    """Stiffness of each degree of freedom at a point [N/m, N m/rad] with strokes fixed, and with the others free or fixed.
+    """Stiffness [N/m, N m/rad] of each degree of freedom at a point, with strokes fixed and the other degrees of freedom free or fixed.
 
     `motions` are the coordinates of the platform's ideal motions, `constraints` the coordinates that links constrain. The free stiffness is
     the result of a push test at the point. It includes the coupling of an ideal motion into other axes.

@@ -146,8 +146,8 @@ def buckling_factors(
 
     The loads are the weight with payloads, and the specified forces with preloads; for a path in `[paths]`, also the loads in its `hold`.
     One load grows at a time; all others are constant. The operating points are the static equilibrium and both ends of every path. For a
-    design without paths, they are both stroke ends of every actuator (of at most eight), and the worst corner of the strokes by linearised
-    buckling.
+    design without paths, they are both stroke ends of every actuator (if there are at most eight), and the worst corner of the strokes by
+    linearised buckling.
 
     At an operating point, a constant-direction force displaces a coordinate, as for `--at`; a stroke is held at its value. Load factors are
     computed up to `most`.

@@ -37,7 +37,7 @@ def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
 
 @dataclass(frozen=True)
 class SetupChange:
-    """Override of a set-up: a new raw value, or a function of the value in the file. Findings name the `option`."""
+    """Override of a set-up: a new raw value, or a function of the value in the file. Errors name its `option`, e.g. --bandwidth."""
 
     option: str
     value: Any

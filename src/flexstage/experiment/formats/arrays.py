@@ -275,7 +275,7 @@ def _axes(contents: Contents, chosen: tuple[Variable, ...], time: Variable | Non
     length = max(time.shape) if time is not None else max(chosen[0].shape) if named else chosen[0].shape[0]
     if not all(length in each.shape for each in chosen):
         sizes = ", ".join(f"{each.name} {each.shape}" for each in (*([time] if time is not None else []), *chosen[:_LISTED]))
-        raise refuse(contents.where, f"its arrays differ in length: {sizes}", 'Name arrays of equal length (array "samples=...")')
+        raise refuse(contents.where, f"its arrays differ in length: {sizes}", 'Assign arrays of equal length (array "samples=...")')
     return [(each, each.shape.index(length)) for each in chosen]
 
 

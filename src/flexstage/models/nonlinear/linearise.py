@@ -100,7 +100,7 @@ def linearise(state: State, *, locked: Sequence[str] = (), inner: bool = True) -
     - Without `inner` coordinates, each flexure is a 6x6 stiffness about its middle, in the frame of its start, as for lost motion and
       drift. Statics are unchanged; modes are by Guyan reduction.
 
-    Raises `DesignError` if no case has a state, for `locked` names that are not fixed, and if matrices need more than 8 GB.
+    Raises `DesignError` if no case has an equilibrium, if a name in `locked` is not fixed, or if matrices need more than 8 GB.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.equilibrium import equilibrium

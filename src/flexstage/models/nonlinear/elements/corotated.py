@@ -27,7 +27,7 @@ class Corotated:
     - `relative` (6 (p - 1), 6 p): from port motions in stage axes to the strains of `stiffness` (6 (p - 1), 6 (p - 1)), as in the linear
       model.
     - `squares` (m,): squared angular frequencies of the inner modes.
-    - `inertia` (6 p + m, 6 p + m): over the ports in their axes and the modes.
+    - `inertia` (6 p + m, 6 p + m): mass matrix of the motions of the ports, in their axes, and of the modes.
     - `mass`, and its nominal `centre` (3,).
     - `share` (6 p, 3): port load per acceleration of the element.
     """

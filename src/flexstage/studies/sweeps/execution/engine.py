@@ -72,7 +72,9 @@ class Engine:
 
 
 def engine_covers(study: Study) -> bool:
-    """Return whether the engine supports a study: with the standard `mechanism_for`, its own `mechanism_at` (complex values), or `numbers`.
+    """Return whether the engine supports a study.
+
+    It must use the standard `mechanism_for`, define its own `mechanism_at` (complex values), or have `numbers`.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> engine_covers(neck_study())
