@@ -18,7 +18,7 @@ CEILINGS = {
     "analysis": 71_000,
     "show": 63_700,
     "solid": 76_700,
-    "experiment": 98_900,
+    "experiment": 99_200,
     "control": 154_400,
     "studies": 69_900,
     "apps": 39_400,
