@@ -52,16 +52,21 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
         require([Finding(where, what, "Record longer (modes in floor noise need minutes), or request a wider band")])
     divisions, density = band_covariances(record, low, high)
     every = [[shaken_modes(band, search.highest_damping) for band in bands] for bands in divisions]
-    modes = [
-        mode
-        for mode in _without_doubles(mode for _, found in every[0] for mode in found)
-        if low <= abs(mode.pole) <= high and -mode.pole.real <= search.highest_damping * abs(mode.pole)
-    ]
-    others = [mode for _, found in every[1] for mode in found]
+    poles = [[mode for _, found in division for mode in found] for division in every]
+    modes, others = (
+        [
+            mode
+            for mode in _without_doubles(found)
+            if low <= abs(mode.pole) <= high and -mode.pole.real <= search.highest_damping * abs(mode.pole)
+        ]
+        for found in poles
+    )
     narrow = [mode for mode in modes if -2.0 * mode.pole.real < resolution and mode.deviation < _LOCATED * resolution]
-    wide = [mode for mode in modes if -2.0 * mode.pole.real >= resolution and _certainty(mode) >= _WEAK]
-    certain = [mode for mode in wide if _certainty(mode) >= _EVIDENT and any(_agree(mode, other) for other in others)]
-    unsure = [mode for mode in wide if mode not in certain]
+    wide, also = ([mode for mode in each if -2.0 * mode.pole.real >= resolution] for each in (modes, others))
+    first = [mode for mode in wide if _certainty(mode) >= _EVIDENT and _is_among(mode, poles[1])]
+    second = [mode for mode in also if _certainty(mode) >= _EVIDENT and _is_among(mode, poles[0]) and not _is_among(mode, first)]
+    unsure = [mode for mode in wide if _certainty(mode) >= _WEAK and mode not in first and not _is_among(mode, second)]
+    certain = sorted([*first, *second], key=lambda each: abs(each.pole))
     found = _result(record, certain, density, (low, high))
     size = np.sqrt(found.noise * (high - low))
     peaks = [
@@ -81,11 +86,13 @@ def _without_doubles(modes: Iterable[AmbientMode]) -> list[AmbientMode]:
     return sorted(kept, key=lambda each: abs(each.pole))
 
 
-def _agree(first: AmbientMode, second: AmbientMode) -> bool:
-    """Whether two poles differ by less than four standard deviations in width and in frequency."""
-    away = first.pole - second.pole
-    width, deviation = (np.hypot(getattr(first, name), getattr(second, name)) for name in ("width_deviation", "deviation"))
-    return abs(away.real) < _WEAK * width and abs(away.imag) < _WEAK * deviation
+def _is_among(mode: AmbientMode, others: Iterable[AmbientMode]) -> bool:
+    """Whether the pole differs from one of the others by less than four standard deviations in width and in frequency."""
+    return any(
+        abs(mode.pole.real - other.pole.real) < _WEAK * np.hypot(mode.width_deviation, other.width_deviation)
+        and abs(mode.pole.imag - other.pole.imag) < _WEAK * np.hypot(mode.deviation, other.deviation)
+        for other in others
+    )
 
 
 def _is_double(first: AmbientMode, second: AmbientMode) -> bool:
