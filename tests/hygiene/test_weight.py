@@ -23,7 +23,7 @@ CEILINGS = {
     "studies": 69_900,
     "apps": 39_400,
     ".": 400,
-    "all": 825_000,
+    "all": 825_300,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

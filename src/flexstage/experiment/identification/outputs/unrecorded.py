@@ -33,7 +33,7 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
 
     The density of the exciting forces must be smooth within each band (frequency ratio 1.4). Repeated modes require excitation in as many
     independent directions. A mode is reported if its half-power width differs from zero by 6.1 standard deviations, which noise reaches
-    once in 1e9, and if bands shifted by half a band contain it too: poles for the tails of modes beyond a band depend on the band. Steady
+    once in 1e9, in one of two divisions (shifted by half a band), and if the other has the same pole; those of tails differ. Steady
     tones are removed first. A resonance narrower than the line spacing of a block cannot be distinguished from a tone. Participations are
     unknown: the result has no inputs. Raises `DesignError` for several records, and for a record that is too short.
     """
