@@ -18,12 +18,12 @@ CEILINGS = {
     "analysis": 71_000,
     "show": 63_700,
     "solid": 76_700,
-    "experiment": 98_900,
+    "experiment": 99_200,
     "control": 154_500,
     "studies": 69_900,
     "apps": 39_400,
     ".": 400,
-    "all": 825_100,
+    "all": 825_400,
 }
 """Code tokens of each package, to the next hundred. A change may lower a ceiling; raising one needs a decision record."""
 

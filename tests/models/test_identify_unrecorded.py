@@ -152,14 +152,20 @@ def test_modes_are_the_same_whatever_band_is_searched() -> None:
     assert np.all(found[-1].damping_deviations < 0.15 * THREE.damping)
 
 
-@pytest.mark.parametrize("seed", range(20 if FULL else 1))
-def test_modes_ten_decibels_above_the_noise_are_found_in_half_an_hour(seed: int) -> None:
+def test_modes_ten_decibels_above_the_noise_are_found_in_half_an_hour() -> None:
+    """No more than one mode in fifty is not found, as on the shipped stage; that one is listed as unsure, and nothing else is a mode."""
     peaks = np.sum(np.abs(THREE.response(THREE.frequencies)) ** 2, axis=2)  # (mode, output)
-    found = identification(
-        (white_floor(THREE, 1800.0, seed, noise=np.sqrt(0.1 * np.min(np.max(peaks, axis=1)))),), Search(excitation=Excitation.FLOOR)
-    ).found
-    assert found.frequencies.round(0).tolist() == [14.0, 36.0, 52.0]
-    assert np.max(np.abs(errors(found, THREE))) < 4.0
+    missed, seeds = 0, 20 if FULL else 1
+    for seed in range(seeds):
+        made = white_floor(THREE, 1800.0, seed, noise=np.sqrt(0.1 * np.min(np.max(peaks, axis=1))))
+        found = identification((made,), Search(excitation=Excitation.FLOOR)).found
+        told = np.isin(THREE.frequencies.round(0), found.frequencies.round(0))
+        assert found.frequencies.round(0).tolist() == THREE.frequencies[told].round(0).tolist()
+        assert np.max(np.abs(errors(found, replace(THREE, frequencies=THREE.frequencies[told], damping=THREE.damping[told])))) < 4.0
+        unsure = [peak.frequency for peak in found.peaks if peak.doubt is PeakCause.UNSURE]
+        assert np.isin(THREE.frequencies[~told].round(0), np.round(unsure)).all()
+        missed += int(np.sum(~told))
+    assert missed <= 0.02 * seeds * len(THREE.frequencies)
 
 
 @pytest.mark.parametrize(
@@ -214,6 +220,21 @@ def floor_response() -> tuple[np.ndarray, np.ndarray]:
         response[some] = 1e6 * superpose(model, wanted, lines[some], model.damping)
     velocity = 6.25e-6 / np.sqrt(np.log(2.0) / 3.0 * np.maximum(lines, 1.0))
     return response, velocity / (2.0 * np.pi * np.maximum(lines, 1.0))
+
+
+def test_a_pole_that_only_one_division_into_bands_contains_is_no_mode() -> None:
+    """Tails of the modes at 126 and 173 Hz give it a width of 11 % between them, certain to thirteen deviations."""
+    response, density = floor_response()
+    found = identification((shaken(response, density, 512.0, 9, 5e-4),), Search(band=(85.0, 210.0), excitation=Excitation.FLOOR)).found
+    assert found.frequencies.round(0).tolist() == [106.0, 106.0, 126.0, 144.0, 173.0, 173.0]
+    assert [round(peak.frequency) for peak in found.peaks if peak.doubt is PeakCause.UNSURE] == [142]
+
+
+def test_a_mode_damped_by_eight_per_cent_is_found() -> None:
+    known = replace(THREE, damping=np.array([0.02, 0.08, 0.015]))
+    found = identification((white_floor(known, 1800.0, 1, noise=1.0),), Search(excitation=Excitation.FLOOR)).found
+    assert found.frequencies.round(0).tolist() == [14.0, 36.0, 52.0]
+    assert np.max(np.abs(errors(found, known))) < 4.0
 
 
 @pytest.mark.full

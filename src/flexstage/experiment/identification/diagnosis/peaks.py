@@ -39,7 +39,7 @@ class PeakCause(Enum):
     WEAK = "weak"
     """Resonance that noise could cause."""
     UNSURE = "unsure"
-    """Resonance in outputs alone whose width is not significantly different from zero."""
+    """Resonance in outputs alone whose width is not significantly different from zero, or differs between divisions into bands."""
     FREE = "free"
     """Free oscillation that decays too little to determine its damping, or its excitation by an input."""
     NARROW = "narrow"

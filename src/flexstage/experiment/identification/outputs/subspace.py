@@ -19,6 +19,8 @@ from flexstage.experiment.records.record import Channel, Record, Responses, Role
 
 BLOCKS = 40
 """Number of blocks of a record; intervals follow from the scatter between blocks."""
+_DIVISIONS = (0.0, 0.5)
+"""Shifts of two divisions into bands, in bands: a mode must be found in both."""
 _TAPER, _SKIPPED = 0.15, 2
 _ROWS, _LONGEST, _LARGEST, _SIZE = 8, 48, 240, 36
 _FADED = 0.08
@@ -58,8 +60,8 @@ class Band:
     scale: Array
 
 
-def band_covariances(record: Record, low: float, high: float) -> tuple[list[Band], Responses]:
-    """Compute output covariances of all bands from `low` to `high` in Hz by block, and the outputs' amplitude density in unit/Hz^0.5.
+def band_covariances(record: Record, low: float, high: float) -> tuple[list[list[Band]], Responses]:
+    """Compute output covariances of bands from `low` to `high` in Hz by division and block, and the outputs' density in unit/Hz^0.5.
 
     Each block is transformed. The inverse transform of products of lines within a band, tapered at the ends, is the band's covariance R(l)
     = E[y(n + l) y(n)^H]. This is equivalent to mixing and decimation. R is divided by 1 - l/N, the fraction of the block's N samples
@@ -68,7 +70,8 @@ def band_covariances(record: Record, low: float, high: float) -> tuple[list[Band
     """
     chosen = record.select([channel.name for channel in record.outputs])
     size = record.length // BLOCKS
-    every = _divide(low, high)
+    divisions = [_divide(low, high, shift) for shift in _DIVISIONS]
+    every = [sweep for division in divisions for sweep in division]
     lags = 2 * _rows(len(chosen.channels), 1e-9) + _SKIPPED + 1
     parts: list[list[Array]] = [[] for _ in every]
     power = np.zeros((size // 2 + 1, len(chosen.channels)))
@@ -87,7 +90,9 @@ def band_covariances(record: Record, low: float, high: float) -> tuple[list[Band
         step = size / record.rate / _folded(last - first)
         bands.append(Band(covariances * scale[:, None] * scale, step, first * record.rate / size, sweep, scale))
     lines = np.fft.rfftfreq(size, 1.0 / record.rate)
-    return bands, Responses(lines[1:], record.outputs, (Channel("density", "Hz^0.5", Role.INPUT),), np.sqrt(power[1:, :, None]) + 0j)
+    rest, density = iter(bands), np.sqrt(power[1:, :, None]) + 0j
+    found = [list(itertools.islice(rest, len(each))) for each in divisions]
+    return found, Responses(lines[1:], record.outputs, (Channel("density", "Hz^0.5", Role.INPUT),), density)
 
 
 def searched_from(low: float, high: float, *, outputs: int, resolution: float) -> float:
@@ -100,14 +105,14 @@ def searched_from(low: float, high: float, *, outputs: int, resolution: float) -
     (1.4, inf)
     """
     needed = 2 * (2 * _rows(outputs, np.inf) + _SKIPPED)
-    wide = [each.first for each in _divide(low, high) if each.high - each.low >= needed * resolution]
-    return min(wide, default=np.inf)
+    wide = [[each.first for each in _divide(low, high, shift) if each.high - each.low >= needed * resolution] for shift in _DIVISIONS]
+    return max(min(each, default=np.inf) for each in wide)
 
 
-def _divide(low: float, high: float) -> list[Sweep]:
-    """Bands between powers of 1.4 Hz, independent of the searched range, extended by two fifths of their width on both sides."""
-    first, last = (np.log(each) / np.log(_RATIO) for each in (low, high))
-    limits = _RATIO ** np.arange(np.floor(first), np.ceil(last) + 1.0)
+def _divide(low: float, high: float, shift: float) -> list[Sweep]:
+    """Bands between (shifted) powers of 1.4 Hz, whatever range is searched, extended by two fifths of their width on both sides."""
+    first, last = (np.log(each) / np.log(_RATIO) - shift for each in (low, high))
+    limits = _RATIO ** (shift + np.arange(np.floor(first), np.ceil(last) + 1.0))
     return [
         Sweep(a - _MARGIN * (b - a), b + _MARGIN * (b - a), max(float(a), low), min(float(b), high))
         for a, b in itertools.pairwise(limits)

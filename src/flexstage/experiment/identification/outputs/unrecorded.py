@@ -33,8 +33,9 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
 
     The density of the exciting forces must be smooth within each band (frequency ratio 1.4). Repeated modes require excitation in as many
     independent directions. A mode is reported if its half-power width differs from zero by 6.1 standard deviations, which noise reaches
-    once in 1e9. Steady tones are removed first. A resonance narrower than the line spacing of a block cannot be distinguished from a tone.
-    Participations are unknown: the result has no inputs. Raises `DesignError` for several records, and for a record that is too short.
+    once in 1e9, in one of two divisions (shifted by half a band), and if the other has the same pole; those of tails differ. Steady
+    tones are removed first. A resonance narrower than the line spacing of a block cannot be distinguished from a tone. Participations are
+    unknown: the result has no inputs. Raises `DesignError` for several records, and for a record that is too short.
     """
     require(_floor_findings(records))
     record, tones = remove_tones(records[0].select([channel.name for channel in records[0].outputs]))
@@ -49,24 +50,31 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     if low == np.inf:
         what = f"bands between {began:.4g} and {high:.4g} Hz have too few lines in a block, a fortieth of {record.duration:.4g} s"
         require([Finding(where, what, "Record longer (modes in floor noise need minutes), or request a wider band")])
-    bands, density = band_covariances(record, low, high)
-    every = [shaken_modes(band, search.highest_damping) for band in bands]
-    modes = [
-        mode
-        for mode in _without_doubles(mode for _, found in every for mode in found)
-        if low <= abs(mode.pole) <= high and -mode.pole.real <= search.highest_damping * abs(mode.pole)
-    ]
+    divisions, density = band_covariances(record, low, high)
+    every = [[shaken_modes(band, search.highest_damping) for band in bands] for bands in divisions]
+    poles = [[mode for _, found in division for mode in found] for division in every]
+    modes, others = (
+        [
+            mode
+            for mode in _without_doubles(found)
+            if low <= abs(mode.pole) <= high and -mode.pole.real <= search.highest_damping * abs(mode.pole)
+        ]
+        for found in poles
+    )
     narrow = [mode for mode in modes if -2.0 * mode.pole.real < resolution and mode.deviation < _LOCATED * resolution]
-    wide = [mode for mode in modes if -2.0 * mode.pole.real >= resolution]
-    unsure = [mode for mode in wide if _WEAK <= _certainty(mode) < _EVIDENT]
-    found = _result(record, [mode for mode in wide if _certainty(mode) >= _EVIDENT], density, (low, high))
+    wide, also = ([mode for mode in each if -2.0 * mode.pole.real >= resolution] for each in (modes, others))
+    first = [mode for mode in wide if _certainty(mode) >= _EVIDENT and _is_among(mode, poles[1])]
+    second = [mode for mode in also if _certainty(mode) >= _EVIDENT and _is_among(mode, poles[0]) and not _is_among(mode, first)]
+    unsure = [mode for mode in wide if _certainty(mode) >= _WEAK and mode not in first and not _is_among(mode, second)]
+    certain = sorted([*first, *second], key=lambda each: abs(each.pole))
+    found = _result(record, certain, density, (low, high))
     size = np.sqrt(found.noise * (high - low))
     peaks = [
         *tone_peaks(tones, 1.0 / record.duration, record.outputs, np.where(size > 0.0, size, 1.0)),
         *(_peak(mode, PeakCause.NARROW, record.outputs, resolution) for mode in narrow),
         *(_peak(mode, PeakCause.UNSURE, record.outputs, resolution) for mode in unsure),
     ]
-    return replace(found, stabilisation=tuple(each for each, _ in every), peaks=tuple(sorted(peaks, key=lambda each: each.frequency)))
+    return replace(found, stabilisation=tuple(each for each, _ in every[0]), peaks=tuple(sorted(peaks, key=lambda each: each.frequency)))
 
 
 def _without_doubles(modes: Iterable[AmbientMode]) -> list[AmbientMode]:
@@ -76,6 +84,15 @@ def _without_doubles(modes: Iterable[AmbientMode]) -> list[AmbientMode]:
         if not any(_is_double(mode, other) for other in kept):
             kept.append(mode)
     return sorted(kept, key=lambda each: abs(each.pole))
+
+
+def _is_among(mode: AmbientMode, others: Iterable[AmbientMode]) -> bool:
+    """Whether the pole differs from one of the others by less than four standard deviations in width and in frequency."""
+    return any(
+        abs(mode.pole.real - other.pole.real) < _WEAK * np.hypot(mode.width_deviation, other.width_deviation)
+        and abs(mode.pole.imag - other.pole.imag) < _WEAK * np.hypot(mode.deviation, other.deviation)
+        for other in others
+    )
 
 
 def _is_double(first: AmbientMode, second: AmbientMode) -> bool:
@@ -175,5 +192,6 @@ def _none(modes: Sequence[AmbientMode]) -> list[str]:
 def _peak(mode: AmbientMode, doubt: PeakCause, outputs: Sequence[Channel], resolution: float) -> Peak:
     largest = np.abs(mode.shape) > 0.5
     named = tuple(channel.name for channel, is_large in zip(outputs, largest, strict=True) if is_large)
-    chance = float(scipy.special.erfc(_certainty(mode) / np.sqrt(2.0)))
+    is_in_one_division = doubt is PeakCause.UNSURE and _certainty(mode) >= _EVIDENT
+    chance = 1.0 if is_in_one_division else float(scipy.special.erfc(_certainty(mode) / np.sqrt(2.0)))
     return Peak(abs(mode.pole), doubt, chance, None if doubt is PeakCause.NARROW else -2.0 * mode.pole.real, resolution, named)
