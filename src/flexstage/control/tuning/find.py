@@ -321,10 +321,10 @@ def _unstable_places(within: Field, controller: Decentralised) -> Iterator[float
     seen, system = within.seen, controller.system(within.seen.step)
     for offset, plant in zip(seen.offsets, seen.systems, strict=True):
         poles = closed_system(plant, system).poles.astype(complex)
-        rates = poles if system.step is None else np.log(poles) / system.step
-        fastest = rates[np.argmax(np.real(rates))]
-        if abs(offset) > within.spec.spread and fastest.real >= 0.0:
-            yield abs(float(fastest.imag)) / (2.0 * np.pi) / (1.0 + offset)
+        pole = poles[np.argmax(np.real(poles) if system.step is None else np.abs(poles))]
+        rate = pole if system.step is None else np.log(pole) / system.step  # poles of delays are 0: only the fastest one has a rate
+        if abs(offset) > within.spec.spread and rate.real >= 0.0:
+            yield abs(float(rate.imag)) / (2.0 * np.pi) / (1.0 + offset)
 
 
 def _controller(within: Field, found: SearchResult) -> Decentralised:
