@@ -79,7 +79,8 @@ def test_a_solid_of_an_assembly_is_chosen_by_its_name_or_place(tmp_path: Path) -
             found = measure(path, called)
             np.testing.assert_allclose(found.size, solids[name].size, rtol=1e-9)
             assert found.volume == pytest.approx(float(np.prod(solids[name].size)), rel=1e-9)
-    for called, words in ((None, "2 solids: plate, post"), ("plat", 'have the name "plat"'), ("#3", "0 of its solids"), ("#0", "0 of its solids")):
+    refusals = {None: "2 solids: plate, post", "plat": 'have the name "plat"', "#3": "0 of its solids", "#0": "0 of its solids"}
+    for called, words in refusals.items():
         with pytest.raises(DesignError) as refused:
             measure(path, called)
         assert words in refused.value.findings[0].what
