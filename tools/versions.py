@@ -44,7 +44,8 @@ def main() -> int:
 def interpreter(version: str) -> str | None:
     """The path of a Python of that version, or None where there is none; none is downloaded."""
     done = subprocess.run([UV, "python", "find", "--no-python-downloads", version], capture_output=True, text=True, check=False)
-    return done.stdout.strip() or shutil.which(f"python{version}")
+    path = done.stdout.strip() or shutil.which(f"python{version}")
+    return path if path and not subprocess.run([path, "-c", ""], capture_output=True, check=False).returncode else None
 
 
 def run_tests(venv: Path, python: str, package: str, resolution: str) -> int:

@@ -192,7 +192,7 @@ FULL = pytest.mark.full
         ((10, 0.5, 2), 3, (0.004, 0.04)),
         pytest.param((20, 0.5, 4), 3, (0.002, 0.015), marks=FULL),
         pytest.param((20, 0.2, 4), 3, (0.001, 0.003), marks=FULL),
-        pytest.param((20, 0.2, 10), 3, (0.005, 0.003), marks=FULL),
+        pytest.param((20, 0.2, 10), 4, (0.005, 0.003), marks=FULL),
     ],
 )
 def test_modes_of_solids(size, order, error):
