@@ -25,9 +25,9 @@ def validity(part: Mechanism, where: str = "part", material: Material | None = N
 def validity(part: Part | Mechanism, where: str = "part", material: Material | None = None) -> Validity | Mapping[str, Validity]:
     """Assess the range of validity and expected error of beam theory, for a part or all parts of a stage.
 
-    A part has the name `where` in messages, and the Poisson's ratio of `material` (default: 0.3). The parts of a stage have their own names
-    and materials (a specified `material` takes precedence). Returns the validity of the part (see `beams.validity`). For a stage, returns
-    the validity of each part by address: `parts.NAME`, or the link of an overridden part.
+    For a single part, messages use the name `where`, and Poisson's ratio is that of `material` (default: 0.3). The parts of a stage have
+    their own names and materials; a specified `material` takes precedence. Returns the validity of the part (see `beams.validity`). For a
+    stage, returns the validity of each part by address: `parts.NAME`, or the link of an overridden part.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = validity(parallelogram())

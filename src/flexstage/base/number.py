@@ -114,7 +114,7 @@ def magnitude(value: Any) -> Any:
 def with_step(value: Array, slope: Array, number: Array) -> Array:
     """Return f(x + ih) = f(x) + ih f'(x) of a complex `number` x + ih, from `value` f and `slope` f' at the real part.
 
-    This is faster than a complex function. A real `number` returns `value`.
+    This is faster than evaluating f with complex numbers. For a real `number`, the result is `value`.
 
     >>> number = np.array([0.5 + 1e-20j])
     >>> bool(with_step(np.sin(number.real), np.cos(number.real), number) == np.sin(number))

@@ -28,7 +28,7 @@ _Kind = TypeVar("_Kind")
 
 
 class Walked(Enum):
-    """Annotation that includes (`VIEW`) or omits (`INNER`) a field in documents, independent of its type."""
+    """Annotation of a field: documents contain a `VIEW` field and omit an `INNER` field, whatever the type of the field."""
 
     VIEW = True
     INNER = False
@@ -46,7 +46,7 @@ class Along:
 
 @dataclass(frozen=True, init=False)
 class Axes:
-    """Annotation of an array: `fields` are the fields (names or numbers) of its last axes. A document contains the array unchanged."""
+    """Annotation of an array: `fields` are the fields (names or numbers) of its last axes. Documents contain the array without names."""
 
     fields: tuple[str, ...]
 
@@ -63,14 +63,14 @@ class UnitOf:
 
 @dataclass(frozen=True)
 class UnitIn:
-    """Annotation of numbers for tables: another `field` of the result contains their SI units."""
+    """Annotation of numbers in tables: their SI units are in another `field` of the result."""
 
     field: str
 
 
 @dataclass(frozen=True)
 class Called:
-    """Annotation with the `key` of a field whose symbol is not a Python name, e.g. R_a."""
+    """Annotation with the `key` of a field whose symbol is not a Python name (R_a)."""
 
     key: str
 
@@ -134,10 +134,10 @@ class Heading:
 class Layout:
     """Table layout of a result class, in its attribute `TABLE`: title, fields in order, heading of the name column, notes.
 
-    By default, all fields that fit in a cell are shown. A field may be a path (`requirement.key`), also to an `INNER` field. Each column of
-    a labelled matrix is a table column; fields without any value are omitted. Title and notes may contain attributes of the result, as
-    `{self.point}`. For several results, the title uses the first result; different notes are listed by name. A property `notes` of the
-    result adds notes on its values.
+    By default, all fields that fit in a cell are shown. A field may be a path (`requirement.key`); `INNER` fields may be shown too. Each
+    column of a labelled matrix is a table column; fields without any value are omitted. Title and notes may contain attributes of the
+    result, as `{self.point}`. For several results, the title uses the first result; if their notes differ, each note follows the name of
+    its result. A property `notes` of the result adds notes on its values.
     """
 
     title: str
@@ -328,7 +328,7 @@ class SideBySide:
 def values_of(record: Any) -> tuple[dict[Field, Any], dict[str, str]]:
     """Return the document fields of a result with values, and the reasons for absent values by field name.
 
-    Keys of a mapping are fields without annotations, except for its `reasons`.
+    In a mapping, each key except `reasons` is a field without annotations.
     """
     if isinstance(record, SideBySide):
         values, why = dict[Field, Any](), dict[str, str]()

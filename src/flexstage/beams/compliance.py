@@ -34,8 +34,8 @@ _EVERY: Array = np.arange(6)
 class Law:
     """Stiffness and constraints of a link: `stiffness` (..., 6, 6), zero in free and locked rows, and the `locked` DOFs.
 
-    `inner` (..., m) [1/s^2] are the squared angular frequencies of its m mass-normalised fixed-end modes, which are additional coordinates
-    of the lumped model (default: no modes). The mass matrix of the link is then (..., 12 + m, 12 + m), with the modes after the ends.
+    `inner` (..., m) [1/s^2] are the squared angular frequencies of m mass-normalised fixed-end modes (default: no modes). These modes are
+    additional coordinates of the lumped model. The mass matrix of the link has the shape (..., 12 + m, 12 + m): the modes follow the ends.
     """
 
     stiffness: Array
@@ -83,8 +83,8 @@ def law(part: Part, material: Material | None) -> Law:
 
     A `Joint` has no stiffness and locks all DOFs that are not free. Ordinary parts lock nothing.
 
-    For a `Restricted` part, K = C^-1 is reduced. Rows and columns of locked DOFs are deleted. Free DOFs f are condensed: K_ee - K_ef
-    K_ff^-1 K_fe, with the elastic DOFs e. DOFs without any stiffness are already free.
+    For a `Restricted` part, the stiffness matrix K = C^-1 is reduced. Rows and columns of locked DOFs become zero. Free DOFs f are
+    condensed: K_ee - K_ef K_ff^-1 K_fe, with the elastic DOFs e. Free DOFs that have no stiffness need no condensation.
 
     >>> law(Joint((Freedom.RZ,)), None).locked == others((Freedom.RZ,))
     True
@@ -146,7 +146,7 @@ def locked_freedoms(part: Part) -> tuple[Freedom, ...]:
 
 
 def law_of(part: Part) -> PartLaw | None:
-    """Return the part law for the part's kind (for a restricted part, of the part inside), or `None` if there is none."""
+    """Return the law for the kind of a part, or `None` if there is none. For a restricted part, the law is that of the part inside."""
     return LAWS.get(inner(part).kind)
 
 

@@ -67,7 +67,7 @@ class HingeDimensions:
     def plane_strain(self, scale: float, power: float, size: Array) -> Array:
         """Compute the plane-strain factor: from 1 - nu^2 for a width far above `size` times `scale`, to 1 for a width far below.
 
-        `power` is the exponent of the transition between them.
+        `power` is the exponent of the transition from narrow to wide hinges.
         """
         return 1.0 - self.poisson**2 / (1.0 + (scale * size / self.width) ** power)
 
@@ -77,7 +77,7 @@ Law = Callable[[HingeDimensions, Numbers], Array]
 
 
 def notch_x(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the tensile compliance of a notch: root compliance d(t/R) / (E b), with a fitted function d, and restrained contraction."""
+    """Compute the tensile compliance of a notch: root compliance d(t/R) / (E b), with d fitted; restrained contraction reduces it."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[5] + p[6] * (1.0 - flat)
     return hinge.plane_strain(p[3], p[4], hinge.half) * (hinge.beam[..., 0] + yielded / hinge.width)
@@ -86,7 +86,7 @@ def notch_x(hinge: HingeDimensions, p: Numbers) -> Array:
 def notch_y(hinge: HingeDimensions, p: Numbers) -> Array:
     """Compute the transverse compliance of a notch: root compliance, bending with restrained contraction, and the block.
 
-    Beam theory includes the block as a beam. This term is subtracted, because the block deforms as a plate.
+    Beam theory treats the block as a beam. The excess over the plate-like deformation of a wide block is subtracted.
     """
     root, flat = hinge.root, hinge.flatness
     circle = (p[0] + p[1] * root + p[2] * root**2 + p[3] * root**3) * flat ** p[9]
@@ -97,7 +97,7 @@ def notch_y(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the bending compliance of a notch about y, in the plane of its width, as for tension; roots of narrow hinges are stiffer."""
+    """Compute the bending compliance of a notch about y, in the plane of its width, like `notch_x`; narrow roots are stiffer."""
     root, flat = hinge.root, hinge.flatness
     yielded = (p[0] + p[1] * root + p[2] * root**2) * flat ** p[7] + p[8] * (1.0 - flat)
     share = 1.0 / (1.0 + p[5] * (hinge.along / hinge.width) ** p[6])
@@ -105,14 +105,14 @@ def notch_ry(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def notch_rz(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the bending compliance of a notch: the root rotation is proportional to t/R if small, and rises with Poisson's ratio."""
+    """Compute the bending compliance of a notch. For small t/R, the root rotation is proportional to t/R; it rises with nu."""
     neck = np.sqrt(hinge.thickness * hinge.radius)
     turned = _root_rotation(hinge, p) * hinge.flatness ** p[4] * (1.0 + p[5] * (hinge.poisson - 0.3))
     return hinge.plane_strain(p[2], p[3], neck) * (hinge.beam[..., 5] + turned)
 
 
 def fillet_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the transverse compliance of a fillet: plate action if wide, root rotation times its lever arms, the block as for a notch."""
+    """Compute the transverse compliance of a fillet: plate action if wide, root rotation with lever arms, block as in `notch_y`."""
     bent = _plate_share(hinge, shear_factor, p[3], p[4]) * (hinge.beam[..., 1] - hinge.shear_share)
     turned = _root_rotation(hinge, p) * (hinge.half - p[2] * hinge.along) ** 2
     return bent + hinge.shear_share * (1.0 + p[5] * hinge.root) + turned - _block_as_plate(hinge, p[6], p[7])
@@ -168,12 +168,12 @@ def bar_ry(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def bar_y(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the transverse compliance of a bar, including plate action, which its beam theory neglects."""
+    """Compute the transverse compliance of a bar, including plate action, which beam theory neglects."""
     return hinge.beam[..., 1] * (_plate_share(hinge, shear_factor, 1.0, p[0]) - hinge.poisson**2 * p[1] * _proportions(hinge)[1])
 
 
 def bar_rz(hinge: HingeDimensions, p: Numbers) -> Array:
-    """Compute the bending compliance of a bar, including plate action, which its beam theory neglects."""
+    """Compute the bending compliance of a bar, including plate action, which beam theory neglects."""
     return hinge.beam[..., 5] * _plate_share(hinge, moment_factor, 1.0, p[0])
 
 

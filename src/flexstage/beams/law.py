@@ -27,7 +27,7 @@ class Range:
     high: float = float("inf")
 
     def finding(self, where: str) -> Finding | None:
-        """Return a warning for the first design whose ratio is outside the interval, else `None`."""
+        """Return a warning if the ratio of a design is outside the interval (for a batch, the first such design), else `None`."""
         values = np.atleast_1d(self.value).ravel()
         outside = np.flatnonzero((values < self.low) | (values > self.high))
         if not outside.size:
@@ -55,13 +55,13 @@ def _no_family(_: Any) -> str | None:
 
 @dataclass(frozen=True)
 class PartLaw:
-    """Law of a kind of part, as functions of a part, or of a part and its material (`None` if `needs_material` is false).
+    """Law of a kind of part: functions of a part, or of a part and its material (`None` if `needs_material` is false).
 
-    Usually, `beam` defines compliance, mass, geometric stiffness and stress of the part. `diagonal` (..., 6) is the compliance if it
-    differs from the beam's (plates). All 6x6 matrices are about the centre. A part without a beam has:
+    Usually, `beam` defines compliance, mass, geometric stiffness and stress of the part. `diagonal` (..., 6) replaces the beam's compliance
+    for plates. All 6x6 matrices are about the centre. A part without a beam has these entries instead:
 
     - `compliance` (..., 6, 6), or `stiffness` (..., 6, 6) if it may be singular or negative in some DOFs;
-    - `material_stiffness` if the stiffness depends on the material;
+    - `material_stiffness` (..., 6, 6) instead of `stiffness` if it depends on the material;
     - `mass` (..., 12, 12).
 
     Optional entries:
@@ -70,7 +70,7 @@ class PartLaw:
     - `twisting_load`: the compression [N] at which a column of this kind buckles in twist, below Euler's load;
     - `concentration`: the stress concentration factor of its notches; without it, or if it is `None`, the stress is unknown;
     - `ranges`: ratios of dimensions with the intervals that were compared with finite elements;
-    - `family`: the name of the fitted laws for the model error;
+    - `family`: the name of the fitted function for the model error;
     - `fixed_end_modes`: the `inner_modes` lowest fixed-end modes, at stations from -1 to 1 over the half length.
     """
 

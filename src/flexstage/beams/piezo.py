@@ -32,8 +32,8 @@ class _CasedStack(Circle):
 def piezo_beam(part: Piezo) -> Beam:
     """Build the uniform round rod of a stack at constant stroke, of modulus E = k L / A, with its specified mass.
 
-    A specified `bending_rigidity` EI replaces the bending rigidity. Torsion is then G J = EI / (1 + nu), as for a round section. The shear
-    stiffness remains that of the ceramic.
+    A specified `bending_rigidity` EI replaces the bending rigidity. The torsional rigidity then becomes G J = EI / (1 + nu), as for a round
+    section. The shear stiffness remains that of the ceramic.
 
     >>> stack = Piezo(stroke=150e-6, stiffness=17e6, length=0.162, diameter=0.01)
     >>> round(float(1e-6 / piezo_beam(stack).diagonal()[0]), 9)

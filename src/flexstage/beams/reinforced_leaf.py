@@ -35,9 +35,10 @@ def reinforced_beam(part: ReinforcedLeaf, material: Material) -> Beam:
 def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
     """Compute the diagonal (..., 6) of the compliance about the centre: the beam's, reduced by the plate action of its thin ends.
 
-    Each thin end, up to its fillet, is a leaf whose two ends cannot curve across the width, with the factors of `beams.plate`. The moment
-    at its centre and the shear force have different factors. The thick middle is assumed to prevent curvature of the leaf across the width,
-    which is valid if it is twice as thick as the ends. The middle bends as a beam. With `section` beam, there is no plate action.
+    Each thin end, up to its fillet, is treated as a leaf whose two ends cannot curve across the width. `beams.plate` gives different
+    stiffness factors for the moment at the centre of the leaf and for the shear force. The thick middle is assumed to prevent curvature of
+    the leaf across the width, which is valid if it is twice as thick as the ends. This middle bends as a beam. If `section` is "beam",
+    plate action is neglected.
     """
     whole = reinforced_beam(part, material).diagonal()
     if part.section is LeafSection.BEAM:
@@ -54,8 +55,8 @@ def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
 def reinforced_plate(part: ReinforcedLeaf, material: Material) -> Beam:
     """Build the beam whose bending equals `reinforced_diagonal`: plate action reduces the flexibility of the thin ends about z.
 
-    Over each thin end, the flexibility is a + c u^2 times the beam's, with u from -1 to 1. The constants a and c match the plate's rotation
-    and its shear.
+    Over each thin end (u = -1 to 1), the flexibility of the beam is multiplied by a + c u^2. The constants a and c reproduce the plate's
+    rotation under a moment and its deflection under a shear force.
     """
     whole = reinforced_beam(part, material)
     if part.section is LeafSection.BEAM:

@@ -45,7 +45,7 @@ def parameters(stage: Mechanism) -> dict[str, Parameter]:
 
 
 def parameter(stage: Mechanism, name: str, where: str = "") -> Parameter:
-    """Return the parameter with this name. Raises `DesignError` at `where` with the nearest names.
+    """Return the parameter with this name. Raises `DesignError` with the address `where` and the nearest names.
 
     >>> from flexstage.cases.registry import case
     >>> parameter(case("double-triangle"), "long_arm").text

@@ -10,7 +10,7 @@ from flexstage.models.batch.engine import Plan, plan, platform_modes
 
 
 def drag(text: str, file: str, address: str, value: float) -> tuple[float | None, ...]:
-    """Return the platform frequencies [Hz] of the design if the number at `address` has this value."""
+    """Return the platform frequencies [Hz] of the design with the number at `address` set to `value`."""
     found = platform_modes(_plan(text, file, address), np.array([[value]])).frequencies[0]
     return tuple(None if np.isnan(each) else float(each) for each in found)
 

@@ -60,7 +60,7 @@ def _property(option: Any, names: str, meaning: str) -> dict[str, Any]:
 def specify(number: int, text: str, file: str, values: str) -> Specified:
     """Read the text of a specification and return it with its values and errors.
 
-    An empty text is replaced by the example. `values` (TOML) replace values in the text; `file` is the path of the specification.
+    An example replaces an empty text. `values` (TOML) replace values in the text; `file` is the path of the specification.
     """
     from flexstage.base.finding import DesignError
     from flexstage.mechanism.store.decode import dotted

@@ -59,7 +59,7 @@ class _Job:
 
 
 class Jobs:
-    """All jobs of a session. `tell` receives their states, `optimum` receives the text of a better design."""
+    """All jobs of a session. `tell` receives the states of the jobs; `optimum` receives the text of a better design."""
 
     def __init__(self, path: Path, tell: Callable[[say.Said], None], optimum: Callable[[str], None]) -> None:
         self.path, self._tell, self._optimum = path, tell, optimum

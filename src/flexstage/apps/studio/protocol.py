@@ -32,8 +32,8 @@ class Problem:
 class Amount:
     """A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. One display `unit` equals `factor` in SI.
 
-    `low` and `high` are the ends of its slider, within the bounds of the number. `formula` is its definition. `old` is its value in the
-    file on disk. `group` is its table in the file; `line` is its line, or the line of the table.
+    `low` and `high` are the ends of the slider, within the bounds of the number. `formula` defines the number. `old` is the value in the
+    file on disk. `group` is the table that contains the number; `line` is the line of the number, or of this table.
     """
 
     address: str
@@ -79,7 +79,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Matrix:
-    """A matrix with names of rows and columns. `unit` is one unit for all entries, or one for each entry."""
+    """A matrix with names of rows and columns. `unit` is a single unit for all entries, or a unit for each entry."""
 
     rows: tuple[str, ...]
     columns: tuple[str, ...]
@@ -100,7 +100,7 @@ class ModeShape:
     """A mode: the platform's `twist` (x y z rx ry rz, m and rad) in the mass-normalised shape, and its `share` of the kinetic energy.
 
     `kinetic` contains the energy fraction of each body, `strain` that of each link, from one per cent, the largest first. A `local` mode
-    moves mainly other bodies.
+    moves mainly bodies other than the platform.
     """
 
     number: int
@@ -233,7 +233,7 @@ class Snippet:
 
 @dataclass(frozen=True)
 class PairRow:
-    """A pair of a design job: its goal, or the reason for its failure. `file` is a name for its design, empty without an answer."""
+    """A pair of a design job: its goal, or the reason for its failure. `file` is the design's file name, or empty."""
 
     architecture: str
     actuator: str
@@ -255,8 +255,8 @@ class ResultTable:
 class JobState:
     """A job: its state, the completed `fraction`, the estimated time `left` [s], the last output lines `said`, and its results.
 
-    `report` is the address of its report, null without one. A design job has its finished `pairs`, and at its end the `tables` of its
-    command.
+    `report` is the address of its report, null without one. A job of `design` also has the finished `pairs` and, when it has ended, the
+    `tables` of the command.
     """
 
     job: int
@@ -274,7 +274,7 @@ class JobState:
 
 @dataclass(frozen=True)
 class Draft:
-    """The unsaved text of an ended studio: the `time` of its last change [s since 1970]. `stale`: the file has changed since then."""
+    """The unsaved text of an ended studio: the `time` of its last change [s since 1970]. `stale`: the file changed after this time."""
 
     name: str
     time: float
@@ -431,7 +431,7 @@ class Solid:
 
 @dataclass(frozen=True)
 class Pin:
-    """Store the present design under a name (A, B, C). If `keep` is false, remove the design of that name."""
+    """Store the present design under a name (A, B, C). If `keep` is false, remove the design pinned under this name."""
 
     id: int
     name: str
@@ -440,14 +440,14 @@ class Pin:
 
 @dataclass(frozen=True)
 class Compare:
-    """Request for the figures of the file, of the pinned designs and of the present one side by side."""
+    """Request for a comparison of the results of the file, the pinned designs and the present design."""
 
     id: int
 
 
 @dataclass(frozen=True)
 class Recall:
-    """Make the text of a pinned design the present text. The empty name is the text of the file."""
+    """Make the text of a pinned design the present text. The empty name selects the text of the file."""
 
     id: int
     name: str
@@ -488,9 +488,9 @@ class Browse:
 
 @dataclass(frozen=True)
 class Open:
-    """Open a file of the folder. If a shipped `case`, or a `pair` of a design `job`, is named, the file is first written from it.
+    """Open a file of the folder. If a shipped `case`, or a `pair` of a design `job`, is named, its design is first written to the file.
 
-    Refused if there are unsaved changes, unless `discard`.
+    Refused if there are unsaved changes, unless `discard` is true.
     """
 
     id: int
@@ -535,9 +535,9 @@ class Insert:
 
 @dataclass(frozen=True)
 class Look:
-    """Report the panes that a page shows. Only these are computed after a change; the others are computed when they are shown.
+    """Report the panes that a page shows. Only shown panes are computed after a change, other panes when they are shown.
 
-    `stage` is the picture, `motions` are its motions, `reach` contains strokes and strength.
+    The pane `stage` is the picture, `motions` contains its motions, and `reach` contains strokes and strength.
     """
 
     id: int
@@ -554,9 +554,9 @@ class JobForm:
 
 @dataclass(frozen=True)
 class Specify:
-    """Check a specification: a `text`, in which the `values` of the form (TOML) replace values, if there are any.
+    """Check the `text` of a specification, in which any `values` of the form (TOML) replace values.
 
-    An empty text is replaced by the text of `file`, a file of the folder; without a file, by the last text, or at first by an example.
+    An empty text is replaced by the text of `file` in the folder. Without a file, it is replaced by the last text, initially an example.
     """
 
     id: int
@@ -577,7 +577,7 @@ class SaveSpecification:
 
 @dataclass(frozen=True)
 class Run:
-    """Start a command as a job. `study` is the text of its study, set-up or specification; `record` is the path of a record file."""
+    """Start a command as a job. `study` is a study, set-up or specification as text; `record` is the path of a record file."""
 
     id: int
     command: Literal["analyse", "sweep", "optimise", "verify", "identify", "loop", "design"]
@@ -609,7 +609,7 @@ class Welcome:
 
 @dataclass(frozen=True)
 class State:
-    """The text and its contents, pushed at every change. `digest` is the digest of the file on disk.
+    """The text and its contents, sent to all pages after every change. `digest` is the digest of the file on disk.
 
     `sound`: the design has no error; otherwise, `problems` lists the errors, and numbers belong to the last text without errors. `changed`
     is the number of values that differ from the file. `page` made the change (0: the server). `pins` are the names of the pinned designs.
@@ -654,7 +654,7 @@ class Engine:
 
 @dataclass(frozen=True)
 class Scene:
-    """The geometry of a revision for the viewer. It has no motions if no page shows them."""
+    """The geometry of a revision for the viewer. The motions are left out if no page shows them."""
 
     revision: int
     data: Any
@@ -713,7 +713,7 @@ class Reach:
 
 @dataclass(frozen=True)
 class Warnings:
-    """Warnings and default values of a revision. This is the last message about the revision."""
+    """Warnings and default values of a revision. The server sends this message last for each revision."""
 
     revision: int
     warnings: tuple[Problem, ...]
@@ -721,11 +721,11 @@ class Warnings:
 
 @dataclass(frozen=True)
 class Card:
-    """A link: its part, its lines in the text, its 6x6 matrices about its centre in its own frame, its stress and its lost motion.
+    """A link: its part, its lines in the text, its 6x6 matrices about the part's centre in the link frame, its stress and lost motion.
 
-    `stress` [Pa] is the peak over all strokes, `limit` the allowable stress. `shares` contains its contribution to the lost motion of each
-    actuator. `facts` are further properties as text. `problems` are warnings about the part, e.g. outside the validated range of beam
-    theory. `verified` compares the link with stored results of finite elements.
+    `stress` [Pa] is the peak over all strokes, `limit` the allowable stress. `shares` contains the link's contribution to the lost motion
+    of each actuator. `facts` are further properties as text. `problems` are warnings about the part, such as dimensions outside the
+    validated range of beam theory. `verified` compares the link with stored results of finite elements.
     """
 
     to: int
@@ -761,11 +761,11 @@ class Place:
 
 @dataclass(frozen=True)
 class Motion:
-    """Linear maps of a revision, with elasticity: `platform` is the platform twist per unit input, `inputs` the inputs per unit twist.
+    """Linear maps of the elastic stage: `platform` is the platform twist per unit input, `inputs` the inputs per unit twist.
 
-    `gauges` contains the readings per input, `ideal` the twist per input without elasticity. `stress` (links x inputs) is in Pa per unit
-    input: `rest`, the stress without strokes, plus the sum of magnitudes over all inputs is an upper bound of the stress of a link.
-    `allowed` contains the allowable stresses.
+    `gauges` contains the readings per unit input; `ideal` is the platform twist per unit input of the ideal stage. `stress` (links x
+    inputs) is in Pa per unit input; `rest` is the stress without strokes. The stress of a link is at most `rest` plus the sum of the
+    magnitudes over all inputs. `allowed` contains the allowable stresses.
     """
 
     to: int
@@ -782,7 +782,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Posed:
-    """The stage at given strokes: platform twist, readings, and stress of each link. `beyond` describes exceeded limits by name."""
+    """The stage at given strokes: platform twist, readings, and stress of each link. `beyond` names and describes exceeded limits."""
 
     to: int
     twist: tuple[float, ...]

@@ -250,7 +250,7 @@ def _facts(link: PlacedLink | PlacedSuperelement) -> Iterator[Fact]:
 
 
 class Bearing:
-    """Stress of links as a function of all strokes and forces, relative to the bias. Link wrenches are linear in these inputs."""
+    """Stress of links as a function of all strokes and forces, relative to the bias. Link wrenches depend linearly on the inputs."""
 
     def __init__(self, known: StageResults) -> None:
         model = known.model

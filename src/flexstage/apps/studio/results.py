@@ -91,7 +91,7 @@ def bench(text: str, file: str) -> StageResults:
 
 
 def figures(text: str, file: str, stored: str, revision: int, choice: Choice) -> Figures:
-    """Compute stiffness, modes, responses and lost motion, of the loaded stage if its permanent load is significant.
+    """Compute stiffness, modes, responses and lost motion. If the permanent load is significant, they are those of the loaded stage.
 
     Old values are those of the text `stored` on disk.
     """
@@ -133,7 +133,7 @@ def reach(text: str, file: str, stored: str, revision: int) -> Reach:
 
 
 def errors(text: str, file: str) -> tuple[Problem, ...]:
-    """Return the errors of a readable design for which no model can be built, as `flexstage check` prints them."""
+    """Return the errors that prevent a model of a readable design, as `flexstage check` prints them."""
     from flexstage.analysis.caveats import model_findings
 
     return problems_of(model_findings(design(text, file)), text, file)

@@ -55,7 +55,7 @@ _REPORT_POLICY = (
 
 
 class Studio:
-    """A server of one design. `url` is the address to open. Browsers do not send its part after #, which is the token."""
+    """A server of one design. `url` is the address to open. The token follows the # in the address; browsers do not send it."""
 
     def __init__(self, path: Path, port: int = 0) -> None:
         self.session = Session(Stored.read(path.resolve()), self._tell_all)

@@ -49,7 +49,7 @@ Tell = Callable[[say.Said], None]
 
 
 class RefusedError(Exception):
-    """A task was refused by its process; the argument is the problems."""
+    """A task was refused by its process; the exception's argument contains the problems."""
 
 
 class Session:
@@ -122,7 +122,7 @@ class Session:
     # --- requests ---
 
     async def answer(self, request: Any, page: int, tell: Tell) -> None:
-        """Answer a request of a page with `tell`: by its result, by a refusal, or by `Done` without a result."""
+        """Answer a request of a page through `tell`: with its result, a refusal, or `Done` if the request has no result."""
         try:
             told = await self._answers[type(request)](self, request, page, tell)
         except RefusedError as error:
@@ -556,7 +556,7 @@ _FIRST: Mapping[str, float] = {"figures": 0.1, "verdicts": 0.05, "reach": 0.1, "
 
 
 def expected(stage: str, links: int, took: Mapping[str, tuple[float, int]]) -> float:
-    """Estimate the duration of a step [s] from its last duration or that for a small design, scaled with the square of the link count.
+    """Estimate the duration of a step [s]: its last one (initially for a small design), scaled with the square of the link count.
 
     >>> expected("figures", 300, {}), expected("figures", 10, {"figures": (2.0, 20)})
     (10.0, 0.5)

@@ -76,7 +76,7 @@ class Worker:
     """Process that calls `function(line, *arguments)` and puts its messages in the queue `heard`.
 
     Raises `OSError` if the process cannot be started. Exceptions `DesignError`, `MemoryError` and `OSError` of the function reach the
-    caller unchanged. Other exceptions end the process with code 1; see `last_words`.
+    caller unchanged. Any other exception ends the process with code 1; `last_words` returns its message.
 
     >>> worker = Worker(isinstance)
     >>> worker.call(Line), worker.end()
@@ -104,13 +104,13 @@ class Worker:
         self._send(function)
 
     def ask(self, *arguments: Any) -> None:
-        """Send arguments to the worker: they start a call, or answer the function's question. An ended worker reports `ENDED`."""
+        """Send arguments to the worker. They start a call, or answer a message of the function. An ended worker reports `ENDED`."""
         self._send(arguments)
 
     def call(self, *arguments: Any) -> Any:
         """Call the function and return its result, or raise its exception; the worker's queue must have no other reader.
 
-        Raises `EOFError` if the process crashed or was ended. After this error or an interrupt, the process has ended.
+        Raises `EOFError` if the process crashed or was ended. After an `EOFError` or an interrupt, the process has ended.
         """
         try:
             self.ask(*arguments)
@@ -171,7 +171,7 @@ def results(function: Callable[..., Any], calls: Iterable[tuple[Any, ...]], work
     """Yield (arguments, result) of each call of `function(line, *arguments)` in order of completion, from `workers` processes.
 
     Each process receives the function once, then the arguments of each call. If a process dies, another process repeats its call. Raises
-    `CallError` for a failed call. All processes end with the iteration.
+    `CallError` for a failed call. All processes are ended when the iteration ends.
 
     >>> sorted(result for _, result in results(isinstance, [(Line,), (int,)], 2))
     [False, True]

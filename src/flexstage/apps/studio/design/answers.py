@@ -9,7 +9,7 @@ from flexstage.apps.studio.protocol import Amount, Channel, Problem
 
 @dataclass(frozen=True)
 class Reading:
-    """Contents of a text: either problems, or a design with its numbers, channels and links. `values` are its numbers by address."""
+    """Contents of a text: problems, or a design with its numbers, channels and links. `values` are the numbers by address."""
 
     problems: tuple[Problem, ...]
     name: str = ""

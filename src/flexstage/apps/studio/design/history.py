@@ -30,14 +30,14 @@ class Stored:
 
     @classmethod
     def read(cls, path: Path) -> Stored:
-        """Read a file as it is on disk. Raises `DesignError` if it cannot be read."""
+        """Read a file as it is on disk. Raises `DesignError` if the file cannot be read."""
         raw, text = _read(path)
         mark = _MARK if raw.startswith(_MARK) else b""
         ending = "\r\n" if "\r\n" in text and text.count("\n") == text.count("\r\n") else "\n"
         return cls(path, text.replace("\r\n", "\n") if ending == "\r\n" else text, _digest(raw), mark, ending)
 
     def write(self, text: str, *, over: bool) -> Stored:
-        """Write a text to the file, completely or not at all. Refused if another program has changed the file, unless `over`."""
+        """Write a text to the file, completely or not at all. Unless `over` is true, refuse if another program has changed the file."""
         found = _digest(self.path.read_bytes()) if self.path.exists() else ""
         if found != self.digest and not over:
             what = "changed on disk by another program" if found else "removed by another program"

@@ -21,7 +21,7 @@ _FOLDER = "studio"
 
 @dataclass(frozen=True)
 class Draft:
-    """The unsaved text of a studio, its time [s since 1970], its pinned designs, the digest of its file, its port and token."""
+    """An unsaved text with its time [s since 1970], the pinned designs, the file's digest, and the studio's port and token."""
 
     time: float
     text: str
@@ -41,7 +41,7 @@ class Journal:
     _is_kept: bool = field(default=False, init=False)
 
     def keep(self, text: str, pins: Mapping[str, str], digest: str) -> None:
-        """Replace the stored text. Raises `DesignError` if it cannot be written."""
+        """Replace the stored text. Raises `DesignError` if the text cannot be stored."""
         draft = Draft(time.time(), text, pins, digest, self.port, self.token)
         place = _folder() / f"{_stem(self.path)}-{process_mark()}.json"
         try:

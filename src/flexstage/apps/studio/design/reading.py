@@ -44,7 +44,7 @@ def design(text: str, file: str) -> Mechanism:
 
 
 def read(text: str, file: str, stored: str) -> Reading:
-    """Read the contents of a text. Old values of its numbers are those of the `stored` text."""
+    """Read the contents of a text. The old values of numbers come from the `stored` text."""
     try:
         found = design(text, file)
         requirements(found)
@@ -80,7 +80,7 @@ def link_lines(mechanism: Mechanism, lines: Mapping[str, int]) -> dict[str, int 
 
 
 def address_of(mechanism: Mechanism, link: PlacedLink | PlacedSuperelement) -> str:
-    """Return the address at which the description defines a link, e.g. `units.vertical.links.pivot`."""
+    """Return the address at which the description defines a link, such as `units.vertical.links.pivot`."""
     drawn = link.described if isinstance(link, PlacedLink) else link
     return ".".join(link_path(mechanism, drawn.drawn.removeprefix("links.")))
 
@@ -193,7 +193,7 @@ def _gauges(assembly: Assembly) -> Iterator[Channel]:
 
 
 def finite(value: Any) -> float | None:
-    """Return the number of the first design, or `None` if it is absent or not finite."""
+    """Return the value of the first design of a batch, or `None` if the value is absent or not finite."""
     found = np.nan if value is None else float(np.ravel(np.real(value))[0])
     return found if np.isfinite(found) else None
 
