@@ -35,7 +35,7 @@ class Residues:
     """Modal gains (groups of modes, outputs, inputs) of the model, `theory`, and of the test, `measured`, in the same units.
 
     `inputs_known` (m,) marks inputs whose units can be converted. `direct` (m,) marks inputs recorded as the actuator's own quantity or as
-    a force. A voltage is not direct: the gain of the amplifier that follows may be unknown.
+    a force. A recorded voltage is not direct, because the gain of the amplifier after it may be unknown.
     """
 
     outputs: tuple[str, ...]
@@ -48,7 +48,7 @@ class Residues:
 
 @dataclass(frozen=True, eq=False)
 class SuspectedFault:
-    """Suspected fault of outputs, with its correction: `factors[i]` times the channel number `order[i]` replaces output i."""
+    """Suspected fault of outputs, with its correction: channel `order[i]`, multiplied by `factors[i]`, replaces output i."""
 
     what: str
     how: str
@@ -70,9 +70,10 @@ class SuspectedFault:
 def shape_doubt(outputs: tuple[str, ...], shapes: Array, score: Score, scales: Callable[[], Array] | None = None) -> SuspectedFault | None:
     """Find the correction of `outputs` that makes the measured `shapes` (p, k) similar to those of the model; `None` without one.
 
-    A correction exchanges two outputs, inverts one or two, or divides all by the values (p,) of `scales()`. If one correction is not
-    sufficient, pairs are tried; the shapes must then match almost completely. The first of several equally good corrections is returned. If
-    equally good pairs have different effects, no pair is used. `scales` is called only if an improvement is possible.
+    A correction exchanges two outputs, inverts one or two, or divides all by the values (p,) of `scales()`. If no single correction
+    suffices, pairs of corrections are tried; with a pair, the shapes must match almost completely. The first of several equally good
+    corrections is returned. If two equally good pairs have different effects, no pair is used. `scales` is called only if an improvement is
+    possible.
 
     >>> theory = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
     >>> theory = theory / np.linalg.norm(theory, axis=0)
@@ -146,7 +147,7 @@ def _remedies(outputs: tuple[str, ...], scales: Array | None) -> Iterator[Suspec
 def output_scales(theory: Array, measured: Array) -> Array:
     """Estimate the scale (p,) of every output: its `measured` amplitudes (p, groups) relative to those of the model.
 
-    The median of the scales is 1. Each group of modes may have a scale of its own, which is eliminated.
+    The median of the scales is 1. The amplitudes of each group of modes may have another scale, which does not affect the result.
 
     >>> theory = np.array([[1.0, 2.0, 1.0], [3.0, 1.0, 2.0], [1.0, 1.0, 3.0]])
     >>> output_scales(theory, theory * [[1.0], [1.0], [1000.0]] / [1.0, 2.0, 7.0]).round(3).tolist()
@@ -164,8 +165,8 @@ def output_scales(theory: Array, measured: Array) -> Array:
 def gain_doubts(residues: Residues) -> tuple[str, ...]:
     """Find inputs or outputs that appear exchanged, inverted or scaled, from their modal gains.
 
-    If exchanged outputs explain the gains better than exchanged inputs, the outputs are reported. The inputs are then tested again with
-    corrected outputs.
+    If exchanged outputs explain the gains better than exchanged inputs, the outputs are reported. In this case, the inputs are tested again
+    after correction of the outputs.
 
     >>> theory = np.array([[[1.0, 0.2], [0.1, 1.0]], [[0.3, -1.0], [1.0, 0.5]]])
     >>> gain_doubts(Residues(("S1", "S2"), ("B1", "B2"), theory, theory[:, :, ::-1], *np.ones((2, 2), dtype=bool)))
@@ -263,7 +264,7 @@ def _nearest_median(ratios: Array) -> float:
 
 
 def normalise(residues: Residues) -> Residues:
-    """Divide the gains of model and test in each group by the norm of the model's gains, so that all modes have equal weight.
+    """In each group, divide the gains of model and test by the norm of the model's gains, so that all modes have equal weight.
 
     Groups without gains in the model, apart from rounding errors, have no weight.
 

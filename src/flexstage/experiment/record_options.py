@@ -110,7 +110,7 @@ class RecordTexts:
     excitation: Excitation | None = None
 
     def options(self) -> options.Options:
-        """Convert to reader options; raises `DesignError` with all errors."""
+        """Return these options as options of the record reader; raises `DesignError` with all errors."""
         findings: list[Finding] = []
         units = _units(self.units, findings)
         accepted = [_word("--accept-fault", word, options.FaultTolerance, findings) for word in names(self.accept_fault)]
@@ -134,7 +134,7 @@ class RecordTexts:
         require(Finding(f"--{name}", "only applies with a record", "Add --record RECORD, or omit this option") for name in said)
 
     def search(self) -> Search:
-        """Convert to search parameters of the identification."""
+        """Return the search parameters of the identification."""
         band = None if self.band is None else (_hertz("--band", self.band[0]), _hertz("--band", self.band[1]))
         if self.band is not None and band is not None and band[0] >= band[1]:
             raise refuse("--band", f"{self.band[0]} to {self.band[1]} is no band", "Use a low frequency and a higher one")
@@ -143,7 +143,7 @@ class RecordTexts:
         return Search(band=band, segments=None if lines is None else Segments(1.0 / lines), excitation=moved)
 
     def requirements(self, model: LinearModel | None, highest: float | None = None) -> RecordRequirements:
-        """Convert to record requirements: the model's outputs, resolution, and a rate for the band, else for the `highest` mode [Hz]."""
+        """Return the requirements on a record: the model's outputs, the resolution, and the band, else the `highest` mode [Hz]."""
         top = _hertz("--band", self.band[1]) if self.band is not None else highest
         outputs = None if model is None else tuple((channel.name, channel.unit) for channel in model.outputs)
         unrecorded = self.excitation not in (None, Excitation.RECORDED)
@@ -167,7 +167,7 @@ def open_records(paths: Sequence[Path], reader: options.Options) -> list[Record 
 
 
 def identify_records(paths: Sequence[Path], texts: RecordTexts, model: LinearModel | None, highest: float | None = None) -> Identification:
-    """Identify the modes of records and print each warning. The stage's model and `highest` mode [Hz], if known, define requirements."""
+    """Identify the modes of records and print each warning. If known, `model` and the `highest` mode [Hz] set requirements on them."""
     reader, search, needs = texts.options(), texts.search(), texts.requirements(model, highest)
     with progress_bar() as shown, followed(shown.share):
         seen = identification(usable_measurement(open_records(paths, reader), reader.accept_faults, needs), search)

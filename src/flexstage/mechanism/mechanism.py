@@ -70,10 +70,10 @@ class Link(Description):
     along `bends`, the axis of compliant rotation, which is required for parts that are not axisymmetric. `free` overrides the ideal degrees
     of freedom of the part. Instead of `at` and `along`, two ends can be specified: `start` at the first body, `end` at the second.
 
-    A part with ports (a superelement) joins a body at each named port; several ports may join the same body. The link frame is then the
-    frame of the part's axes. With two ports, `free` lists the degrees of freedom of the second port's body relative to the first port's
-    body, in the link frame. `circuit` names the input of a force actuator. Force actuators of one circuit are in series on one amplifier
-    and share the input. A `-` before the name reverses the polarity (push-pull).
+    A part with ports (a superelement) joins a body at each named port; several ports may join the same body. The link frame of such a part
+    has the part's axes. With two ports, `free` lists the degrees of freedom of the second port's body relative to the first port's body, in
+    the link frame. `circuit` names the input of a force actuator. Force actuators of one circuit are in series on one amplifier and share
+    the input. A `-` before the name reverses the polarity (push-pull).
     """
 
     joins: Joins
@@ -109,9 +109,9 @@ class Unit(Description):
     Links may also join bodies of the stage (`ground`, `platform`, ...) and of other instances (`W/carriage`). `stiffness` is the unit's
     stiffness in actuator coordinates for the mapped model (default: computed for a direct or a lever unit).
 
-    `like` names another unit. The unit inherits the bodies and links of the other unit, except for names that it defines itself. Overrides
-    of the other unit (`inner/front.thickness`) are inherited too; the unit's own overrides (`outer/front.at.x`) take precedence.
-    `stiffness` is not inherited.
+    The unit inherits the bodies and links of another unit, named by `like`, except for names that it defines itself. Overrides of the other
+    unit (`inner/front.thickness`) are inherited too; the unit's own overrides (`outer/front.at.x`) take precedence. `stiffness` is not
+    inherited.
     """
 
     bodies: Mapping[str, Body] = _empty()
@@ -133,7 +133,7 @@ class Probe(Description):
     """Gauges (displacement sensors) for the motion of `body` relative to `base`, along or about the x axis of the pattern's frame.
 
     The measuring point is the frame's origin. For a gap gauge, x points to the target: the gap opens if the target moves along +x.
-    `positive` specifies whether the reading increases with an opening or a closing gap. Other gauges have no `positive`: their reading
+    `positive` specifies whether the reading increases when the gap opens or when it closes. Other gauges have no `positive`: their reading
     increases with motion along +x, or with right-handed rotation about +x.
     """
 
@@ -196,8 +196,8 @@ class Force(Description):
 class StrokePath(Description):
     """Load path of a stage: `drive` (a coordinate such as `platform.y`, a stack, a load) varies between the two values of `to`.
 
-    The values are strings with units, relative to the static equilibrium. Equilibria are computed at a number of `points`. `hold` specifies
-    the constant conditions, for example:
+    Both values are strings with units, relative to the static equilibrium. Equilibria are computed at a number of `points`. `hold`
+    specifies the constant conditions, for example:
 
     - `{"platform.x": "-20 N"}`: a permanent load along a coordinate;
     - `{"platform.rz": "0"}`: a coordinate fixed at its static equilibrium;

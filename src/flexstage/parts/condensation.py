@@ -37,10 +37,10 @@ class Condensed:
     """Superelement reduced to p ports and m fixed-interface modes [SI].
 
     A port's twist is about the port's origin, in its axes; the ports are in the order of their rows in the file. `stiffness` (6 (p - 1), 6
-    (p - 1)) is for all ports except the first, which is fixed. `squares` (m,) are the squared angular frequencies of the mass-normalised
-    modes. `inertia` (6 p + m, 6 p + m) is for all coordinates. `damping` (6 (p - 1) + m, 6 (p - 1) + m) is for the ports except the first,
-    and the modes (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3) about the centre, in the part's axes, are computed from
-    rigid motions. `error` is the stiffness of rigid motions, which is removed, relative to the softest elastic motion.
+    (p - 1)) belongs to all ports except the first, which is fixed. `squares` (m,) are the squared angular frequencies of the
+    mass-normalised modes. `inertia` (6 p + m, 6 p + m) belongs to all ports and the modes, `damping` (6 (p - 1) + m, 6 (p - 1) + m) to all
+    except the first port (`None`: undamped). `mass`, `centre` (3,) and `moments` (3, 3) about the centre, in the part's axes, are computed
+    from rigid motions. `error` is the ratio of the removed stiffness of rigid motions to the stiffness of the softest elastic motion.
     """
 
     stiffness: Array
@@ -65,7 +65,7 @@ def condense(part: Superelement, where: str = "superelement") -> Condensed:
 
 
 def superelement_findings(part: Superelement, where: str) -> Iterator[Finding]:
-    """Return the errors of a superelement. Their addresses begin with `where` (`parts.frame.ports.left.row`)."""
+    """Return the errors of a superelement. The addresses of the errors begin with `where` (`parts.frame.ports.left.row`)."""
     result = _condensed(part)
     if isinstance(result, DesignError):
         yield from (_at(where, finding) for finding in result.findings)
@@ -410,7 +410,7 @@ def _dense(matrix: MatrixLike) -> Array:
 def superelement(part: Superelement) -> Superelement:
     """Return the part with absolute paths and the current digest of its files; raises `DesignError` like `condense`.
 
-    Use it for parts created in Python from new files. A design file specifies the digest.
+    Use this function for parts created in Python from new files. In a design file, the digest is specified.
     """
     whole = replace(
         part, **{key: str(Path(path).resolve()) for key in ("file", "stiffness_file", "mass_file") if (path := getattr(part, key))}

@@ -20,7 +20,7 @@ from flexstage.parts.superelement import Port
 class Restricted(Description):
     """Restricted part: `elastic` degrees of freedom keep their compliance, `free` ones have no stiffness, all others are locked.
 
-    It is massless. It reproduces the hinge assumptions of a paper's equations, for comparison of models.
+    It is massless. It reproduces the hinge assumptions of published equations, for comparison of models.
     """
 
     kind: ClassVar[str] = "restricted"
@@ -36,7 +36,7 @@ class Restricted(Description):
 
     @property
     def mirrored(self) -> Restricted | None:
-        """Mirror image with the same restriction."""
+        """Mirror image of the part, with the same elastic and free DOFs."""
         inside = self.part.mirrored
         return None if inside is None else self if inside is self.part else replace(self, part=inside)
 

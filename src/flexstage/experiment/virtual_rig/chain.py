@@ -34,12 +34,12 @@ _LINES = 4096
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """Transfer functions of the measuring chain, from white noise of unit variance, at the frequency lines of a transform.
+    """Transfer functions from white noise of unit variance to the signals of the measuring chain, at the spectral lines of a transform.
 
-    The transform has three blocks of `size` samples at `finer` times the sampling rate. `strokes` (l, m) is the transfer function to the
-    inputs after the amplifiers, `inputs` (l, m) to the recorded inputs [m, A or N], `outputs` (l, p, m) to the gauges [m, rad]. Their l
-    lines end with the drive's band. `gauge` (f, p) is the transfer function to the gauges' noise, at all lines. `note` describes the
-    damping model.
+    The transform covers three blocks of `size` samples; the sampling rate is multiplied by `finer`. `strokes` (l, m) are transfer functions
+    to the inputs after the amplifiers. `inputs` (l, m) lead to the recorded inputs [m, A or N], `outputs` (l, p, m) to the gauge readings
+    [m, rad]. These functions use the first l spectral lines, up to the end of the drive's band. `gauge` (f, p) are transfer functions to
+    the noise of the gauges, at all f lines. `note` describes the damping model.
     """
 
     size: int
@@ -132,7 +132,7 @@ def amplitude_shape(frequencies: Array, band: tuple[float, float]) -> Array:
     >>> (amplitude_shape(np.array([4.0, 10.0, 100.0, 112.5, 130.0]), (10.0, 100.0)) ** 2).round(6).tolist()
     [0.0, 1.0, 1.0, 0.25, 0.0]
 
-    The edges follow the error function: their impulse response decays as a Gaussian, so that blocks overlap little.
+    The edges follow the error function: their impulse response decays like a Gaussian function, so that adjacent blocks overlap little.
     """
     low, high = band
     upper = (frequencies - high) / (TAPER * high)

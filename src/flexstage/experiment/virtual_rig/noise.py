@@ -11,7 +11,7 @@ from flexstage.base.stream import generator
 
 
 class Stream(IntEnum):
-    """Kind of noise source; each has its own random numbers."""
+    """Kind of noise source. Different kinds use different random numbers."""
 
     DRIVE = 0
     GAUGE = 1
@@ -20,7 +20,7 @@ class Stream(IntEnum):
 
 
 def white(seed: int, stream: Stream, channel: int, block: int, size: int) -> Array:
-    """Generate white Gaussian noise (size,) of unit variance for a block of a channel's stream. Blocks count from -1.
+    """Generate white Gaussian noise (size,) of unit variance for a block of a channel's stream. The first block has the number -1.
 
     >>> first = white(7, Stream.DRIVE, 0, 0, 3)
     >>> bool(np.all(first == white(7, Stream.DRIVE, 0, 0, 3))), bool(np.any(first == white(7, Stream.DRIVE, 1, 0, 3)))

@@ -56,7 +56,7 @@ def load(path: str | os.PathLike[str], *, checked: bool = True) -> Mechanism:
 def loads(text: str, *, where: str = "text", checked: bool = True, folder: Path | None = None) -> Mechanism:
     """Read the text of a design file and return the description.
 
-    `where` is the name of the text in error messages. Relative paths are relative to `folder`. `checked` is as for `load`.
+    `where` is the name of the text in error messages. Relative paths are relative to `folder`. `checked` has the same meaning as in `load`.
 
     >>> loads("format = 'flexstage 1'; name = 'empty'".replace("; ", chr(10)), checked=False).name
     'empty'

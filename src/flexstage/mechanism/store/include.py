@@ -31,7 +31,7 @@ class Included:
     origin: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
     def located(self, findings: list[Finding]) -> Iterator[Finding]:
-        """Yield the errors; an error in an included entry gets the file and line of the entry."""
+        """Yield all errors; the address of an error in an included entry begins with the file and line of the entry."""
         for finding in findings:
             file, text = self.origin.get(entry_of(finding.where), ("", ""))
             yield from with_lines([finding], text, file) if file else (finding,)

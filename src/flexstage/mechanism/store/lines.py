@@ -16,7 +16,7 @@ _OWNER = re.compile(r"(?P<owner>[^/.\s]+)/(?P<name>[^/.\s]+)(?:\.(?P<rest>.*))?"
 
 
 def with_lines(findings: Iterable[Finding], text: str, where: str) -> Iterator[Finding]:
-    r"""Yield the errors with the file `where` and the line before their addresses; inside an inline table, the line of the table.
+    r"""Yield the errors with the file `where` and the line before their addresses; a key of an inline table has the table's line.
 
     >>> result = with_lines([Finding("placements.B1.unit", "it is lost", "Find it")], "[placements]\nB1 = { unit = 1 }", "stage.toml")
     >>> print(next(result))
@@ -38,7 +38,7 @@ class Spot:
 
 
 def spot_of(finding: Finding, where: str) -> Spot:
-    """Return the position of an error in the file `where`. For an error in another file, the address is its full text.
+    """Return the position of an error in the file `where`. For an error in another file, the address includes that file's name.
 
     >>> spot_of(Finding("stage.toml:2: placements.B1.unit", "it is lost", "Find it"), "stage.toml")
     Spot(address='placements.B1.unit', line=2, column=None)
@@ -50,9 +50,9 @@ def spot_of(finding: Finding, where: str) -> Spot:
 
 
 def line_of(address: str, lines: Mapping[str, int]) -> int | None:
-    """Return the line of an address; else of the nearest enclosing table, or of its first key; else `None`.
+    """Return the line of an address. Without one, return the line of the nearest enclosing table or of its first key, else `None`.
 
-    For a link of an instance, it is the line where the unit's link is drawn.
+    For a link of an instance, the line is that of the link in the unit.
 
     >>> line_of("B1/front.thickness", {"units": 1, "units.lever.links.front": 4, "placements.B1": 9}), line_of("gravity", {})
     (4, None)
@@ -88,7 +88,7 @@ def _ways(address: str, lines: Mapping[str, int]) -> Iterator[str]:
 
 
 def line_numbers(text: str) -> Mapping[str, int]:
-    r"""Return the line of every table heading and of every key at the start of a line, by address; for an array of tables, the first line.
+    r"""Return the lines of table headings and of keys at the start of a line, by address. For an array of tables, the first line counts.
 
     >>> dict(line_numbers("rate = 1\n[floor]\nx.y = 2"))
     {'rate': 1, 'floor': 2, 'floor.x.y': 3}

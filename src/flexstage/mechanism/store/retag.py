@@ -25,7 +25,7 @@ else:
 def set_tags(text: str, tags: Mapping[str, str], *, where: str = "text") -> str:
     """Return a design file's text with `tags` by address, written in the tables of the values; tags of overrides are in `[tags]`.
 
-    Raises `DesignError` if the file's layout does not allow it.
+    Raises `DesignError` if the layout of the file does not allow these tags.
 
     >>> text = 'format = "flexstage 1"' + chr(10) + 'name = "a"' + chr(10) + 'max_mode_frequency = "1 kHz"  # enough' + chr(10)
     >>> print(set_tags(text, {"max_mode_frequency": "derived test"}))

@@ -26,7 +26,7 @@ KEPT = "-drawn"
 
 @dataclass(frozen=True, eq=False)
 class ReplacementPart:
-    """Compliance matrix `given` that replaces a drawn part (named in `given.replaces`) in the `links` (addresses in the description)."""
+    """Compliance matrix `given` that replaces the drawn part `given.replaces` in some `links`, named by their addresses."""
 
     given: ComplianceMatrix
     links: tuple[str, ...]

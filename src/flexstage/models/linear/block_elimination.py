@@ -46,10 +46,10 @@ class _Solution:
 
 @dataclass(frozen=True, eq=False)
 class ConstraintSolution:
-    """Motions that satisfy the constraints, over N coordinates.
+    """Solution of the constraints: the motions of N coordinates that satisfy them.
 
-    `last` is the elimination of the platform's coordinates and the strokes. `idle` are k rows (N,), one free internal mode per
-    unconstrained coordinate. `redundant` lists, for each state of self-stress, the numbers of its constraints.
+    `last` is the last elimination, of the platform's coordinates and the strokes. `idle` contains a free internal mode (a row (N,)) for
+    each unconstrained coordinate. `redundant` lists the numbers of the constraints in each state of self-stress.
     """
 
     last: Elimination

@@ -23,9 +23,10 @@ _RANK = 1e-9
 class Blockage:
     """Cause of an immobile stroke: the locked DOFs that work against it, largest force first, and the DOFs to free.
 
-    `against` and `free` contain names `link.freedom`. It is sufficient to free any one DOF of `free`; if `together`, all are necessary.
+    `against` and `free` contain names `link.freedom`. If `together` is false, it is sufficient to free any one DOF of `free`; otherwise,
+    all must be freed.
 
-    `ends` are ground or platform if the actuator joins them directly and its own locked DOFs prevent its stroke: a hinge is missing there.
+    `ends` (ground or platform) lack a hinge: the actuator joins them directly, and its own locked DOFs prevent its stroke.
     """
 
     against: tuple[str, ...]
@@ -35,10 +36,10 @@ class Blockage:
 
 
 def blockage(constraints: Array, stroke: int, names: Sequence[str], intended: frozenset[str]) -> Blockage:
-    """Find the blockage of the stroke in column `stroke`, from scaled `constraints` (m, N) with `names`.
+    """Find the locked DOFs that block the stroke in column `stroke` of the scaled `constraints` (m, N), which have `names`.
 
-    The first six columns belong to the platform. The DOFs to free must allow the stroke to move the platform. Names in `intended` (ideal
-    DOFs of their parts) are freed first.
+    The first six columns belong to the platform. After the returned DOFs are freed, the stroke must move the platform. Ideal DOFs of their
+    parts (`intended`) are preferred.
 
     >>> rows = np.zeros((3, 7))
     >>> rows[0, [0, 6]], rows[1, 0], rows[2, 1] = (1.0, -1.0), 1.0, 1.0

@@ -37,7 +37,7 @@ class Place:
 class Motions:
     """Matrices (..., 6, n) that give the twists of bodies from n model coordinates.
 
-    `bodies` has one for each body at its reference point. The function `at` returns the matrix of a body at a frame.
+    `bodies` contains the matrix of each body at its reference point. The function `at` returns the matrix of a body at a frame.
     """
 
     bodies: Mapping[str, Array]
@@ -164,7 +164,7 @@ def see(sight: Sight, at: Callable[[str, Frame], Array]) -> Array:
 def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> dict[str, Array]:
     """Compute the deformation (..., r, m) of each stroke actuator's link per unit of each input.
 
-    `deformations` (..., r) are per unit stroke, by link. Columns of other inputs are zero.
+    `deformations` (..., r) contains, by link, the deformation per unit stroke. Columns of other inputs are zero.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand
@@ -179,7 +179,7 @@ def imposed_strokes(assembly: Assembly, deformations: Mapping[str, Array]) -> di
 def exerted_wrenches(assembly: Assembly) -> dict[str, Array]:
     """Compute the wrench (..., 6, m) of each input on the second body of each force actuator's link, in the link frame.
 
-    The opposite wrench acts on the first body. Both act at the link's centre.
+    The opposite wrench acts on the first body. Both wrenches act at the link's centre.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.assembly.expand import expand

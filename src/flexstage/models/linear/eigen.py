@@ -89,7 +89,7 @@ def eigenvalues(model: LinearModel) -> Array:
 def lowest_modes(model: LinearModel) -> Eigen:
     """Compute all modes; for a large sparse model, only about 30 of the lowest modes.
 
-    The last cluster of these modes is omitted, because it may be incomplete.
+    For a large model, the highest cluster of computed modes is omitted, because the cluster may be incomplete.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

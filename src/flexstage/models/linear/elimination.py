@@ -78,14 +78,14 @@ def _require_none(others: Array) -> None:
 
 
 def unlike(number: int, what: str) -> DesignError:
-    """Build the error for a design of a batch (`number` from 0) that is inconsistent with the choices for the first design."""
+    """Build the error for design `number` (from 0) of a batch; `what` is its structural difference from the first design."""
     return refuse("designs", f"design {number + 1} of the batch {what}", "Analyse the designs one by one")
 
 
 def eliminate_each(constraints: Array, scale: Array, keep: tuple[int, ...] = ()) -> Elimination:
     """Eliminate like `eliminate`, but with separate pivots for each design of a batch. Results equal single-design results bit for bit.
 
-    `scale` is (..., N). Designs may differ in the independent coordinates outside `keep`; the returned indices belong to the first design.
+    `scale` is (..., N). Outside `keep`, designs may have other independent coordinates; the returned indices are the first design's.
 
     Raises `DesignError` if designs differ in the independent coordinates within `keep`, or in the number of independent coordinates.
 

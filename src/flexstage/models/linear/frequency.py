@@ -37,7 +37,7 @@ class Response(Result):
     provenance: str
 
     def at(self, output: str, input: str) -> Array:  # noqa: A002 the field's word
-        """Return one entry over frequency, complex (..., f).
+        """Return one entry of the response as a function of frequency, complex (..., f).
 
         >>> one = Response(np.array([1.0]), (Channel("x", "m"),), (Channel("fx", "N"),), np.array([[[2j]]]), "")
         >>> one.at("x", "fx").tolist()
@@ -68,12 +68,12 @@ class Response(Result):
 
     @property
     def real(self) -> Annotated[Array, VIEW, Axes("frequencies", "rows", "columns")]:
-        """Real part of each entry over frequency."""
+        """Real part of each entry at each frequency."""
         return np.real(self.values)
 
     @property
     def imaginary(self) -> Annotated[Array, VIEW, Axes("frequencies", "rows", "columns")]:
-        """Imaginary part of each entry over frequency."""
+        """Imaginary part of each entry at each frequency."""
         return np.imag(self.values)
 
     def to_xarray(self) -> Any:
@@ -88,13 +88,13 @@ class Response(Result):
 def transfer(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
     """Compute the frequency response H (..., f, p, m) = y/u at `frequencies` (f,) in Hz.
 
-    The model is M z'' + D z' + K z = B u - M_b u'', y = C z + D_f u. Its solution depends on the damping:
+    The model is M z'' + D z' + K z = B u - M_b u'', y = C z + D_f u. The method of solution depends on the damping:
 
     - Modal and Rayleigh damping: exact superposition of all modes, H = C Phi d(omega)^-1 Phi^T (B + omega^2 M_b) + R B + D_f. The residual
       R = C K^-1 - C Phi Lambda^-1 Phi^T is the static response of DOFs without inertia.
-    - Structural damping: direct solutions with K* - omega^2 M. A stroke u exerts K_p (1 + j eta_p) u; a link force has the same loss
-      factor.
-    - Dampers of parts (`LinearModel.viscous`) couple modes: direct solutions for any damping law.
+    - Structural damping: direct solution at each frequency with the matrix K* - omega^2 M. A stroke u exerts K_p (1 + j eta_p) u; a link
+      force has the same loss factor.
+    - Dampers of parts (`LinearModel.viscous`) couple modes: direct solution at each frequency, with any damping law.
 
     A frequency of zero gives the static gain.
 
@@ -212,9 +212,9 @@ def _direct(stiffness: Array, inertia: Array, chosen: Ports, omega: Array, dampe
 
 
 def superpose(model: LinearModel, chosen: Ports, frequencies: Array, damping: Damping) -> Array:
-    """Compute H (..., f, p, m) by modal superposition: as `transfer`, but with equivalent modal damping ratios for structural damping.
+    """Compute H (..., f, p, m) by modal superposition. Unlike `transfer`, use equivalent modal damping ratios for structural damping.
 
-    This agrees with the time-domain model (`state_space`).
+    The result agrees with the time-domain model (`state_space`).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.mechanism import StructuralDamping

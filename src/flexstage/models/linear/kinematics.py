@@ -21,7 +21,7 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, TWIST_UNITS, WRENCH_UNIT
 
 @dataclass(frozen=True)
 class FreeInternalMode:
-    """Free internal mode, independent of strokes and platform (a spinning strut). In it, `bodies` move and `links` deform."""
+    """Free internal mode, independent of strokes and platform (a spinning strut): `bodies` move and `links` deform."""
 
     TABLE: ClassVar[Layout] = Layout("Free internal modes (zero stiffness)", "bodies links")
 
@@ -44,10 +44,10 @@ class Kinematics(Result):
     The platform twist at its reference point is x = V xi; xi are the platform coordinates named in `coordinates` (all six for f = 6).
     `actuation` is da/dxi (..., n, f) with the strokes a, `sensing` ds/dx (..., g, 6) with the readings s, `motion` is V (..., 6, f).
 
-    `bodies` (..., N, f) is the motion of all body coordinates per xi. `strains` (..., 6, f) is the deformation of each link per xi in its
-    frame, nonzero only in free DOFs and strokes. `free` has the free DOFs of each link. `length` (...) is the scale that makes rotations
-    comparable with translations. `blocked` has the blockage of each immobile actuator. `gauge_units` are the units of the readings (absent:
-    m), `sums` the weights of the gauges in each sum of gauges.
+    `bodies` (..., N, f) is the motion of all body coordinates per unit xi. `strains` (..., 6, f) is the deformation of each link in the
+    link frame per unit xi; only free DOFs and strokes deform. `free` contains the free DOFs of each link. `length` (...) is the scale that
+    makes rotations comparable with translations. `blocked` contains the blockage of each immobile actuator. `gauge_units` are the units of
+    the readings (absent: m), `sums` the weights of the gauges in each sum of gauges.
 
     `actuators` are the stroke actuators, `thrusts` the force actuators, which do not determine motion. `thrust` (..., f, t) is V^T W, the
     generalised force on xi per unit of a force actuator's input (`thrust_inputs`: N or A).
@@ -88,7 +88,7 @@ class Kinematics(Result):
 
     @property
     def immobile(self) -> tuple[str, ...]:
-        """Actuators whose stroke is zero in all ideal motions of the platform, because rigid links block it (first design)."""
+        """Actuators without stroke in all ideal motions of the platform, because rigid links block them (first design of a batch)."""
         scaled = first_design(np.real(self.actuation) * self._rotations_as_lengths, 2)
         size = np.max(np.abs(scaled), axis=-1, initial=0.0)
         return tuple(name for name, largest in zip(self.actuators, size, strict=True) if largest < 1e-9)
@@ -109,8 +109,8 @@ class Kinematics(Result):
         With six DOFs, V is the identity, and the result is the whole wrench at the platform's reference point. W is R_f^T times the force
         per unit input, where R_f = d(elongation)/dx of the force actuators.
 
-        With fewer DOFs, only the work of W in the ideal motions is known; locked DOFs carry the other components. A row is then the force
-        conjugate to its coordinate. Positive inputs push the faces of the actuator apart.
+        With fewer DOFs, only the work of W in the ideal motions is known; locked DOFs carry the other components. Each row is the force
+        conjugate to one platform coordinate. Positive inputs push the faces of the actuator apart.
         """
         rows = [COMPONENTS.index(name) for name in self.coordinates]
         units = ratio_units(tuple(WRENCH_UNITS[row] for row in rows), self.thrust_inputs)
@@ -120,8 +120,8 @@ class Kinematics(Result):
     def commanded(self) -> Annotated[tuple[str, ...], VIEW]:
         """Platform coordinates that strokes and forces can command independently of all others (first design).
 
-        They are all ideal motions if R_a and V^T W together have rank f. Without force actuators, they are those that the strokes
-        determine.
+        If R_a and V^T W together have rank f, all platform coordinates are included. Without force actuators, only coordinates that the
+        strokes determine are included.
         """
         first = np.real(self.actuation[(0,) * (self.actuation.ndim - 2)]), np.real(self.thrust[(0,) * (self.thrust.ndim - 2)])
         scale = first_design(self._rotations_as_lengths, 2)[0]
@@ -138,7 +138,7 @@ class Kinematics(Result):
 
     @property
     def first_length(self) -> float:
-        """The `length` of the first design, by its real part."""
+        """The real part of `length` in the first design."""
         return float(np.real(first_design(np.asarray(self.length), 0)))
 
     @property
@@ -181,7 +181,7 @@ class Kinematics(Result):
 
     @property
     def seen(self) -> Array:
-        """Readings (..., t, f) of the `telling` gauges per ideal motion."""
+        """Readings (..., t, f) of the `telling` gauges per unit of each ideal motion."""
         if not self.sums:
             return self.sensing @ self.motion
         return self.sensing[..., [self.gauges.index(name) for name in self.telling], :] @ self.motion

@@ -130,7 +130,7 @@ class Solver:
         return bool(np.min(pivots) > SINGULAR)
 
     def solve(self, load: Array) -> Array:
-        """Solve for q (n, k) under loads (n, k). Raises `DesignError` if double precision does not suffice."""
+        """Solve K q = `load` for the coordinates q (n, k). Raises `DesignError` if double precision does not suffice."""
         try:
             motion, left = _refine(load, self._direct, self._missing)
         except RuntimeError:
@@ -156,7 +156,7 @@ class Solver:
     def follow(self, imposed: Array) -> Array:
         """Compute q (n, k) that minimises the energy if `imposed` strains (R, k) are added to the strains of q: K q = -G^T k `imposed`.
 
-        The strains are not converted to forces, because rounding would disturb their equilibrium. Raises `DesignError` as `solve`.
+        The strains are not converted to forces, because rounding would disturb their equilibrium. Raises `DesignError` as `solve` does.
         """
         motion, left = self._with_strains(np.zeros((len(self.scale), imposed.shape[1])), imposed)
         self._require(left)
@@ -178,10 +178,10 @@ class Solver:
 
 
 def least_strain(rows: Any, rigid: Array, imposed: Array) -> Array | None:
-    """Compute motions q (n, k) for which the strains `rows` q + `imposed` (R, k) are zero where `rigid` (R,) is true, else minimal.
+    """Compute motions q (n, k) that minimise the strains `rows` q + `imposed` (R, k); the strains marked in `rigid` (R,) must be zero.
 
-    Strains and motions are both unknowns. In the factor, rigid strains have a small compliance, so that the factor exists for redundant
-    constraints. Returns `None` if these equations do not determine the motions.
+    Strains and motions are both unknowns. The factorised matrix gives rigid strains a small compliance, so that redundant constraints do
+    not make the matrix singular. Returns `None` if strains and constraints do not determine the motions.
     """
     count, size = rows.shape
     give = scipy.sparse.diags_array(np.where(rigid, 0.0, 1.0))
@@ -259,8 +259,8 @@ def lowest(solver: Solver, inertia: Quadratic, count: int = _LEAST) -> tuple[Arr
 def least_ratios(solver: Solver, taken: Quadratic, count: int) -> tuple[Array, Array]:
     """Compute the smallest eigenvalues mu (k,) of T x = mu K x, ascending, and shapes (n, k) with x^T K x = 1, for T in `taken`.
 
-    Returns fewer than `count` values if further ones are too close to each other to converge, e.g. many near zero. The start vector is
-    constant.
+    Returns fewer than `count` values if further eigenvalues are too close together to converge, for example many near zero. The start
+    vector is constant.
     """
     size = taken.rows.shape[1]
     stiffness, inverse = (

@@ -52,22 +52,22 @@ class LinearModel(InNotebook, CheckedFields):
     - `imposed` (..., r, m): for each stiffness contribution, the deformation that inputs impose (the free stroke of a stack): B = force +
       sum G^T k imposed.
     - `output` C (..., p, n) and `feedthrough` D_u (..., p, m).
-    - `rigid` (..., n, 6): motion of all coordinates if the stage moves rigidly with the ground, per ground twist at the platform's
-      reference point; `rigid_output` (..., p, 6): the outputs in this motion.
+    - `rigid` (..., n, 6): motion of all coordinates when the stage moves rigidly with the ground, per unit ground twist at the platform's
+      reference point; `rigid_output` (..., p, 6): outputs of the same motion.
     - `base_inertia` (..., n, 6): inertial force per unit base acceleration.
-    - `inertial` (..., n, m): M_u, inertial forces due to motions that inputs impose (default: zero).
+    - `inertial` M_u (..., n, m): inertial forces due to the motions that inputs impose (default: zero).
     - `unknown`: outputs that the model does not determine, i.e. forces of locked DOFs.
 
-    Batch axes come first. An array without batch axes is valid for every design. `viscous` are the dampers (..., d, d) [N s/m] of parts, by
-    stiffness contribution. A damper resists the rate of the contribution's elastic deformation (G q minus the imposed deformation) in the
-    first d rows. The damping law of the model is added. Link forces do not include dampers.
+    Batch axes come first. An array without batch axes is valid for every design. `viscous` contains damping matrices (..., d, d) [N s/m] of
+    parts, by the name of the stiffness contribution. They multiply the rates of the first d elastic deformations (G q minus the imposed
+    deformation). The model's damping law acts in addition. Link forces do not include forces of dampers.
 
-    `idle` names coordinates without stiffness (free internal modes), which are removed. The kept coordinates are M-orthogonal to the
-    removed modes. Frequencies and shapes thus do not depend on the choice of coordinates. `idle_output` (..., p, k) are the outputs of the
-    k free internal modes, `idle_inertia` (..., k, 6) their inertial forces per ground acceleration (default of both: none).
+    `idle` names removed coordinates, which have no stiffness (free internal modes). The kept coordinates are M-orthogonal to the removed
+    modes, so that frequencies and shapes do not depend on the choice of coordinates. `idle_output` (..., p, k) are the outputs of the k
+    free internal modes, `idle_inertia` (..., k, 6) their inertial forces per unit ground acceleration.
 
-    `floating` (n, k) are the mass-normalised motions without stiffness of a force-driven platform (default: none). K is then singular, and
-    `solve` returns the elastic displacement without momentum in these motions (inertia relief).
+    `floating` (n, k) are the mass-normalised motions without stiffness of a force-driven platform (default: none). If there are any, K is
+    singular, and `solve` returns the elastic displacement without momentum in the floating motions (inertia relief).
 
     The model of a large stage `is_sparse`: operators and outputs are sparse (`flexstage.base.sparse`). `solve` and `momenta` use no dense
     matrix; K and M are assembled on request.
@@ -123,7 +123,7 @@ class LinearModel(InNotebook, CheckedFields):
 
     @property
     def is_sparse(self) -> bool:
-        """Whether operators and outputs are sparse; only for a single design."""
+        """Whether operators and outputs are sparse, which is possible only for a single design."""
         return isinstance(self.output, Rows)
 
     @cached_property
@@ -157,7 +157,7 @@ class LinearModel(InNotebook, CheckedFields):
         return float(np.median(stiff[used] / heavy[used])) if used.any() else 1.0
 
     def follow(self, strains: Mapping[str, Array]) -> Array:
-        """Compute the motion (..., n, k) of least energy under added strains (..., r, k) by part: -K^-1 sum G^T k strain."""
+        """Compute the motion (..., n, k) of least energy when `strains` (..., r, k) of parts are added: -K^-1 sum G^T k strain."""
         if self.is_sparse:
             return self.solver.follow(np.concatenate([strains[name] for name in self.stiffness]))
         forces = (_transpose(part.operator) @ (part.law @ strains[name]) for name, part in self.stiffness.items())
@@ -183,7 +183,7 @@ class LinearModel(InNotebook, CheckedFields):
 
     @property
     def loss_matrix(self) -> Array:
-        """Compute the imaginary part of B (..., n, m) under structural damping: imposed deformations have the part's loss factor."""
+        """Compute the imaginary part of B (..., n, m) under structural damping, due to loss factors of parts with imposed strokes."""
         return self._of_imposed(lost=True)
 
     def _of_imposed(self, *, lost: bool) -> Array:
@@ -262,7 +262,7 @@ def _sum_by_columns(contributions: Contributions, size: int) -> Array:
 
 
 def strain_forces(contributions: Contributions, strains: Mapping[str, Array]) -> Array:
-    """Compute generalised forces (..., n, k) of strains (..., r, k) by contribution: the sum of operator^T law strain.
+    """Compute the generalised forces (..., n, k) of the `strains` (..., r, k) of all contributions: the sum of operator^T law strain.
 
     >>> half = Contribution(np.array([[1.0, -1.0]]), np.array([[0.5]]))
     >>> strain_forces({"a": half, "b": half}, {"a": np.array([[2.0]]), "b": np.array([[4.0]])}).tolist()

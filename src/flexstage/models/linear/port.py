@@ -20,9 +20,9 @@ class Ports:
     """Selected inputs u and outputs y: M z'' + D z' + K z = `force` u - `inertial` u'', y = `output` z + `feedthrough` u.
 
     - `force` (..., n, m), `inertial` (..., n, m), `output` (..., p, n), `feedthrough` (..., p, m).
-    - For ground motion, z is relative to the ground, y absolute; `inertial` is zero for inputs that impose no motion.
+    - For ground motion, z is relative to the ground, but y is absolute. For inputs that impose no motion, `inertial` is zero.
     - `lost` (..., n, m): imaginary part of the force with structural damping (see `LinearModel.loss_matrix`).
-    - `loss` (..., p): for an output that is a link force, the loss factor of the link; else zero.
+    - `loss` (..., p): the loss factor of the link for an output that is a link force; zero for other outputs.
     """
 
     inputs: tuple[Channel, ...]
@@ -42,7 +42,7 @@ def ports(model: LinearModel, outputs: str | Iterable[str], inputs: str | Iterab
 
     - the model inputs (strokes; wrenches on platform and points);
     - wrench components on any body whose twist is an output (`B1/tip.fx`, at the reference point of the body, stage axes);
-    - absolute ground motion `ground.x` ... `ground.rz` (m, rad; at the platform's reference point).
+    - absolute ground motion (m, rad) at the platform's reference point, `ground.x` to `ground.rz`.
 
     Raises `DesignError` for all unknown names, each with the most similar known names.
 

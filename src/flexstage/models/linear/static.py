@@ -24,9 +24,10 @@ def displacement(model: LinearModel, load: Array) -> Array:
 
 
 def input_motion(model: LinearModel, columns: list[int], amounts: Array | None = None) -> Array:
-    """Compute the coordinates q = K^-1 B u (..., n, k) under some inputs: one unit of each, or `amounts` (..., columns, k).
+    """Compute the coordinates q = K^-1 B u (..., n, k) for the inputs in `columns`: one unit of each, or `amounts` (..., columns, k).
 
-    Strokes of a large stage are imposed as strains. If they were imposed as forces, rounding in a long chain would disturb the equilibrium.
+    In a large stage, strokes are imposed as strains, not as forces, because rounding errors of forces would disturb the equilibrium of a
+    long chain.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -37,7 +37,7 @@ def require_known(model: LinearModel, outputs: Iterable[str]) -> None:
 def require_still(model: LinearModel, outputs: Iterable[str]) -> None:
     """Raise `DesignError` for gauges that measure a free internal mode, because its static displacement is undetermined.
 
-    Twists of the bodies that move in the mode are permitted outputs.
+    Twists of the bodies that move in a free internal mode are permitted outputs.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
@@ -108,7 +108,8 @@ def require_held(model: LinearModel, outputs: Iterable[str], inputs: Iterable[st
 def require_balanced(model: LinearModel, where: str, load: Array, rows: list[int] | None = None) -> None:
     """Raise `DesignError` for a static load that drives a free internal mode: no equilibrium exists.
 
-    `load` is a wrench (6,) on the body whose twist is in the outputs `rows`. Without rows, it is the acceleration of gravity (6,).
+    If `rows` are the outputs for the twist of a body, `load` is a wrench (6,) on this body. Without `rows`, `load` is the acceleration of
+    gravity (6,).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped
