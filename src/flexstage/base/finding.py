@@ -104,7 +104,7 @@ def join_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def combine_warnings(warnings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Merge warnings that differ only in object and value into one with the worst value and the number of warnings.
+    """Merge warnings that differ only in object and value into one warning with the worst value and the number of warnings.
 
     >>> large = [Finding(f"B{each}", f"stress too large (got {each} MPa, expected 1 MPa or less)", "Reduce it") for each in (2, 4, 3)]
     >>> print(*combine_warnings(large))

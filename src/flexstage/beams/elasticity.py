@@ -28,7 +28,8 @@ Numbers = tuple[float, ...]
 class HingeDimensions:
     """Dimensions of a hinge (...): thickness, width, half length, arc semi-axes, Poisson's ratio.
 
-    `beam` (..., 6) is the diagonal of its compliance by beam theory times Young's modulus. Hinges without arcs do not use the semi-axes.
+    `beam` (..., 6) is the diagonal of the hinge's compliance by beam theory, times Young's modulus. Hinges without arcs do not use the
+    semi-axes.
     """
 
     thickness: Array
@@ -136,7 +137,7 @@ def _root_rotation(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def wu_zhou_rotation(young: Number, width: Number, thickness: Number, radius: Number) -> Number:
-    """Compute the rotational compliance of a right-circular notch about z [rad/(N m)] (Wu & Zhou, Rev. Sci. Instrum. 73, 2002), s = R/t.
+    """Compute the rotational compliance of a right-circular notch about z [rad/(N m)], with s = R/t (Wu & Zhou, RSI 73, 2002).
 
     >>> float(f"{wu_zhou_rotation(200e3, 10.0, 1.0, 5.0):.7g}")
     1.539997e-05

@@ -31,8 +31,8 @@ _UNIT = np.eye(6)
 class Frame:
     """Frame relative to an outer frame: `rotation` (..., 3, 3) has its axes as columns, `position` (..., 3) [m] is its origin.
 
-    `mirrored`: the axes are left-handed, as of a frame seen in a mirror. Points, directions and inertias transform as usual. Twists do not:
-    convert their frame with `right_handed` first.
+    `mirrored`: the axes are left-handed, as of a frame seen in a mirror. Points, directions and inertias transform as usual. Twists need a
+    right-handed frame: convert a mirrored frame with `right_handed` first.
     """
 
     rotation: Array
@@ -50,7 +50,7 @@ class Frame:
 
     @property
     def right_handed(self) -> Frame:
-        """This frame if it is right-handed; a mirrored frame with its y axis reversed.
+        """The frame itself if it is right-handed; otherwise the frame with its y axis reversed.
 
         >>> reflection(0).right_handed.rotation.diagonal().tolist()
         [-1.0, -1.0, 1.0]
@@ -173,7 +173,7 @@ def normalise(vector: Array) -> Array:
 
 
 def axes(along: Vector | Array, up: Vector | Array | None = None) -> Array:
-    """Build the rotation matrix with the x axis `along` and the z axis `up`. Both become unit vectors; z is made perpendicular to x.
+    """Build the rotation matrix with the x axis `along` and the z axis `up`. Vectors are normalised; z is made perpendicular to x.
 
     Without `up`, z is the stage's z axis made perpendicular to x, or its y axis if `along` is within 5 degrees of z.
 

@@ -34,9 +34,9 @@ _YIELD = Bound(low=0.5, high=1.0, open_low=True, open_high=True)
 class VariedTable:
     """A variable of a study: one or several numbers of the design (`address`), or parameters of the case (`parameter`).
 
-    Several numbers change together. Without `address` and `parameter`, the variable's name is the address. The range is `from` ... `to`,
-    with units or in percent of the design's value. `logarithmic`: equally spaced values have equal ratios. `levels`: number of values in a
-    grid. `step`: manufacturing increment; rounded values are multiples of it.
+    Several numbers change together. Without `address` and `parameter`, the variable's name is the address. `from` and `to` are the ends of
+    the range, with units or in percent of the design's value. `logarithmic`: equally spaced values have equal ratios. `levels`: number of
+    values in a grid. `step`: manufacturing increment; rounded values are multiples of it.
     """
 
     low: Amount = field(metadata={KEY: "from"})
@@ -82,10 +82,10 @@ class OptimiseTable:
 class ScatterTable:
     """Scatter of numbers of the same quantity, at one or several addresses (`address`). By default, the entry's name is the address.
 
-    The distribution is normal with the standard deviation `normal`, or uniform with the half width `uniform`. Both have a unit or are in
-    percent of the design's value. `within` truncates a normal distribution. `interval` is an asymmetric tolerance (lower, upper). The
-    distribution between both ends is uniform; with `normal`, it is normal about their middle, and truncated at the ends. `independent`:
-    every instance has its own deviation.
+    The distribution is normal with the standard deviation `normal`, or uniform with the half width `uniform`. `normal` and `uniform` have a
+    unit or are in percent of the design's value. `within` truncates a normal distribution. `interval` is an asymmetric tolerance (lower,
+    upper) with a uniform distribution. If `normal` is also specified, the distribution is normal about the middle of the interval and
+    truncated at its ends. `independent`: every instance has its own deviation.
     """
 
     address: Texts | None = None
@@ -100,8 +100,8 @@ class ScatterTable:
 class ToleranceTable:
     """Number of `copies` (samples), their `sampling` and `seed`, and the required `yield` of each requirement.
 
-    `requirements`: the requirements of the design file are included. `crosstalk`: the platform's crosstalk at a `point` is computed, by
-    default if the strokes determine the platform.
+    `requirements`: the requirements of the design file are included. `crosstalk`: compute the platform's crosstalk at a `point` (default:
+    if the strokes determine the platform).
     """
 
     copies: Annotated[int, _TWO] = 1024
@@ -135,7 +135,7 @@ class StudyFile:
 
 
 def study_file(text: str, where: str) -> StudyFile:
-    """Parse the text of a study's file. Raises `DesignError` with all errors in it.
+    """Parse the text of a study's file. Raises `DesignError` with all errors of the text.
 
     >>> study_file('format = "flexstage study 1"' + chr(10) + 'case = "parallelogram"', "here").sweep.seed
     0

@@ -165,7 +165,7 @@ def posed(text: str, file: str, to: int, inputs: Mapping[str, float]) -> Posed:
 
 
 def slopes(text: str, file: str, to: int, revision: int) -> Slopes:
-    """Compute exact derivatives of frequencies and losses, and the effect of one per cent of each number on the lowest margin."""
+    """Compute exact derivatives of frequencies and losses, and the effect of a 1 % change of each number on the lowest margin."""
     known = bench(text, file)
     found = sensitivities(known.mechanism, modes=12)
     platform = known.modes.platform

@@ -75,7 +75,7 @@ def read_design(text: str, where: str) -> Mechanism:
 
 
 def record_from(record: type[_Record], raw: dict[str, Any], form: str, *, tagged: bool = True) -> _Record:
-    """Decode a tree with `format = form` into an object of the class `record`; raises `DesignError` with all errors.
+    """Decode a tree with the format `form` into an object of the class `record`; raises `DesignError` with all errors.
 
     The fields of the class have the same annotations as those of a description. If a key is a Python keyword, its field has a final
     underscore. `tagged`: tables may have tags, which are dropped.

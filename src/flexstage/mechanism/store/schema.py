@@ -16,7 +16,7 @@ from flexstage.mechanism.store.include import INCLUDE
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON Schema of a design file. Each class is a definition; quantities are strings with a unit as in the example.
+    """Return the JSON Schema of a design file. Each class is a definition; quantities are strings with a unit.
 
     >>> schema()["properties"]["max_mode_frequency"]["examples"]
     ['4 kHz']

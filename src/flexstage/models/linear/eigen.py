@@ -36,7 +36,7 @@ class Eigen:
 
 
 def eigen(model: LinearModel) -> Eigen:
-    """Compute eigenvalues and shapes of the undamped model (Eq. 28 of Shin & Moon), without modes that have no inertia.
+    """Compute eigenvalues and shapes of the undamped model (equation 28 of Shin & Moon), without modes that have no inertia.
 
     The problem is solved with K^-1 M and K = L L^T, so that M may be singular. Sign rule: the largest component of a shape, with rotations
     multiplied by 0.1 m, is positive. A design whose K is not positive definite gives NaN.

@@ -95,7 +95,7 @@ class Kinematics(Result):
 
     @property
     def mapping(self) -> Annotated[Matrix, Called("R_a")]:
-        """R_a = da/dxi: strokes per platform motion (Eq. 13 of Shin & Moon; da/dx for six DOFs).
+        """R_a = da/dxi: strokes per platform motion (equation 13 of Shin & Moon; da/dx for six DOFs).
 
         Raises `DesignError` if the stage is under-actuated.
         """
@@ -152,7 +152,7 @@ class Kinematics(Result):
 
     @property
     def gauge_mapping(self) -> Annotated[Matrix, Called("R_s")]:
-        """R_s = ds/dx: gauge readings per platform motion (Eq. 14 of Shin & Moon)."""
+        """R_s = ds/dx: gauge readings per platform motion (equation 14 of Shin & Moon)."""
         return Matrix(self.sensing, self.gauges, COMPONENTS, ratio_units(self.reading_units, TWIST_UNITS))
 
     @property

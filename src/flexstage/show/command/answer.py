@@ -43,8 +43,8 @@ _MAPPING = "mapping: 0 strokes"
 class CommandResult:
     """The result of a command: `body` of its JSON document, `tables`, and `report` as HTML, each computed on request.
 
-    `mechanism` is the description, or `None` if the command read a record only; `model` is the theory. `warnings` are warnings about the
-    result, listed after those about the description.
+    `mechanism` is the description, or `None` if the command read a record only; `model` is the kind of model. `warnings` are warnings about
+    the result, listed after those about the description.
     """
 
     mechanism: Mechanism | None
@@ -164,7 +164,7 @@ def write_workbook(target: Path | None, body: Callable[[], Any], about: Callable
 
 
 def list_caveats(kind: str, mechanism: Mechanism | None, more: tuple[Finding, ...] = ()) -> Iterator[str]:
-    """List as text the warnings about a description, `more` warnings about the result, and the default values that affect the result.
+    """Yield texts with the warnings about a description, `more` warnings about the result, and default values that affect the result.
 
     `kind` is the kind of the result. Without a description (`None`), only the warnings about the result are listed.
     """
@@ -185,7 +185,7 @@ def print_missing(missing: Mapping[str, str], *, forced: bool = False) -> None:
 def show(shown: Iterable[Table | str | None]) -> None:
     """Print tables and lines of text to stdout, separated by empty lines. `None` is ignored.
 
-    Tables have the width of the terminal. If the output is not a terminal, they are not folded and have no escape codes.
+    Tables have the width of the terminal. If the output is not a terminal, tables are not folded and have no escape codes.
     """
     console = Console(file=sys.stdout, highlight=False, markup=False)
     width = console.width if console.is_terminal else _UNFOLDED

@@ -50,7 +50,7 @@ Temperature: TypeAlias = Annotated[str | None, temperature_option("0 K")]
 
 @dataclass(frozen=True)
 class OperatingPointOptions:
-    """Operating-point options of a command. True if one is used; otherwise, results belong to the undeformed configuration."""
+    """Operating-point options of a command. True if any option is used; otherwise, results are for the undeformed stage."""
 
     at: At = None
     load: Load = None
@@ -78,7 +78,7 @@ class OperatingPointOptions:
         return fixed
 
     def brought(self, model: Nonlinear) -> dict[str, float]:
-        """Return the values of the prescribed coordinates by name, in SI units."""
+        """Return the values of the coordinates prescribed with `--at` by name, in SI units."""
         return read_pairs(self.at or (), "--at", lambda name, value, where: parse(value, quantity_of(model, name), where=where))
 
     @property
@@ -92,8 +92,8 @@ class OperatingPointOptions:
 class CommandStage:
     """The stage of a command: at an `operating_point`, or in the undeformed configuration with the `effect` of its permanent load.
 
-    `model` is the theory. `linear` is the linear model about the operating point. `links` is the same model with separate links, for lost
-    motion and drift.
+    `model` is the kind of model. `linear` is the linear model about the operating point. `links` is the same model with separate links, for
+    lost motion and drift.
     """
 
     mechanism: Mechanism
@@ -156,7 +156,7 @@ def _operating_point_tables(found: OperatingPoint) -> Iterator[Table]:
 
 
 def loads_of(model: Nonlinear, texts: Sequence[str], option: str = "--load") -> dict[str, float]:
-    """Read loads from the texts NAME=VALUE of an `option`. Returns their values by name, in SI units."""
+    """Read loads from the texts NAME=VALUE of an `option`. Returns the loads by name, in SI units."""
     units = {channel.name: channel.unit for channel in model.inputs}
 
     def read(name: str, value: str, where: str) -> float:

@@ -46,7 +46,7 @@ _PENDING: ContextVar[_Pending | None] = ContextVar("outputs that wait", default=
 def pending_outputs() -> Generator[None]:
     """Write all output files of the `with` block together at its end, or none of them after a failure.
 
-    An unmet requirement is not a failure; neither is a pipe closed by its reader.
+    Unmet requirements, and pipes closed by their readers, do not count as failures.
     """
     pending = _Pending()
     token = _PENDING.set(pending)

@@ -44,7 +44,7 @@ def names(texts: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def first_that_parses(text: str, known: Mapping[_Name, Quantity]) -> tuple[_Name, float] | None:
-    """Find the first known quantity that fits the unit of a text. Returns its name and the value in SI units, or `None`."""
+    """Find the first known quantity that fits the unit of a text. Returns the quantity's name and the value in SI units, or `None`."""
     for name, quantity in known.items():
         try:
             return name, parse(text, quantity)

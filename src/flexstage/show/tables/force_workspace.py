@@ -22,7 +22,7 @@ def force_workspace_tables(found: ForceWorkspace) -> Iterator[Table | None]:
 
 
 def drive_force_tables(found: DriveForce | None) -> Iterator[Table | None]:
-    """Tabulate the drive force per displacement and its excess over the ideal guide, in total and by flexure. Empty without a result.
+    """Tabulate the drive force per displacement and its excess over the ideal guide, in total and by flexure; none if `found` is `None`.
 
     >>> list(drive_force_tables(None))
     []

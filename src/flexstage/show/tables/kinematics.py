@@ -82,7 +82,7 @@ def force_table(kinematics: Kinematics) -> Table | None:
 
 
 def mapping_table(kinematics: Kinematics) -> Table:
-    """Tabulate R_a = da/dxi, the stroke of each actuator for each motion of the platform. Raises `DesignError` if under-actuated.
+    """Tabulate R_a = da/dxi, the stroke of each actuator per platform motion. Raises `DesignError` if the stage is under-actuated.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -115,7 +115,7 @@ def jacobian_table(kinematics: Kinematics) -> Table:
 
 
 def motion_table(kinematics: Kinematics) -> Table | None:
-    """Tabulate V, the ideal motions of a platform with fewer than six DOFs. Returns `None` for other platforms.
+    """Tabulate V, the ideal motions of a platform with fewer than six DOFs. Returns `None` for platforms with six DOFs.
 
     Entries outside the named coordinates are parasitic motions.
 

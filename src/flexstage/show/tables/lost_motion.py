@@ -79,7 +79,7 @@ _OWN_AND_OTHERS = "Links without a unit's name belong to the actuator's own unit
 
 
 def named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
-    """Return the contributions to an actuator's loss, the largest first: by link and axis in its own unit, by link in other units.
+    """Return the contributions to an actuator's loss, the largest first. Links in other instances have one entry for all axes.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -93,9 +93,9 @@ def named_budget(lost: LostMotion, actuator: str) -> dict[str, float]:
 
 
 def name_links(shares: Mapping[str, float], actuator: str, link: Callable[[str], str]) -> dict[str, float]:
-    """Rename contributions of links for one actuator: links of its own instance lose the instance's name.
+    """Rename contributions to one actuator's loss: names of links in the actuator's instance are shortened to `link.axis`.
 
-    Contributions in other instances are added up, under the name that the function `link` returns.
+    Contributions of links in other instances are added up under the name that the function `link` returns.
 
     >>> name_links({"B1/front.rz": 1.0, "B2/front.ry": 2.0, "B2/front.rz": 3.0, "guide.y": 4.0}, "B1", lambda name: name.partition(".")[0])
     {'front.rz': 1.0, 'B2/front': 5.0, 'guide.y': 4.0}
@@ -129,7 +129,7 @@ def share_rows(columns: Mapping[str, Mapping[str, float]], total: str) -> list[t
 
 
 def foreign_links(ranked: Iterable[str], columns: Mapping[str, Mapping[str, float]]) -> list[str]:
-    """Select, from all links `ranked` by size, the links of other units with a significant contribution to a loss in `columns`.
+    """Select links in instances of units that contribute significantly to a loss in `columns`, from links `ranked` by contribution.
 
     >>> foreign_links(["front.rz", "B2/front", "B2/back"], {"B1": {"front.rz": 0.02, "B2/front": 0.01, "B2/back": 0.0002}})
     ['B2/front']
@@ -166,7 +166,7 @@ def gain_table(lost: LostMotion) -> Table:
 
 
 def crosstalk_table(lost: LostMotion) -> Table:
-    """Tabulate R_a V^+ T: the achieved fraction of each commanded stroke (diagonal), and the coupling to other actuators.
+    """Tabulate R_a V^+ T: the achieved fractions of commanded strokes (diagonal), and the coupling between actuators.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle

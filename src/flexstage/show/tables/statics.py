@@ -61,7 +61,7 @@ def freedom_stiffness_table(freedoms: FreedomStiffness) -> Table:
 
 
 def mass_tables(mass: MassMatrix) -> Iterator[Table]:
-    """Tabulate two mass matrices at a point: that of its body with payloads, and that of the whole stage by static condensation.
+    """Tabulate two mass matrices at a point: of the point's rigid body with payloads, and of the whole stage by static condensation.
 
     >>> import flexstage as fs
     >>> stage = fs.case("parallelogram")

@@ -12,7 +12,7 @@ from flexstage.show.table import Column, Table, result_table, text_table
 
 
 def lever_table(found: Mapping[str, UnitResult]) -> Table | None:
-    """Tabulate the spring constants and arms of lever units, as in Eqs. 3-11 of Shin & Moon; `None` without lever units.
+    """Tabulate the spring constants and arms of lever units, as in equations 3-11 of Shin & Moon; `None` without lever units.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.linear_statics.units import units

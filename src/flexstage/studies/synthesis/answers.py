@@ -73,16 +73,17 @@ def design(  # noqa: PLR0913 (its options)
 ) -> Answers:
     """Design stages for a specification: every architecture that has the required motions, with every allowed actuator of the catalogue.
 
-    First, bounds exclude pairs (`flexstage.studies.synthesis.bounds`). The others are optimised within the requirements by
-    `studies.optimise`, and again with corrected limits as long as a requirement is missed with elastic bodies or at large displacements.
-    For the first three answers, `verify` (e.g. `solid.required_values`) repeats this with finite elements, `tolerance` computes the yield,
-    and `close_loop` (e.g. `control.sensitivity_crossover`) computes the sensitivity crossover of the control loop. An empty `architectures`
-    means all.
+    First, pairs that cannot meet a bound are excluded (`flexstage.studies.synthesis.bounds`). The other pairs are optimised within the
+    requirements by `studies.optimise`. Limits are corrected and optimisation is repeated as long as a requirement is missed with elastic
+    bodies or at large displacements. For the first three answers, `verify` (such as `solid.required_values`) repeats the search with finite
+    elements, `tolerance` computes the yield, and `close_loop` (such as `control.sensitivity_crossover`) computes the sensitivity crossover
+    of the control loop. If `architectures` is empty, all are used.
 
-    `finished` receives each result of a pair as soon as it is known; a later result of the same pair replaces it.
+    `finished` receives the result of each pair as soon as it is known, and again after each change.
 
-    Results of pairs are written to the folder `keep`, and read from there if `how` resumes. Results do not depend on the number of
-    processes. A keyboard interrupt ends the search with the answers so far. Raises `DesignError` if no architecture has the motions.
+    Results of pairs are written to the folder `keep`, and read from this folder if `how.resume` is true. Results do not depend on the
+    number of processes. After a keyboard interrupt, the answers found so far are returned. Raises `DesignError` if no architecture has the
+    required motions.
 
     >>> from flexstage.studies.synthesis.specification import loads_specification
     >>> found = design(loads_specification('''

@@ -51,7 +51,7 @@ _TURNS: Mapping[str, Array] = {
 
 @dataclass(frozen=True)
 class LeafRule:
-    """Guided leaves with a fraction `share` of the displacement at their end, which must fit into a `room` (formula)."""
+    """Guided leaves whose end moves by the fraction `share` of the displacement; the formula `room` is the available length."""
 
     share: float
     room: str
@@ -126,7 +126,7 @@ class CatalogueActuator:
 
     @property
     def stiffness(self) -> float:
-        """Stiffness along the stroke [N/m]; u'ku for an amplified actuator with the free deformation u per stroke."""
+        """Stiffness along the stroke [N/m]; for an amplified actuator, u'ku with the free deformation u per unit stroke."""
         if self.kind == "piezo":
             return float(self.part.stiffness)
         return float(self.part.free_deformation @ self.part.between @ self.part.free_deformation)
@@ -225,7 +225,7 @@ class Variable:
 
 
 def variables(architecture: Architecture, known: Mapping[str, Amount]) -> Iterator[Variable]:
-    """Yield the numbers of an architecture that the search varies, with their ranges. The initial value is limited to its range."""
+    """Yield the numbers of an architecture that the search varies, with their ranges. Each initial value is limited to the range."""
     for name, formulas in architecture.ranges.items():
         low, start, high = (evaluate(parse_expression(text), known) for text in formulas)
         most = max(float(high.value), 1.05 * float(low.value))
@@ -279,7 +279,7 @@ def draw(
 ) -> str:
     """Return the text of an architecture's design file for a specification, with the initial values of the search.
 
-    Requirements in `replaced` have other limits, or are left out (`None`).
+    `replaced` changes the limits of requirements, or removes requirements (`None`).
     """
     known = scope(architecture, spec, actuator)
     document = tomlkit.parse(architecture.text)
@@ -375,7 +375,7 @@ def study_text(architecture: Architecture, spec: Specification, actuator: Catalo
 def tolerance_text(architecture: Architecture, spec: Specification, actuator: CatalogueActuator, limits: Mapping[str, str]) -> str:
     """Return the tolerance study of a design: lengths, and the thickness of every hinge, are uniformly distributed within the tolerance.
 
-    `limits` are requirements of the design. Requirements on its named numbers, which are rules of the architecture, are left out.
+    `limits` are requirements of the design. Requirements on named numbers, which are rules of the architecture, are left out.
     """
     spread = f'uniform = "{_mm(spec.make.tolerance)}"'
     lines = ['format = "flexstage study 1"', f"name = {json.dumps(spec.name)}", f'design = "{DESIGN}"', ""]

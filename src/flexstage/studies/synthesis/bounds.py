@@ -21,11 +21,13 @@ def stroke_energy(stroke: float, stiffness: float, count: int = 1) -> float:
 
 
 def stiffness_bound(energy: float, displacement: float, negative_stiffness: float = 0.0) -> float:
-    """Return the largest stiffness K [N/m, N m/rad] along a motion that actuators of imposed stroke displace by X in both directions.
+    """Return the largest stiffness K [N/m, N m/rad] along a motion of +-X that is driven by actuators with imposed stroke.
 
-    The bound is K X^2 <= U (1 + N/K); N >= 0 is the negative part of the passive stiffness along the motion. Proof: with stroke ratios G,
-    the stiffness is K = G'kG + P, with a passive part P >= -N. Strokes u move the stage by K x = G'k u. Hence x'Kx = (k^1/2 G x)'(k^1/2 u)
-    is at most (x'G'kGx)^1/2 (u'ku)^1/2 <= (x'Kx + N x'x)^1/2 U^1/2. The largest K is the positive root of K^2 - (U/X^2) K - (U/X^2) N = 0.
+    The bound is K X^2 <= U (1 + N/K) with the stroke energy U; N >= 0 is the negative part of the passive stiffness along the motion.
+    Proof: with stroke ratios G, the stiffness is K = G'kG + P, with a passive part P >= -N. Strokes u displace the stage by x: K x = G'k u.
+    Hence x'Kx = (k^1/2 G x)'(k^1/2 u) is at most (x'G'kGx)^1/2 (u'ku)^1/2 <= (x'Kx + N x'x)^1/2 U^1/2. The largest K is the positive root
+    of K^2
+    - (U/X^2) K - (U/X^2) N = 0.
 
     >>> round(stiffness_bound(0.025, 1e-3))
     25000
@@ -39,9 +41,8 @@ def stiffness_bound(energy: float, displacement: float, negative_stiffness: floa
 def frequency_bound(energy: float, displacements: Mapping[str, float], masses: Mapping[str, float]) -> float:
     """Return the highest first natural frequency [Hz] of a stage that reaches all displacements together.
 
-    The energies of the motions add up: sum K_j X_j^2 <= U, as the mean over the corners of the required displacements. By Rayleigh's
-    quotient, (2 pi f)^2 M_j <= K_j for the first frequency f, thus (2 pi f)^2 <= U / sum M_j X_j^2. Springs of negative stiffness are
-    excluded.
+    Averaged over the corners of the required displacements, the energies of the motions add up: sum K_j X_j^2 <= U. By Rayleigh's quotient,
+    (2 pi f)^2 M_j <= K_j for the first frequency f, therefore (2 pi f)^2 <= U / sum M_j X_j^2. Springs of negative stiffness are excluded.
 
     >>> round(frequency_bound(2 * stroke_energy(1e-3, 0.35e6), {"x": 0.5e-3, "y": 0.5e-3}, {"x": 1.0, "y": 1.0}), 1)
     94.2
@@ -74,7 +75,7 @@ def _weighted(displacements: Mapping[str, float], masses: Mapping[str, float]) -
 
 @dataclass(frozen=True)
 class ForceSource:
-    """An actuator with a continuous force [N], a moving mass [kg] and a full travel [m]. `count` of them act along the motion."""
+    """An actuator with continuous force [N], moving mass [kg] and full travel [m]. `count` such actuators act along the motion."""
 
     force: float
     mass: float
@@ -83,11 +84,11 @@ class ForceSource:
 
 
 def force_frequency_bound(source: ForceSource, displacement: float, mass: float) -> float:
-    """Return the highest frequency [Hz] of a motion that continuous forces displace by X in both directions, through the best levers.
+    """Return the highest natural frequency [Hz] of a motion of +-X that is driven by continuous forces through the best levers.
 
-    With lever ratios g = dx/dX <= T/(2X) for a travel T, K X <= n F g and (2 pi f)^2 (M + n m g^2) <= K. K is the total stiffness, so that
-    springs of negative stiffness do not exceed the bound. The best ratio is sqrt(M/(n m)), or the largest ratio for this travel. g = 1 is
-    direct drive.
+    For n actuators of force F, mass m and travel T with lever ratio g = dx/dX <= T/(2X), K X <= n F g and (2 pi f)^2 (M + n m g^2) <= K. K
+    is the total stiffness: the bound includes springs of negative stiffness. The best lever ratio is sqrt(M/(n m)), but at most T/(2X). g =
+    1 is direct drive.
 
     >>> coil = ForceSource(force=73.9, mass=0.18, travel=26e-3)
     >>> round(force_frequency_bound(coil, 0.5e-3, 1.0), 1)

@@ -45,12 +45,12 @@ def elastic_values(stage: Mechanism) -> Estimate:
 def displaced_values(stage: Mechanism) -> Estimate:
     """Return the worst value of each required quantity over the corners of the required displacements, with geometric nonlinearity.
 
-    If there are more than three required displacements, each is reached alone.
+    With more than three required displacements, only displacements along single axes are computed.
 
-    Frequencies and stiffnesses are multiplied by their ratios in the models linearised at the corners and at rest. Stresses include
-    stretch. A stroke is the lumped stroke times the smallest ratio of linear to nonlinear inputs at the corners, so that it is sufficient
-    exactly if the actuators reach the corners. Quantities that do not depend on the displacement are left out. Raises `DesignError` without
-    equilibrium, and for outlines that overlap at a corner.
+    Frequencies and stiffnesses are multiplied by the ratio of their values linearised at the corners and at rest. Stresses include stretch.
+    The lumped stroke is multiplied by the smallest ratio of linear to nonlinear inputs at the corners; it then suffices exactly if the
+    actuators reach the corners. Quantities that do not depend on the displacement are left out. Raises `DesignError` if a corner has no
+    equilibrium, or if outlines overlap there.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> {key: round(value) for key, value in displaced_values(parallelogram()).values.items() if key.startswith("frequency")}
@@ -119,10 +119,10 @@ def _at_corners(bench: StageResults) -> _Corners:
 
 
 def missed_limits(stage: Mechanism, drawn: Mapping[str, float], better: tuple[Mapping[str, float], ...]) -> dict[str, str]:
-    """Return limits for the lumped model with which better models also meet the requirements; none if they already do.
+    """Return limits for the lumped model so that better models also meet the requirements; empty if these models already do.
 
-    Each value changes by the ratio of a better model to the lumped model (space mapping): a limit becomes limit / ratio if that is
-    stricter. Raises `DesignError` if a missed requirement has no such ratio.
+    By space mapping, each limit is divided by the product of the ratios of better values to the lumped value, if the result is stricter.
+    Raises `DesignError` if the lumped value of a missed requirement is zero.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> drawn = required_values(parallelogram())

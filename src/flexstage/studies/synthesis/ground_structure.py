@@ -85,13 +85,13 @@ class Block:
         return np.asarray(to_centre.T @ np.linalg.inv(compliance(part, self.material)) @ to_centre)
 
     def force(self, place: Place) -> Array:
-        """Return the wrench (6,) of a unit force on the block at a place, inwards."""
+        """Return the wrench (6,) of a unit force at a place, directed into the block."""
         inward = -place.side * np.eye(3)[place.face]
         return np.concatenate([inward, np.cross(self.point(place), inward)])
 
     @property
     def scale(self) -> Array:
-        """Sizes of twists (6,) with equal displacements: 1 m, and rotations that move a point at the mean half size by 1 m."""
+        """Sizes (6,) of twists with equal displacements: translations of 1 m, rotations that move a point at the mean half size by 1 m."""
         return np.repeat([1.0, 1.0 / float(np.mean(self.half))], 3)
 
 
@@ -111,7 +111,7 @@ class Guide:
 def stiffness_ratio(stiffness: Array, motions: frozenset[str], scale: Array) -> float:
     """Return the ratio of the smallest stiffness along other motions to the largest stiffness along the required motions.
 
-    The required motions are free in the first stiffness. `scale` (6,) makes translations and rotations comparable.
+    The stiffness along other motions is computed with the required motions free. `scale` (6,) makes translations and rotations comparable.
 
     >>> stiffness_ratio(np.diag([1.0, 50.0, 60.0, 70.0, 80.0, 90.0]), frozenset({"x"}), np.ones(6))
     50.0
@@ -184,7 +184,8 @@ def find_guide(block: Block, motions: frozenset[str], symmetries: Sequence[Array
 def with_actuators(guide: Guide, block: Block, motions: frozenset[str], room: Sequence[Place]) -> Guide:
     """Place an actuator for each motion at places without elements, so that the map from actuators to motions is well conditioned.
 
-    The merit is the smallest singular value of the forces along the required motions, minus a small fraction of the forces along others.
+    The merit is the smallest singular value of the forces along the required motions, minus a small fraction of the forces along other
+    motions.
     """
     used = {each.place for each in guide.elements}
     free = [each for each in room if each not in used]

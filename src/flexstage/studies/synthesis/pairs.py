@@ -29,7 +29,7 @@ class Shortfall:
 
     @property
     def ratio(self) -> float:
-        """Ratio of the best to the required value."""
+        """Ratio of the best possible value to the required value."""
         return self.best / self.required
 
 
@@ -48,7 +48,7 @@ class CandidatePair:
 
 @dataclass(frozen=True)
 class ImpossiblePair:
-    """A pair that a bound excludes, with the smallest ratio of best to required value."""
+    """A pair that bounds exclude, with its worst `shortfall`: a universal bound if there is one, then the smallest ratio."""
 
     architecture: str
     actuator: str
@@ -72,7 +72,7 @@ def energy_groups(spec: Specification, pair: CandidatePair) -> list[tuple[float,
 
 
 def demand(spec: Specification, pair: CandidatePair) -> float:
-    """Return the ratio of the required energy to the energy of the actuators. The pairs with the smallest ratio are searched first."""
+    """Return the ratio of the required energy to the energy of the actuators. Pairs with a small energy ratio are searched first."""
     frequency = spec.least(FREQUENCY_KEYS[0])
     return 0.0 if frequency is None else max(bounds.efficiency(frequency, *each, spec.masses) for each in energy_groups(spec, pair))
 

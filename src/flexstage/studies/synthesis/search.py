@@ -53,8 +53,8 @@ class Relaxation:
 class FailedPair:
     """A pair without a design that meets all requirements: the least relative violation, and the contradicting requirements.
 
-    `relaxed` are the best values of single requirements if all others are met. They are computed for the pairs with the least violations,
-    if no pair has an answer. `corrected` are stricter limits with which better models meet the requirements.
+    `relaxed` are the best values of single requirements if all others are met. If no pair has an answer, these values are computed for the
+    pairs with the least violations. `corrected` are stricter limits of the lumped model, set because better models missed requirements.
     """
 
     architecture: str
@@ -80,16 +80,17 @@ class FrontPoint:
 class Answer:
     """A stage that meets all requirements: the text of its design file and study, its goal [SI] and the active requirements.
 
-    `values` are the required quantities by the lumped model, `elastic` those with elastic bodies, estimated from outlines. `displaced` are
-    the worst values at the corners of large displacements. `verified` are values by finite elements with estimated relative `errors`, if
-    requested; `unverified` is the reason for their absence. `rounds` is the number of searches until all these values met the requirements.
+    `values` are the required quantities by the lumped model, `elastic` those with elastic bodies (flexibility estimated from outlines).
+    `displaced` are the worst values at the corners of the required displacements. `verified` are values by finite elements with estimated
+    relative `errors`, if requested; `unverified` is the reason for their absence. `rounds` is the number of searches until all models met
+    the requirements.
 
     `manufactured` is the production yield by the lumped model, if requested: the fraction of stages with scatter of dimensions that meet
     all requirements. `crossover` is the lowest sensitivity crossover of the control loop with the default controller, if requested. `front`
     are the Pareto-optimal designs, if there are two goals. `binding` are the active requirements and range ends with their sensitivities,
     before dimensions are rounded.
 
-    `efficiency` is the fraction of the actuators' stroke energy that the stage uses (at most 1, see `bounds.efficiency`), `None` for coils.
+    `efficiency` is the fraction of the actuators' stroke energy that the stage uses (at most 1, see `bounds.efficiency`; `None` for coils).
     `warnings` are those of `flexstage check`.
     """
 
@@ -209,7 +210,7 @@ def manufacturing_yield(answer: Answer) -> float | None:
 def relaxations(
     spec: Specification, pair: CandidatePair, failed: FailedPair, progress: Callable[[str], None] | None = None
 ) -> Iterator[Relaxation]:
-    """Yield the best value of each contradicting requirement if all others are met; those along x and y are relaxed together."""
+    """Yield the best value of each contradicting requirement if all others are met; requirements along x and y are relaxed together."""
     stage = loads(draw(pair.architecture, spec, pair.actuator))
     lines = {line.key: line for line in requirements(stage)}
     done = set[str]()
@@ -235,7 +236,7 @@ def optimum(
     replaced: Mapping[str, str | None],
     progress: Callable[[str], None] | None = None,
 ) -> Optimum:
-    """Return the optimum of a pair for a goal, with some requirements `replaced`. Raises `DesignError` if the analysis fails."""
+    """Return the optimum of a pair for a goal; `replaced` contains changed limits. Raises `DesignError` if the analysis fails."""
     study = _study(spec, pair, [goal], replaced)
     found = optimise(study, load_optimisation(study), progress)
     if found.interrupted:
@@ -246,7 +247,7 @@ def optimum(
 def front(
     spec: Specification, pair: CandidatePair, replaced: Mapping[str, str], progress: Callable[[str], None] | None = None
 ) -> tuple[FrontPoint, ...]:
-    """Return the Pareto front of a pair for the two goals of a specification, with some requirements `replaced`."""
+    """Return the Pareto front of a pair for both goals of a specification; `replaced` contains changed limits of requirements."""
     study = _study(spec, pair, specified_goals(pair.architecture, spec), replaced)
     found = pareto_front(study, load_optimisation(study), progress)
     if found.interrupted:

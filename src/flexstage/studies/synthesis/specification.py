@@ -100,7 +100,7 @@ class MakeTable:
 
 @dataclass(frozen=True)
 class ActuatorTable:
-    """The kinds of actuators to choose from. `like` restricts the choice to these entries of the catalogue."""
+    """The kinds of actuators to choose from. `like` restricts the choice to named entries of the catalogue."""
 
     kinds: tuple[ActuatorKind, ...] = tuple(ActuatorKind)
     like: _Texts | None = None
@@ -110,7 +110,7 @@ class ActuatorTable:
 class GoalTable:
     """The requirement to `maximise` or `minimise`, by its key. By default, the first required frequency is maximised.
 
-    With both, `maximise` is the goal, and the Pareto front of both goals is also computed.
+    If both keys are used, `maximise` is the goal, and the Pareto front of both goals is also computed.
     """
 
     maximise: str | None = None
@@ -121,11 +121,11 @@ class GoalTable:
 class Specification:
     """The specification of a stage, in the frame of its box (z is up).
 
-    `requirements` are `frequency` (first natural frequency), `unwanted` (first frequency of a motion that is not required), and any measure
-    of a design file's requirements; `safety` is at least 2 unless specified.
+    `requirements` may contain `frequency` (first natural frequency), `unwanted` (first frequency of a motion that is not required), and any
+    measure of a design file's requirements. By default, `safety` must be at least 2.
 
-    `together`: all displacements must be reached at once, in all combinations, instead of each alone. `starts` and `seed` apply to the
-    search of each pair.
+    `together`: all displacements must be reached at once, in all combinations; otherwise, each must be reached alone. `starts` and `seed`
+    apply to the search of each pair.
     """
 
     name: str
@@ -163,7 +163,7 @@ class Specification:
 
     @property
     def masses(self) -> dict[str, float]:
-        """Smallest mass or moment of inertia of the payload along each required motion, whatever other motions accompany it.
+        """Smallest mass or moment of inertia of the payload along each required motion, for any accompanying other motions.
 
         For a rotation, it is 1 / (J^-1)_ii with the inertia J about the centre of mass, because (w_i)^2 <= (J^-1)_ii w^T J w.
         """
@@ -307,7 +307,7 @@ def _mm(value: float) -> str:
 
 
 def actuator_findings(spec: Specification, where: str) -> Iterator[Finding]:
-    """Yield a finding for each actuator that is not in the catalogue, whose path is relative to the folder of `where`."""
+    """Yield a finding for each actuator missing in the catalogue; the catalogue's path is relative to the folder of `where`."""
     names = [name for section in catalogue_of(spec.catalogue, where).sections if section.key == "parts" for name in section.entries]
     for name in spec.actuators.like or ():
         if name not in names:

@@ -142,9 +142,9 @@ _STRUT_ENDS = 0.03
 
 
 def find_architectures(spec: Specification, names: tuple[str, ...] = ()) -> list[Architecture]:
-    """Return the architectures with the motions of a specification. If no shipped one has them, returns those of a synthesised guide.
+    """Return the architectures with the motions of a specification. If no shipped one has these motions, synthesise a guide.
 
-    Raises `DesignError` if there is none, with the reason if no parallel guide exists.
+    Raises `DesignError` if no architecture is found, with the reason if no parallel guide exists.
 
     >>> from flexstage.studies.synthesis.specification import MotionTable, example
     >>> [each.name for each in find_architectures(example(), ("carriages", "tilt"))]
@@ -186,7 +186,7 @@ def synthesise(spec: Specification) -> list[Architecture]:
 
 @dataclass(frozen=True)
 class Layer:
-    """One of the guides in series, with its actuators: number 1 carries the platform; each other carries the tray of the guide above."""
+    """One of the guides in series, with its actuators: number 1 carries the platform, number n the tray under guide n - 1."""
 
     number: int
     guide: Guide
@@ -275,7 +275,7 @@ def _length(actuator: CatalogueActuator) -> float:
 
 
 def nominal_block(spec: Specification, actuator: CatalogueActuator, rows: Sequence[int]) -> Block:
-    """Return the block and the dimensions of candidates at the initial values of the search."""
+    """Return the block and the dimensions of candidate elements at the initial values of the search."""
     all_ranges = Architecture(name="", kind=actuator.kind, slot="", count=0, ranges=_RANGES)
     known = scope(all_ranges, spec, actuator)
     known |= {"stack_length": known["length"], "stack_diameter": known["diameter"]}

@@ -23,10 +23,10 @@ _NEGLIGIBLE = 1e-9
 
 @dataclass(frozen=True)
 class AllowedEntry:
-    """Allowable factors on the deviations of one entry. They are infinite if the deviations have no effect.
+    """Allowable factors on the deviations of one entry. The factors are infinite if these deviations have no effect.
 
-    `alone`: the other entries are unchanged; the requirement `decided_by` limits the factor. `equal_shares`: all entries change, and each
-    uses the same fraction of the margin.
+    The factor `alone` is valid if the other entries are unchanged; the requirement `decided_by` limits this factor. For `equal_shares`, all
+    entries change, and each uses the same fraction of the margin.
     """
 
     name: str
@@ -39,12 +39,12 @@ class AllowedEntry:
 class Allowance:
     """Factors on the specified deviations for which each requirement has at least the yield `wanted`, to first order.
 
-    `names` are the m entries, `lines` the l requirements. `reach` (l,) is the change of a requirement's value towards its limit at this
-    yield, and `share` (m, l) is the fraction of its square due to each entry. `together` is the factor on all deviations (above 1: a
-    margin; 0: the nominal design fails); the requirement `binding` limits it. `alone` (m,) is the factor on one entry with the others
-    unchanged; the requirements `binds` (m,) limit it. `equal` (m,) are factors on all entries at once, for which each entry uses the same
-    fraction of the margin. A factor is infinite if the entry has no effect. `then` is the yield of the sample with all changes multiplied
-    by `together`.
+    `names` are the names of the m entries, `lines` those of the l requirements. `reach` (l,) is the change of a requirement's value towards
+    its limit at this yield; `share` (m, l) is the fraction of the square of `reach` due to each entry. `together` is the factor on all
+    deviations (above 1: a margin; 0: the nominal design fails); the requirement `binding` limits it. `alone` (m,) are factors on single
+    entries with the others unchanged; the requirements `binds` (m,) limit these factors. `equal` (m,) are simultaneous factors on all
+    entries, so that each entry uses the same fraction of the margin. A factor is infinite if the entry has no effect. `then` is the yield
+    if the changes of all responses in the sample are multiplied by `together`.
     """
 
     wanted: Annotated[float, Called("yield")]
@@ -74,11 +74,11 @@ class Allowance:
 
 
 def allowance(study: Tolerance, results: Results, slope: Slopes, found: Summary) -> Allowance:
-    """Compute the allowable deviations for the specification. Without a specification, they are unlimited.
+    """Compute the allowable deviations for the specification. Without a specification, deviations are unlimited.
 
-    Responses are linearised in the deviations if derivatives and sample agree. Otherwise the quantile of the sample is used, with variance
-    contributions from the samples of single entries. In both cases, changes are assumed to be proportional to the deviations, which is
-    accurate for small deviations.
+    Responses are linearised in the deviations if derivatives and sample agree. For other responses, the quantile of the sample is used,
+    with variance contributions from the samples of single entries. All changes of responses are assumed to be proportional to the
+    deviations, which is accurate for small deviations.
     """
     names = tuple(study.columns)
     columns = [names.index(line.column) for line in found.lines]

@@ -18,8 +18,8 @@ from flexstage.studies.tolerances.scatter import Deviation, Target
 def bound_findings(design: Mechanism, reached: Iterable[Target], variables: tuple[Deviation, ...]) -> Iterator[Finding]:
     """Find numbers that scatter may move out of their bounds.
 
-    Deviations up to five standard deviations are checked; bounded deviations, up to the largest one. Each entry of `[scatter]` has at most
-    one error, about the number with the largest excess.
+    Deviations are checked up to five standard deviations; for bounded distributions, up to the largest deviation. Of several numbers with
+    scatter from the same entries of `[scatter]`, only the first is reported.
 
     >>> from flexstage.studies.tolerances.distribution import Distribution, Shape
     >>> from flexstage.base.units.quantity import LENGTH

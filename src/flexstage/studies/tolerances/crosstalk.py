@@ -28,9 +28,9 @@ _SINGULAR = 1e9
 class Command:
     """Command of the nominal stage: the nominal matrices that a controller uses.
 
-    `gains` (n, f) are the strokes per unit of each of the `coordinates` of the platform at `point`: R_a with corrected lost motion.
-    `strokes` (n,) are the full strokes of the stacks, which are proportional to voltage. `reference` (3,) is the position of the point.
-    `sensing` (6, g) is R_s^-1, from gauges to the pose at the point; it is absent if the gauges do not determine the pose.
+    `gains` (n, f) are the strokes per unit motion along each of the `coordinates` at `point`: R_a, corrected for lost motion. `strokes`
+    (n,) are the full strokes of the stacks, which are proportional to voltage. `reference` (3,) is the position of `point`. `sensing` (6,
+    g) is R_s^-1, from gauges to the pose at the point; it is absent if the gauges do not determine the pose.
     """
 
     point: str
@@ -122,10 +122,10 @@ def _quantity(row: str, column: str) -> Quantity:
 def poses(bench: StageResults, asked: Command) -> tuple[Array, ...]:
     """Compute the motion per command (...) of a stage with scatter, or of a batch, in the sequence of `pose_measures`.
 
-    In open loop (`open`), the voltages of the nominal stage cause x = X T (stroke / nominal stroke) C e_j. X transfers the motion to the
-    nominal point, T = dx/da is the elastic gain of the stage with scatter, and C corrects the nominal lost motion. In closed loop (`held`),
-    a controller regulates the pose measured with the nominal R_s^-1, so that the true pose is x = (R_s^-1 R_s,real)^-1 e_j. For the nominal
-    stage, both are identity matrices; in open loop with fewer than six motions, parasitic motions are added.
+    In open loop (`open`), the stacks have the voltages of the nominal stage: x = X T (stroke / nominal stroke) C e_j. X transfers the
+    motion to the nominal point, T = dx/da is the elastic gain of the stage with scatter, and C corrects the nominal lost motion. In closed
+    loop (`held`), a controller regulates the pose measured with the nominal R_s^-1. The true pose is x = (R_s^-1 R_s,real)^-1 e_j. The
+    nominal stage has identity matrices in open and closed loop, plus parasitic motions in open loop with fewer than six motions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import bench_of

@@ -47,7 +47,7 @@ class Copies(Plan):
         return self.count + self.alone * len(self.groups)
 
     def parts(self, start: int, stop: int) -> list[tuple[Plan, int, int, tuple[bool, ...]]]:
-        """Split a piece into intervals. Returns the plan, the first and last design, and the mask of the variables of each interval.
+        """Split samples into intervals. Returns the plan, the range of samples, and the mask of the varied variables for each interval.
 
         >>> from flexstage.studies.sweeps.plan import Sampling
         >>> [part[1:] for part in Copies(Sampling.SOBOL, 2, count=8, alone=4, groups=(1, 1)).parts(6, 13)]
@@ -86,7 +86,7 @@ class Tolerance(Study):
 
     @property
     def deviations(self) -> tuple[Deviation, ...]:
-        """The variables, as deviations."""
+        """Variables of all entries, with their distributions."""
         return tuple(one for each in self.scatters for one in each.variables())
 
     @property
@@ -106,7 +106,7 @@ class Tolerance(Study):
 
     @property
     def columns(self) -> Mapping[str, Measure]:
-        """Computed measures of each sample: `measures`, and poses per command if crosstalk is requested."""
+        """Computed measures of each sample: `measures` and, if crosstalk is requested, poses per unit command."""
         return {**self.measures, **(pose_measures(self.commanded) if self.commanded is not None else {})}
 
     @property
@@ -117,7 +117,7 @@ class Tolerance(Study):
         return {**plain, **{f"scatter.{each.name}": repr(each) for each in self.scatters}, **point}
 
     def sample(self, start: int, stop: int) -> Array:
-        """Compute deviations (n, d) of samples from `start` to before `stop`. Entries without scatter in a sample are zero."""
+        """Compute the deviations (n, d) of samples `start` to `stop` (excluded), zero for entries without scatter in a sample."""
         if not isinstance(self.plan, Copies):
             return super().sample(start, stop)
         rows = []
@@ -132,7 +132,7 @@ class Tolerance(Study):
 
     @property
     def numbers(self) -> Numbers | None:
-        """The numbers in which samples differ, or `None` for few samples, for which a plan would be slower."""
+        """The numbers in which samples differ, or `None` for few samples, which are faster without a plan."""
         return sums(self.targets, len(self.variables)) if self.plan.designs >= _MANY * len(self.targets) else None
 
     def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
@@ -171,7 +171,7 @@ def line_name(line: Requirement) -> str:
 
 
 def nominal_command(design: Mechanism, point: str) -> Command:
-    """Compute the command of the nominal design at a point. Raises `DesignError` if the strokes do not determine the platform.
+    """Compute the nominal matrices of a controller for a point. Raises `DesignError` if the strokes do not determine the platform.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> nominal_command(parallelogram(), "platform").coordinates

@@ -16,7 +16,7 @@ _LEAST = 2.0**-54
 
 
 class Shape(Enum):
-    """Shape of a distribution. Its size is the standard deviation (normal) or the half width (uniform)."""
+    """Shape of a distribution. The size of a distribution is the standard deviation (normal) or the half width (uniform)."""
 
     NORMAL = "normal"
     UNIFORM = "uniform"
@@ -70,7 +70,7 @@ class Distribution:
         return None if half is None else half + abs(self.offset)
 
     def times(self, factor: float) -> Distribution:
-        """Return the distribution with its width multiplied by a factor.
+        """Return the distribution with all deviations multiplied by a factor.
 
         >>> Distribution(Shape.NORMAL, 1.0, within=2.0).times(2.0)
         Distribution(shape=<Shape.NORMAL: 'normal'>, size=2.0, within=4.0, offset=0.0)

@@ -37,18 +37,18 @@ _NONE = "no kind has a similar name"
 
 @dataclass(frozen=True)
 class ScatteredNumbers:
-    """Addresses of an entry's numbers by vector component (`""` for scalars), and for each address the number that instances share."""
+    """Addresses of an entry's numbers by vector component (`""` for scalars), and the `shared` number of each address."""
 
     components: Mapping[str, tuple[str, ...]]
     shared: Mapping[str, str]
 
 
 def reach(design: Mechanism, source: str) -> ScatteredNumbers:
-    """Expand an address or a kind into numbers of single instances, and vectors into their components.
+    """Expand an address or a kind into the addresses of numbers in single instances, and vectors into their components.
 
-    A source with a kind has the form kind.number, e.g. `hinges.thickness`, `units.rotation.z`, `gauges.shift`, `stacks.stroke` or
+    A source with a kind has the form kind.number: `hinges.thickness`, `units.rotation.z`, `gauges.shift`, `stacks.stroke` or
     `materials.young`. Kinds are the keys of `KINDS`, `units`, `gauges` and `materials`. The name of a unit or of a pattern means all its
-    instances, e.g. `horizontal.shift.x` or `S1-S3.shift`. Raises `DesignError` for unknown addresses, with the nearest names.
+    instances: `horizontal.shift.x` or `S1-S3.shift`. Raises `DesignError` for unknown addresses, with the nearest names.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> reach(parallelogram(), "hinges.thickness").components[""]

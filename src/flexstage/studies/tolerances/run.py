@@ -62,7 +62,7 @@ class Toleranced(StudyResult):
 
     @property
     def crosstalk(self) -> Annotated[tuple[Crosstalk, ...], VIEW]:
-        """Pose errors of the stage with scatter, commanded and measured with the nominal mapping."""
+        """Pose errors of the samples, with the nominal mapping for command and measurement."""
         return self.summary.crosstalk
 
     def _response(self, column: int, name: str) -> ResponseSpread:
@@ -89,7 +89,7 @@ def tolerance(
     how: Run = DEFAULT,
     progress: Progress | None = None,
 ) -> Toleranced:
-    """Run a tolerance study. With a `path`, its samples are stored in this results file, as by `sweep`.
+    """Run a tolerance study. If a `path` is specified, the samples are stored in this results file, as `sweep` does.
 
     Raises `DesignError` in the same cases as `sweep`.
 

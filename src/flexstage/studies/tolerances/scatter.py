@@ -26,7 +26,7 @@ class Scatter:
     """One entry of a study's `[scatter]`: a `distribution` of deviations of numbers, in the SI unit of `quantity`.
 
     `members` are groups of addresses with a common deviation: one group for common scatter, one for each instance for individual scatter.
-    `relative`: deviations are fractions of the design's value. `source` is the `address` in the file.
+    `relative`: deviations are fractions of the design's value. `source` is the value of `address` in the file.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Scatter:
         return self.quantity.si
 
     def variables(self) -> tuple[Deviation, ...]:
-        """Return the entry's variables, one for each member. Several variables are named after their addresses."""
+        """Return the entry's variables, one for each member. Names of several variables end with their address or vector component."""
         low, high = -self._reach, self._reach
         several = len(self.members) > 1
         names = [f"{self.name}.{self._label(member)}" if several else self.name for member in self.members]
@@ -66,7 +66,7 @@ class Scatter:
 class Deviation(Variable):
     """A deviation of numbers, from a `distribution`. `scatter` is the name of its entry.
 
-    Deviations are between `low` and `high`. `relative`: they are fractions of the design's value, 0.01 for one per cent.
+    Deviations are between `low` and `high`. `relative`: deviations are fractions of the design's value (0.01 is one per cent).
     """
 
     distribution: Distribution = NONE
@@ -97,7 +97,7 @@ class Deviation(Variable):
 
 @dataclass(frozen=True)
 class Target:
-    """A number with scatter: its `address`, its `nominal` value, and the `factors` of the variables that are added to it."""
+    """A number with scatter: its `address`, its `nominal` value, and the `factors` that multiply the variables added to this value."""
 
     address: str
     nominal: float
@@ -142,7 +142,7 @@ def _merge_copies(design: Mechanism, reached: dict[str, tuple[tuple[int, float],
 
 
 def apply_deviations(design: Mechanism, reached: tuple[Target, ...], values: Array) -> Mechanism:
-    """Build the design with deviations (..., d) added to its numbers. Leading axes give a batch.
+    """Build the design with deviations (..., d) added to its numbers. Leading axes of the deviations make the design a batch.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> leaf = Target("parts.leaf.thickness", 1e-3, ((0, 1.0), (1, 1e-3)))
@@ -159,7 +159,7 @@ def _value(target: Target, values: Array) -> Array:
 
 
 def sums(reached: tuple[Target, ...], count: int) -> Numbers:
-    """Express the numbers of the targets as linear functions of `count` deviations.
+    """Express the numbers of the targets as linear functions of the deviations of all `count` variables.
 
     >>> sums((Target("a", 1.0, ((0, 1.0), (1, 2.0))),), 2).at(np.array([[0.1, 0.2]])).round(9).tolist()
     [[1.5]]

@@ -26,8 +26,8 @@ _GAP = 1e-6
 class Slopes:
     """Values (r,) of the nominal design, derivatives (r, d) with respect to the deviations in SI, and the mask of `smooth` (r,) responses.
 
-    A response that is not smooth (the lowest of two equal frequencies, the largest of three equal losses) changes in the same direction
-    for any deviation. Its derivatives belong to one of the equal values or, for frequencies, to their mean.
+    A response that is not smooth (the lowest of two equal frequencies, the largest of three equal losses) changes in the same direction for
+    any deviation. The derivatives of such a response are those of one of the equal values or, for frequencies, of the mean.
     """
 
     values: Array
@@ -36,10 +36,10 @@ class Slopes:
 
 
 def slopes(study: Tolerance) -> Slopes:
-    """Compute derivatives of all columns of a study by complex step; those of frequencies, by d lambda = phi^T (dK - lambda dM) phi.
+    """Compute the derivatives of all columns of a study by complex step; for frequencies, by d lambda = phi^T (dK - lambda dM) phi.
 
-    Smoothness is tested in eight random directions, with steps of a thousandth of the scatter in both senses. A response is smooth if both
-    changes are opposite, and equal to those that the derivative predicts.
+    Smoothness is tested in eight random directions, with steps of a thousandth of the scatter in both senses. A response is smooth if the
+    changes in both senses are opposite and agree with the derivative.
 
     >>> from flexstage.studies.tolerances.example import leaf_study
     >>> found = slopes(leaf_study())

@@ -32,10 +32,11 @@ ROUNDING = 1e-12
 class Spread:
     """Distributions of r responses over the samples with values. `nominal` contains the values of the nominal design.
 
-    `percentiles` (5, r) are the 1st, 5th, 50th, 95th and 99th. `linear` (r,) is the standard deviation by first-order propagation, sqrt(sum
-    (dy/dx s)^2). `trusted` (r,): the response is smooth, and the deviation of the sample agrees with `linear` within 10 % or four standard
-    errors. `by_slope` (m, r) are the fractions of the variance due to the m entries of `[scatter]`, from derivatives. `by_sample` (m, r)
-    are those from the variance of samples with a single entry, relative to the sum over all entries. NaN for a constant response.
+    `percentiles` (5, r) are the percentiles 1, 5, 50, 95 and 99. `linear` (r,) is the standard deviation by first-order propagation,
+    sqrt(sum (dy/dx s)^2). `trusted` (r,): the response is smooth, and the deviation of the sample agrees with `linear` within 10 % or four
+    standard errors. `by_slope` (m, r) are the fractions of the variance due to the m entries of `[scatter]`, from derivatives. `by_sample`
+    (m, r) are the variances of samples with scatter of a single entry, relative to the sum over all entries. Both fractions are NaN for a
+    constant response.
     """
 
     names: tuple[str, ...]
@@ -51,11 +52,11 @@ class Spread:
 
 @dataclass(frozen=True)
 class ResponseSpread(RequestedMeasure):
-    """A response over the samples with values [SI].
+    """Distribution of a response [SI] over the samples with values.
 
-    `linear_deviation` is the standard deviation by first-order propagation; it is valid if `linear`. The fractions of the variance due to
-    each entry of `[scatter]` are computed from derivatives, and from the samples of one entry alone. `derivatives` are with respect to
-    every number with scatter.
+    `linear_deviation` is the standard deviation by first-order propagation; it is valid if `linear` is true. The fractions of the variance
+    due to each entry of `[scatter]` are computed from derivatives, and from the samples of one entry alone. `derivatives` are with respect
+    to every number with scatter.
     """
 
     nominal: float
@@ -71,7 +72,7 @@ class ResponseSpread(RequestedMeasure):
 
 @dataclass(frozen=True)
 class Yield:
-    """Yield of one requirement, or of all together: `kept` of `copies` samples meet it. Failed samples do not meet a requirement.
+    """Yield of one requirement, or of all together: `kept` of `copies` samples comply. Failed samples do not meet a requirement.
 
     `low` to `high` is the 95 % interval of Clopper and Pearson, which is exact for random samples.
     """
@@ -122,7 +123,7 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Yields:
-    """The yields of all requirements of the specification together, and of each."""
+    """The yield of all requirements of the specification together, and the yield of each."""
 
     together: Annotated[Yield, Called("all")]
     lines: tuple[Line, ...]
@@ -130,7 +131,7 @@ class Yields:
 
 @dataclass(frozen=True, eq=False)
 class Crosstalk:
-    """Pose error per unit of command (6, f) over the samples: rows are motions, columns are commands. The identity matrix is subtracted.
+    """Pose error per unit of command (6, f) over the samples: rows are motions, columns are commands. The commanded motion is subtracted.
 
     `kind` is `open` (commanded by the nominal R_a) or `held` (regulated to the pose from the nominal R_s^-1). `nominal` and `mean` are
     signed. `deviation` is the standard deviation, `usual` the 95th percentile of the absolute errors, and `worst` their maximum, all in SI.
@@ -153,7 +154,7 @@ class Crosstalk:
 
 @dataclass(frozen=True, eq=False)
 class Summary:
-    """Summary of a sample. `together` is absent without a specification."""
+    """Summary of a sample. `together` is the yield of all requirements together, absent without a specification."""
 
     copies: int
     failed: int
@@ -245,9 +246,9 @@ def _ratio(parts: Array, whole: Array) -> Array:
 
 
 def squares_alone(study: Tolerance, results: Results, centre: Array | None) -> Array:
-    """Compute the variance (m, r), or the mean square about a `centre`, of the samples with one entry alone.
+    """Compute the variance (m, r), or the mean square about a `centre`, of the samples with scatter of a single entry.
 
-    A study with a single entry uses its whole sample.
+    If the study has only one entry, the whole sample is used.
     """
     count, alone = study.copies, getattr(study.plan, "alone", 0)
     rows = []
