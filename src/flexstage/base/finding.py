@@ -30,7 +30,7 @@ class Severity(Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One fault: file, line and key or the user's object (`B4/pivot`), the problem with its value, and an imperative hint."""
+    """A fault: file, line and key or the user's object (`B4/pivot`), the problem with its value, and an imperative hint."""
 
     where: str
     what: str
@@ -126,7 +126,7 @@ def _worst(group: Sequence[Finding]) -> Finding:
 
 
 def name_first(names: Sequence[str], most: int = 8) -> str:
-    """Return a string with the first `most` names and the number of the other names.
+    """Return a string with the first `most` names and the number of further names.
 
     >>> name_first(["b2"]), name_first(["b2", "b3", "b4", "b5"], most=2)
     ('b2', 'b2, b3 and 2 more')

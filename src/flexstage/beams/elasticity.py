@@ -137,7 +137,7 @@ def _root_rotation(hinge: HingeDimensions, p: Numbers) -> Array:
 
 
 def wu_zhou_rotation(young: Number, width: Number, thickness: Number, radius: Number) -> Number:
-    """Compute the rotational compliance of a right-circular notch about z [rad/(N m)], with s = R/t (Wu & Zhou, RSI 73, 2002).
+    """Compute the rotational compliance of a right-circular notch about z [rad/(N m)], with s = R/t (Wu & Zhou, Rev Sci Instrum 73, 2002).
 
     >>> float(f"{wu_zhou_rotation(200e3, 10.0, 1.0, 5.0):.7g}")
     1.539997e-05

@@ -37,7 +37,7 @@ def reinforced_diagonal(part: ReinforcedLeaf, material: Material) -> Array:
 
     Each thin end, up to its fillet, is treated as a leaf whose two ends cannot curve across the width. `beams.plate` gives different
     stiffness factors for the moment at the centre of the leaf and for the shear force. The thick middle is assumed to prevent curvature of
-    the leaf across the width, which is valid if it is twice as thick as the ends. This middle bends as a beam. If `section` is "beam",
+    the leaf across the width, which is valid if it is twice as thick as the ends. The thick middle bends as a beam. If `section` is "beam",
     plate action is neglected.
     """
     whole = reinforced_beam(part, material).diagonal()

@@ -29,7 +29,7 @@ class Parameter:
 
     @property
     def text(self) -> str:
-        """Its value as in a design file."""
+        """Value of the parameter as in a design file."""
         return show(self.value, self.quantity, digits=12)
 
 

@@ -148,7 +148,8 @@ class Probe(Description):
 class LinkProbe(Description):
     """Gauge on a link of the expanded stage (`B1/pzt`), for its deformation along or about the link's x axis.
 
-    It measures the motion of the second body relative to the first: positive for elongation. `B1-B3/pzt` names the links of three gauges.
+    The gauge measures the motion of the second body relative to the first; elongation is positive. `B1-B3/pzt` names the links of three
+    gauges.
     """
 
     gauge: str
@@ -196,7 +197,7 @@ class Force(Description):
 class StrokePath(Description):
     """Load path of a stage: `drive` (a coordinate such as `platform.y`, a stack, a load) varies between the two values of `to`.
 
-    Both values are strings with units, relative to the static equilibrium. Equilibria are computed at a number of `points`. `hold`
+    The values of `to` are strings with units, relative to the static equilibrium. Equilibria are computed at a number of `points`. `hold`
     specifies the constant conditions, for example:
 
     - `{"platform.x": "-20 N"}`: a permanent load along a coordinate;

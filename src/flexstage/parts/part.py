@@ -20,7 +20,7 @@ from flexstage.parts.superelement import Port
 class Restricted(Description):
     """Restricted part: `elastic` degrees of freedom keep their compliance, `free` ones have no stiffness, all others are locked.
 
-    It is massless. It reproduces the hinge assumptions of published equations, for comparison of models.
+    A restricted part is massless. It reproduces the hinge assumptions of published equations, for comparison of models.
     """
 
     kind: ClassVar[str] = "restricted"

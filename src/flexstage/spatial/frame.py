@@ -116,7 +116,7 @@ def transport(arm: Array) -> Array:
 def mirror(axis: int) -> Array:
     """Build the 6x6 matrix that mirrors a twist in the plane through the origin normal to an axis (0, 1, 2).
 
-    It reverses the translation along the axis and the rotations about the two other axes.
+    The mirror reverses the translation along the axis and the rotations about the two other axes.
 
     >>> mirror(0).diagonal().tolist()
     [-1.0, 1.0, 1.0, 1.0, -1.0, -1.0]

@@ -50,7 +50,7 @@ def nobody(_: Any) -> None:
 
 
 class Helper:
-    """One process. If it crashes, `died` is called with the last message of the process."""
+    """A process that runs tasks. If the process crashes, `died` is called with its last message."""
 
     def __init__(self, died: Callable[[str], None]) -> None:
         self._died = died

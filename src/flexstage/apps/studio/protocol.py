@@ -30,7 +30,7 @@ class Problem:
 
 @dataclass(frozen=True)
 class Amount:
-    """A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. One display `unit` equals `factor` in SI.
+    """A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. The display `unit` is `factor` SI units.
 
     `low` and `high` are the ends of the slider, within the bounds of the number. `formula` defines the number. `old` is the value in the
     file on disk. `group` is the table that contains the number; `line` is the line of the number, or of this table.
@@ -54,7 +54,7 @@ class Amount:
 
 @dataclass(frozen=True)
 class Channel:
-    """An actuator, an axis of the platform or a gauge, with the ends of its range if known. One display `unit` equals `factor` in `si`."""
+    """An actuator, an axis of the platform or a gauge, with the ends of its range if known. The display `unit` is `factor` times `si`."""
 
     name: str
     si: str
@@ -99,7 +99,7 @@ class Floats:
 class ModeShape:
     """A mode: the platform's `twist` (x y z rx ry rz, m and rad) in the mass-normalised shape, and its `share` of the kinetic energy.
 
-    `kinetic` contains the energy fraction of each body, `strain` that of each link, from one per cent, the largest first. A `local` mode
+    `kinetic` contains the energy fractions of bodies, `strain` those of links, if at least one per cent, the largest first. A `local` mode
     moves mainly bodies other than the platform.
     """
 
@@ -471,7 +471,7 @@ class Redo:
 class Save:
     """Write the text to its file, or to another `file` of its folder.
 
-    Refused after a change on disk, or if the other file exists, unless `over` allows overwriting.
+    Refused if the file has changed on disk or the other file exists, unless `over` allows overwriting.
     """
 
     id: int

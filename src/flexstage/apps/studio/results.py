@@ -91,7 +91,7 @@ def bench(text: str, file: str) -> StageResults:
 
 
 def figures(text: str, file: str, stored: str, revision: int, choice: Choice) -> Figures:
-    """Compute stiffness, modes, responses and lost motion. If the permanent load is significant, they are those of the loaded stage.
+    """Compute stiffness, modes, responses and lost motion. Results are for the loaded stage if its permanent load is significant.
 
     Old values are those of the text `stored` on disk.
     """

@@ -452,7 +452,7 @@ class Session:
         return not self._pages or any(pane in panes for panes in self._pages.values())
 
     def enter(self, page: int) -> None:
-        """Add a page; it shows everything until it sends its panes."""
+        """Add a page; until the page reports its panes, all panes are assumed to be shown."""
         self._pages[page] = _PANES
 
     def leave(self, page: int) -> None:

@@ -104,7 +104,7 @@ class Worker:
         self._send(function)
 
     def ask(self, *arguments: Any) -> None:
-        """Send arguments to the worker. They start a call, or answer a message of the function. An ended worker reports `ENDED`."""
+        """Send arguments to the worker. Arguments start a call, or answer a message of the function. An ended worker reports `ENDED`."""
         self._send(arguments)
 
     def call(self, *arguments: Any) -> Any:

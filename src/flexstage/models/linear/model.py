@@ -59,8 +59,8 @@ class LinearModel(InNotebook, CheckedFields):
     - `unknown`: outputs that the model does not determine, i.e. forces of locked DOFs.
 
     Batch axes come first. An array without batch axes is valid for every design. `viscous` contains damping matrices (..., d, d) [N s/m] of
-    parts, by the name of the stiffness contribution. They multiply the rates of the first d elastic deformations (G q minus the imposed
-    deformation). The model's damping law acts in addition. Link forces do not include forces of dampers.
+    parts, by the name of the stiffness contribution. Damping matrices multiply the rates of the first d elastic deformations (G q minus the
+    imposed deformation). The model's damping law acts in addition. Link forces do not include forces of dampers.
 
     `idle` names removed coordinates, which have no stiffness (free internal modes). The kept coordinates are M-orthogonal to the removed
     modes, so that frequencies and shapes do not depend on the choice of coordinates. `idle_output` (..., p, k) are the outputs of the k

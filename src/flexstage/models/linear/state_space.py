@@ -50,7 +50,7 @@ class StateSpace:
 
 
 def state_space(model: LinearModel, chosen: Ports, damping: Damping, modes: int | None = None) -> StateSpace:
-    """Build the modal state space between chosen ports, with the lowest `modes` modes (default: all). Other modes act statically, in D.
+    """Build the modal state space between chosen ports, with the lowest `modes` modes (default: all). Other modes act statically, via D.
 
     eta'' + R eta' + omega^2 eta = Phi^T B u - Phi^T M_b u'', with R = 2 zeta omega plus the dampers of parts, Phi^T D Phi.
 

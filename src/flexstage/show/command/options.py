@@ -22,7 +22,7 @@ _NOTHING: Mapping[str, str] = MappingProxyType({})
 
 
 def text_option(name: str, metavar: str, about: str, default: str = "") -> Any:
-    """Define a text option. Its help is `about`, followed by a sentence with the default value if there is one."""
+    """Define a text option. The help text is `about`, followed by a sentence with the default value if there is one."""
     return typer.Option(name, metavar=metavar, help=f"{about} Default: {default}." if default else about, show_default=False)
 
 

@@ -44,7 +44,7 @@ _PENDING: ContextVar[_Pending | None] = ContextVar("outputs that wait", default=
 
 @contextmanager
 def pending_outputs() -> Generator[None]:
-    """Write all output files of the `with` block together at its end, or none of them after a failure.
+    """Write all output files of the `with` block together at its end, or no file after a failure.
 
     Unmet requirements, and pipes closed by their readers, do not count as failures.
     """

@@ -122,7 +122,7 @@ def summary_tables(analysis: Analysis, *, explained: bool) -> Iterator[Table | s
 
 
 def axis_table(analysis: Analysis) -> Table | None:
-    """Tabulate the platform axis by axis: stroke and its limit, stiffness, resolution; `None` if the model has none of them.
+    """Tabulate the platform axis by axis: stroke and its limit, stiffness, resolution; `None` if the model has no such results.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.complete import Model, analyse

@@ -86,9 +86,9 @@ class ForceSource:
 def force_frequency_bound(source: ForceSource, displacement: float, mass: float) -> float:
     """Return the highest natural frequency [Hz] of a motion of +-X that is driven by continuous forces through the best levers.
 
-    For n actuators of force F, mass m and travel T with lever ratio g = dx/dX <= T/(2X), K X <= n F g and (2 pi f)^2 (M + n m g^2) <= K. K
-    is the total stiffness: the bound includes springs of negative stiffness. The best lever ratio is sqrt(M/(n m)), but at most T/(2X). g =
-    1 is direct drive.
+    For n actuators of force F, mass m and travel T, the lever ratio is g = dx/dX <= T/(2X). Then K X <= n F g and (2 pi f)^2 (M + n m g^2)
+    <= K. K is the total stiffness: the bound includes springs of negative stiffness. The best lever ratio is sqrt(M/(n m)), but at most
+    T/(2X). g = 1 is direct drive.
 
     >>> coil = ForceSource(force=73.9, mass=0.18, travel=26e-3)
     >>> round(force_frequency_bound(coil, 0.5e-3, 1.0), 1)
@@ -114,7 +114,7 @@ def leaf_length(thickness: float, displacement: float, young: float, poisson: fl
 
 
 def efficiency(frequency: float, energy: float, displacements: Mapping[str, float], masses: Mapping[str, float]) -> float:
-    """Return the fraction of the actuators' stroke energy that a stage with a first natural frequency [Hz] uses; it is at most 1.
+    """Return the fraction (at most 1) of the actuators' stroke energy that a stage with a first natural frequency [Hz] uses.
 
     >>> round(efficiency(50.0, 2 * stroke_energy(1e-3, 0.35e6), {"x": 0.5e-3, "y": 0.5e-3}, {"x": 1.0, "y": 1.0}), 3)
     0.282

@@ -48,7 +48,7 @@ def displaced_values(stage: Mechanism) -> Estimate:
     With more than three required displacements, only displacements along single axes are computed.
 
     Frequencies and stiffnesses are multiplied by the ratio of their values linearised at the corners and at rest. Stresses include stretch.
-    The lumped stroke is multiplied by the smallest ratio of linear to nonlinear inputs at the corners; it then suffices exactly if the
+    The lumped stroke is multiplied by the smallest ratio of linear to nonlinear inputs at the corners. This stroke suffices exactly if the
     actuators reach the corners. Quantities that do not depend on the displacement are left out. Raises `DesignError` if a corner has no
     equilibrium, or if outlines overlap there.
 

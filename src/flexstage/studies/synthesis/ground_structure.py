@@ -206,7 +206,7 @@ def _conditioning(forces: Array) -> float:
 
 
 def exchange(options: int, count: int, merit: Callable[[Sequence[int]], float]) -> tuple[int, ...]:
-    """Choose `count` of several options. They are added one by one, then exchanged one by one as long as the merit increases.
+    """Choose `count` of several options. Options are added one by one, then exchanged one by one as long as the merit increases.
 
     >>> exchange(5, 2, lambda chosen: sum(chosen))
     (4, 3)

@@ -23,7 +23,7 @@ from flexstage.studies.tolerances.distribution import NONE, REACH, Distribution
 
 @dataclass(frozen=True)
 class Scatter:
-    """One entry of a study's `[scatter]`: a `distribution` of deviations of numbers, in the SI unit of `quantity`.
+    """An entry of a study's `[scatter]`: a `distribution` of deviations of numbers, in the SI unit of `quantity`.
 
     `members` are groups of addresses with a common deviation: one group for common scatter, one for each instance for individual scatter.
     `relative`: deviations are fractions of the design's value. `source` is the value of `address` in the file.

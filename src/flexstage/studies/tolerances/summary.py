@@ -35,8 +35,8 @@ class Spread:
     `percentiles` (5, r) are the percentiles 1, 5, 50, 95 and 99. `linear` (r,) is the standard deviation by first-order propagation,
     sqrt(sum (dy/dx s)^2). `trusted` (r,): the response is smooth, and the deviation of the sample agrees with `linear` within 10 % or four
     standard errors. `by_slope` (m, r) are the fractions of the variance due to the m entries of `[scatter]`, from derivatives. `by_sample`
-    (m, r) are the variances of samples with scatter of a single entry, relative to the sum over all entries. Both fractions are NaN for a
-    constant response.
+    (m, r) are the variances of samples with scatter of a single entry, relative to the sum over all entries. `by_slope` and `by_sample` are
+    NaN for a constant response.
     """
 
     names: tuple[str, ...]
