@@ -20,10 +20,10 @@ export interface Problem {
 }
 
 /**
- * A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. One display `unit` equals `factor` in SI.
+ * A number of the stage: its `value` in the SI unit `si`, and its `text` as in the file. The display `unit` is `factor` SI units.
  *
- * `low` and `high` are the ends of its slider, within the bounds of the number. `formula` is its definition. `old` is its value in the
- * file on disk. `group` is its table in the file; `line` is its line, or the line of the table.
+ * `low` and `high` are the ends of the slider, within the bounds of the number. `formula` defines the number. `old` is the value in the
+ * file on disk. `group` is the table that contains the number; `line` is the line of the number, or of this table.
  */
 export interface Amount {
   address: string;
@@ -42,7 +42,7 @@ export interface Amount {
   tag: string;
 }
 
-/** An actuator, an axis of the platform or a gauge, with the ends of its range if known. One display `unit` equals `factor` in `si`. */
+/** An actuator, an axis of the platform or a gauge, with the ends of its range if known. The display `unit` is `factor` times `si`. */
 export interface Channel {
   name: string;
   si: string;
@@ -63,7 +63,7 @@ export interface Figure {
   old: number | null;
 }
 
-/** A matrix with names of rows and columns. `unit` is one unit for all entries, or one for each entry. */
+/** A matrix with names of rows and columns. `unit` is a single unit for all entries, or a unit for each entry. */
 export interface Matrix {
   rows: string[];
   columns: string[];
@@ -80,8 +80,8 @@ export interface Floats {
 /**
  * A mode: the platform's `twist` (x y z rx ry rz, m and rad) in the mass-normalised shape, and its `share` of the kinetic energy.
  *
- * `kinetic` contains the energy fraction of each body, `strain` that of each link, from one per cent, the largest first. A `local` mode
- * moves mainly other bodies.
+ * `kinetic` contains the energy fractions of bodies, `strain` those of links, if at least one per cent, the largest first. A `local` mode
+ * moves mainly bodies other than the platform.
  */
 export interface ModeShape {
   number: number;
@@ -196,7 +196,7 @@ export interface Snippet {
   fields: Record<string, string>;
 }
 
-/** A pair of a design job: its goal, or the reason for its failure. `file` is a name for its design, empty without an answer. */
+/** A pair of a design job: its goal, or the reason for its failure. `file` is the design's file name, or empty. */
 export interface PairRow {
   architecture: string;
   actuator: string;
@@ -215,8 +215,8 @@ export interface ResultTable {
 /**
  * A job: its state, the completed `fraction`, the estimated time `left` [s], the last output lines `said`, and its results.
  *
- * `report` is the address of its report, null without one. A design job has its finished `pairs`, and at its end the `tables` of its
- * command.
+ * `report` is the address of its report, null without one. A job of `design` also has the finished `pairs` and, when it has ended, the
+ * `tables` of the command.
  */
 export interface JobState {
   job: number;
@@ -232,7 +232,7 @@ export interface JobState {
   tables: ResultTable[];
 }
 
-/** The unsaved text of an ended studio: the `time` of its last change [s since 1970]. `stale`: the file has changed since then. */
+/** The unsaved text of an ended studio: the `time` of its last change [s since 1970]. `stale`: the file changed after this time. */
 export interface Draft {
   name: string;
   time: number;
@@ -367,7 +367,7 @@ export interface Solid {
   id: number;
 }
 
-/** Store the present design under a name (A, B, C). If `keep` is false, remove the design of that name. */
+/** Store the present design under a name (A, B, C). If `keep` is false, remove the design pinned under this name. */
 export interface Pin {
   kind: "pin";
   id: number;
@@ -375,13 +375,13 @@ export interface Pin {
   keep: boolean;
 }
 
-/** Request for the figures of the file, of the pinned designs and of the present one side by side. */
+/** Request for a comparison of the results of the file, the pinned designs and the present design. */
 export interface Compare {
   kind: "compare";
   id: number;
 }
 
-/** Make the text of a pinned design the present text. The empty name is the text of the file. */
+/** Make the text of a pinned design the present text. The empty name selects the text of the file. */
 export interface Recall {
   kind: "recall";
   id: number;
@@ -403,7 +403,7 @@ export interface Redo {
 /**
  * Write the text to its file, or to another `file` of its folder.
  *
- * Refused after a change on disk, or if the other file exists, unless `over` allows overwriting.
+ * Refused if the file has changed on disk or the other file exists, unless `over` allows overwriting.
  */
 export interface Save {
   kind: "save";
@@ -419,9 +419,9 @@ export interface Browse {
 }
 
 /**
- * Open a file of the folder. If a shipped `case`, or a `pair` of a design `job`, is named, the file is first written from it.
+ * Open a file of the folder. If a shipped `case`, or a `pair` of a design `job`, is named, its design is first written to the file.
  *
- * Refused if there are unsaved changes, unless `discard`.
+ * Refused if there are unsaved changes, unless `discard` is true.
  */
 export interface Open {
   kind: "open";
@@ -462,9 +462,9 @@ export interface Insert {
 }
 
 /**
- * Report the panes that a page shows. Only these are computed after a change; the others are computed when they are shown.
+ * Report the panes that a page shows. Only shown panes are computed after a change, other panes when they are shown.
  *
- * `stage` is the picture, `motions` are its motions, `reach` contains strokes and strength.
+ * The pane `stage` is the picture, `motions` contains its motions, and `reach` contains strokes and strength.
  */
 export interface Look {
   kind: "look";
@@ -480,9 +480,9 @@ export interface JobForm {
 }
 
 /**
- * Check a specification: a `text`, in which the `values` of the form (TOML) replace values, if there are any.
+ * Check the `text` of a specification, in which any `values` of the form (TOML) replace values.
  *
- * An empty text is replaced by the text of `file`, a file of the folder; without a file, by the last text, or at first by an example.
+ * An empty text is replaced by the text of `file` in the folder. Without a file, the last text is used (initially an example).
  */
 export interface Specify {
   kind: "specify";
@@ -501,7 +501,7 @@ export interface SaveSpecification {
   over: boolean;
 }
 
-/** Start a command as a job. `study` is the text of its study, set-up or specification; `record` is the path of a record file. */
+/** Start a command as a job. `study` is a study, set-up or specification as text; `record` is the path of a record file. */
 export interface Run {
   kind: "run";
   id: number;
@@ -528,7 +528,7 @@ export interface Welcome {
 }
 
 /**
- * The text and its contents, pushed at every change. `digest` is the digest of the file on disk.
+ * The text and its contents, sent to all pages after every change. `digest` is the digest of the file on disk.
  *
  * `sound`: the design has no error; otherwise, `problems` lists the errors, and numbers belong to the last text without errors. `changed`
  * is the number of values that differ from the file. `page` made the change (0: the server). `pins` are the names of the pinned designs.
@@ -571,7 +571,7 @@ export interface Engine {
   seconds: number | null;
 }
 
-/** The geometry of a revision for the viewer. It has no motions if no page shows them. */
+/** The geometry of a revision for the viewer. The motions are left out if no page shows them. */
 export interface Scene {
   kind: "scene";
   revision: number;
@@ -626,7 +626,7 @@ export interface Reach {
   milliseconds: number;
 }
 
-/** Warnings and default values of a revision. This is the last message about the revision. */
+/** Warnings and default values of a revision. The server sends this message last for each revision. */
 export interface Warnings {
   kind: "warnings";
   revision: number;
@@ -634,11 +634,11 @@ export interface Warnings {
 }
 
 /**
- * A link: its part, its lines in the text, its 6x6 matrices about its centre in its own frame, its stress and its lost motion.
+ * A link: its part, its lines in the text, its 6x6 matrices about the part's centre in the link frame, its stress and lost motion.
  *
- * `stress` [Pa] is the peak over all strokes, `limit` the allowable stress. `shares` contains its contribution to the lost motion of each
- * actuator. `facts` are further properties as text. `problems` are warnings about the part, e.g. outside the validated range of beam
- * theory. `verified` compares the link with stored results of finite elements.
+ * `stress` [Pa] is the peak over all strokes, `limit` the allowable stress. `shares` contains the link's contribution to the lost motion
+ * of each actuator. `facts` are further properties as text. `problems` are warnings about the part, such as dimensions outside the
+ * validated range of beam theory. `verified` compares the link with stored results of finite elements.
  */
 export interface Card {
   kind: "card";
@@ -673,11 +673,11 @@ export interface Place {
 }
 
 /**
- * Linear maps of a revision, with elasticity: `platform` is the platform twist per unit input, `inputs` the inputs per unit twist.
+ * Linear maps of the elastic stage: `platform` is the platform twist per unit input, `inputs` the inputs per unit twist.
  *
- * `gauges` contains the readings per input, `ideal` the twist per input without elasticity. `stress` (links x inputs) is in Pa per unit
- * input: `rest`, the stress without strokes, plus the sum of magnitudes over all inputs is an upper bound of the stress of a link.
- * `allowed` contains the allowable stresses.
+ * `gauges` contains the readings per unit input; `ideal` is the platform twist per unit input of the ideal stage. `stress` (links x
+ * inputs) is in Pa per unit input; `rest` is the stress without strokes. The stress of a link is at most `rest` plus the sum of the
+ * magnitudes over all inputs. `allowed` contains the allowable stresses.
  */
 export interface Motion {
   kind: "motion";
@@ -693,7 +693,7 @@ export interface Motion {
   missing: Record<string, string>;
 }
 
-/** The stage at given strokes: platform twist, readings, and stress of each link. `beyond` describes exceeded limits by name. */
+/** The stage at given strokes: platform twist, readings, and stress of each link. `beyond` names and describes exceeded limits. */
 export interface Posed {
   kind: "posed";
   to: number;

@@ -77,7 +77,7 @@ def _examine_installed() -> Iterator[Row]:
 def examine_package(need: Any) -> Row | None:
     """Check whether a required package is installed, in its range of versions, and importable. Returns `None` if the package is not needed.
 
-    The package is imported in a separate process, because a broken library may crash that process. Packages of extras may be missing.
+    The package is imported in a separate process, because a broken library may crash that process. Packages of extras are optional.
 
     >>> from packaging.requirements import Requirement
     >>> examine_package(Requirement("no-such-package>=1")).found
@@ -160,7 +160,7 @@ def _figure_cache() -> Row:
 
 
 def native_code() -> Iterator[Row]:
-    """Check whether the compiled kernels can be loaded. Missing kernels are only a note, because numpy replaces them.
+    """Check whether the compiled kernels can be loaded. Missing kernels only cause a note, because numpy replaces them.
 
     >>> [row.verdict is Verdict.BAD for row in native_code()]
     [False]

@@ -163,7 +163,7 @@ def argsort_descending(values: Array, alike: float = _ALIKE) -> list[int]:
 
 
 def distinct_values(values: Array) -> Array:
-    """Return the distinct values above 0, ascending. Of values that differ by less than 1e-9 (relative), only the least is kept.
+    """Return the distinct values above 0, ascending. Of values that differ by less than 1e-9 (relative), only the smallest is kept.
 
     >>> distinct_values(np.array([2.0, 1.0, 2.0 + 1e-12])).tolist()
     [1.0, 2.0]

@@ -117,8 +117,8 @@ class Heading:
     """Table format of a field, in addition to its name and quantity.
 
     `text` is the column heading (default: the name in words). `digits` is the number of significant digits (default: aligned decimals).
-    `unit` is the display unit (default: the quantity's display unit); a ratio may be in `%`. If `varying` is true, each number has a
-    suitable unit. `infinite` and `absent` are the words for infinite and absent values. `mark` returns the grade of a value.
+    `unit` is the display unit (default: the quantity's display unit); a ratio may be in `%`. If `varying` is true, each number is shown in
+    a suitable unit. `infinite` and `absent` are the words for infinite and absent values. `mark` returns the grade of a value.
     """
 
     text: str = ""

@@ -68,7 +68,7 @@ class PartLaw:
 
     - `damping`: the viscous damping (..., 6, 6) [N s/m];
     - `twisting_load`: the compression [N] at which a column of this kind buckles in twist, below Euler's load;
-    - `concentration`: the stress concentration factor of its notches; without it, or if it is `None`, the stress is unknown;
+    - `concentration`: the stress concentration factor of the part's notches; if this factor is missing or `None`, the stress is unknown;
     - `ranges`: ratios of dimensions with the intervals that were compared with finite elements;
     - `family`: the name of the fitted function for the model error;
     - `fixed_end_modes`: the `inner_modes` lowest fixed-end modes, at stations from -1 to 1 over the half length.

@@ -70,10 +70,10 @@ class Link(Description):
     along `bends`, the axis of compliant rotation, which is required for parts that are not axisymmetric. `free` overrides the ideal degrees
     of freedom of the part. Instead of `at` and `along`, two ends can be specified: `start` at the first body, `end` at the second.
 
-    A part with ports (a superelement) joins a body at each named port; several ports may join the same body. The link frame of such a part
-    has the part's axes. With two ports, `free` lists the degrees of freedom of the second port's body relative to the first port's body, in
-    the link frame. `circuit` names the input of a force actuator. Force actuators of one circuit are in series on one amplifier and share
-    the input. A `-` before the name reverses the polarity (push-pull).
+    A part with ports (a superelement) joins a body at each named port; several ports may join the same body. The link frame of a part with
+    ports has the part's axes. With two ports, `free` lists the degrees of freedom of the second port's body relative to the first port's
+    body, in the link frame. `circuit` names the input of a force actuator. Force actuators of one circuit are in series on one amplifier
+    and share the input. A `-` before the name reverses the polarity (push-pull).
     """
 
     joins: Joins

@@ -166,7 +166,7 @@ def is_share(raw: str | float) -> bool:
 
 
 def parse_amount(raw: str | float, quantity: Quantity, where: str) -> float:
-    """Convert an amount to SI units. Raises `DesignError` at `where` for another quantity.
+    """Convert an amount to SI units. Raises `DesignError` with the address `where` for another quantity.
 
     >>> from flexstage.base.units.quantity import LENGTH
     >>> parse_amount("1.5 mm", LENGTH, "variables.neck.from")

@@ -23,7 +23,7 @@ def studio(
 ) -> None:
     """Open a stage in the browser, and edit it.
 
-    The page is served to this computer only. The address of the page contains a key. Ctrl+C ends the command.
+    The page is served to this computer only. Its address contains a key. Ctrl+C ends the command.
 
     A file with errors can be opened too; the errors are shown at their lines.
     """

@@ -556,7 +556,7 @@ class JobForm:
 class Specify:
     """Check the `text` of a specification, in which any `values` of the form (TOML) replace values.
 
-    An empty text is replaced by the text of `file` in the folder. Without a file, it is replaced by the last text, initially an example.
+    An empty text is replaced by the text of `file` in the folder. Without a file, the last text is used (initially an example).
     """
 
     id: int

@@ -44,8 +44,8 @@ class ReplacementPart:
 def write_stand_ins(text: str, parts: Mapping[str, ReplacementPart], tag: str, *, where: str = "text") -> str:
     """Return the text of a design file in which compliance matrices replace drawn parts of the same names.
 
-    The drawn parts are renamed `<name>-drawn`. The new matrices get the tag `tag`. Raises `DesignError` if links override such a part, or
-    if the file's layout does not allow the change.
+    The drawn parts are renamed `<name>-drawn`. The new matrices get the tag `tag`. Raises `DesignError` if links override a replaced part,
+    or if the file's layout does not allow the change.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.mechanism.store import dumps, loads

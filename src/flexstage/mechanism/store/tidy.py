@@ -13,7 +13,7 @@ from flexstage.mechanism.mechanism import Mechanism
 def round_to_digits(mechanism: Mechanism, digits: int = 12) -> Mechanism:
     """Return the description with every number rounded to `digits` significant digits in its display unit; tags are kept.
 
-    Thus, a new file contains no rounding errors of products of parameters: 1.54 * mm is 1.5400000000000001 mm.
+    Thus, a new file contains no rounding errors of products, such as 1.5400000000000001 mm for 1.54 * mm.
 
     >>> from flexstage.parts.rod import Rod
     >>> round_to_digits(Mechanism("", parts={"wire": Rod("steel", 1.54 * 1e-3, 0.001)})).parts["wire"].length

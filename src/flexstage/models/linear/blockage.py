@@ -38,8 +38,8 @@ class Blockage:
 def blockage(constraints: Array, stroke: int, names: Sequence[str], intended: frozenset[str]) -> Blockage:
     """Find the locked DOFs that block the stroke in column `stroke` of the scaled `constraints` (m, N), which have `names`.
 
-    The first six columns belong to the platform. After the returned DOFs are freed, the stroke must move the platform. Ideal DOFs of their
-    parts (`intended`) are preferred.
+    The first six columns belong to the platform. After the returned DOFs are freed, the stroke must move the platform. DOFs in `intended`
+    (ideal DOFs of parts) are preferred.
 
     >>> rows = np.zeros((3, 7))
     >>> rows[0, [0, 6]], rows[1, 0], rows[2, 1] = (1.0, -1.0), 1.0, 1.0

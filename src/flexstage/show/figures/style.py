@@ -92,7 +92,7 @@ def canvas(width: float, height: float) -> Any:
 
 @dataclass(frozen=True)
 class Margins:
-    """Margins around and between the panels of a figure, in inches. Margins are fixed, because an automatic layout draws twice."""
+    """Margins around and between the panels of a figure, in inches. Margins are fixed: an automatic layout would draw figures twice."""
 
     left: float = 0.5
     right: float = 0.1

@@ -85,7 +85,7 @@ def _points(statics: Statics) -> str:
 
 
 def direction_table(statics: Statics, load: float = _LOAD) -> Table:
-    """Tabulate displacement and stiffness for several directions of a force `load` [N] in the plane, as in the paper's Table 1.
+    """Tabulate displacement and stiffness for several directions of a force `load` [N] in the plane, as Shin & Moon (Table 1).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.mapped import mapped

@@ -198,7 +198,7 @@ class Specification:
 
 @check_arguments
 def load_specification(path: str | os.PathLike[str]) -> Specification:
-    """Read a specification file. Raises `DesignError` with all its errors.
+    """Read a specification file. Raises `DesignError` with all errors of the file.
 
     >>> load_specification("nowhere/spec.toml")
     Traceback (most recent call last):

@@ -48,7 +48,7 @@ class PoseMeasure(Measure):
 
 
 def command(bench: StageResults, point: str) -> Command:
-    """Compute the command of a nominal design for motions of a point of the platform.
+    """Compute the nominal matrices for motions of a point of the platform.
 
     Raises `DesignError` for stages whose strokes do not determine the platform, and for points of other bodies.
 
@@ -124,8 +124,8 @@ def poses(bench: StageResults, asked: Command) -> tuple[Array, ...]:
 
     In open loop (`open`), the stacks have the voltages of the nominal stage: x = X T (stroke / nominal stroke) C e_j. X transfers the
     motion to the nominal point, T = dx/da is the elastic gain of the stage with scatter, and C corrects the nominal lost motion. In closed
-    loop (`held`), a controller regulates the pose measured with the nominal R_s^-1. The true pose is x = (R_s^-1 R_s,real)^-1 e_j. The
-    nominal stage has identity matrices in open and closed loop, plus parasitic motions in open loop with fewer than six motions.
+    loop (`held`), a controller regulates the pose measured with the nominal R_s^-1. The true pose is x = (R_s^-1 R_s,real)^-1 e_j. For the
+    nominal stage, open and closed loop give the identity matrix, plus parasitic motions in open loop with fewer than six motions.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.analysis.assessment.judge import bench_of

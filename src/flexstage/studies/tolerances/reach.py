@@ -37,7 +37,7 @@ _NONE = "no kind has a similar name"
 
 @dataclass(frozen=True)
 class ScatteredNumbers:
-    """Addresses of an entry's numbers by vector component (`""` for scalars), and the `shared` number of each address."""
+    """Addresses of an entry's numbers by vector component (`""` for scalars); `shared` maps addresses of instances to the shared part."""
 
     components: Mapping[str, tuple[str, ...]]
     shared: Mapping[str, str]

@@ -107,8 +107,8 @@ class Target:
 def targets(design: Mechanism, variables: Iterable[Variable], shared: dict[str, str]) -> tuple[Target, ...]:
     """List all numbers with deviations. Numbers of shared parts precede their overrides.
 
-    `shared` maps an address of a single instance to the number of the shared part. If all instances have equal deviations, the shared
-    number is changed instead, because fewer different parts are faster to compute.
+    `shared` maps the address of a number in a single instance to the address in the shared part. If all instances have equal deviations,
+    the shared number is changed instead, because fewer different parts are faster to compute.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.base.units.quantity import LENGTH
