@@ -197,7 +197,7 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
 def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Return warnings about loads, parts outside the range of beam theory, blocked strokes, and interfering or intruding outlines.
 
-    A warning about an overridden part names its link.
+    The warning about a part that a link overrides names the link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [each.where for each in design_warnings(double_triangle())]
@@ -378,7 +378,7 @@ def model_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
 def check(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Check a stage: return its errors, or its warnings if there is no error, as `flexstage check` lists them.
 
-    `severity` of a finding distinguishes errors and warnings. An empty tuple means that the stage has neither.
+    `severity` of a finding distinguishes errors and warnings. The result is an empty tuple for a stage without errors and warnings.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [finding.where for finding in check(double_triangle())]

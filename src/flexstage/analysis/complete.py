@@ -62,16 +62,16 @@ class Analysis(InNotebook):
 
     `response` is from the actuators' inputs to the platform's twist and all gauges, `transmissibility` from the ground to the platform.
     Only the lumped model gives `deflection` and `buckling` under permanent load, drift, error budget, and `units` (each distinct isolated
-    unit). With any model, `verdicts` on requirements are by the lumped model.
+    unit). The `verdicts` on requirements always come from the lumped model, whatever the model of the other results.
 
     `loaded` is the effect of the permanent load. If it is significant, statics, modes, responses (`felt`), lost motion, drift, error budget
-    and their verdicts are for the loaded stage. Other results and `linear` are nominal. `second_order` is the small-displacement error over
-    the required strokes; without these, over the available strokes. `ends` has critical load factors at the ends of the paths, up to the
-    required factor; None without paths. The error budget is for one kelvin and the required strokes; without these, for all single-axis
-    strokes at once.
+    and their verdicts are for the loaded stage. The other results and the linear model `linear` belong to the nominal stage. `second_order`
+    is the small-displacement error over the required strokes; without required strokes, over the available strokes. `ends` contains the
+    critical load factors at both ends of each load path, computed up to the required factor (None without load paths). The error budget is
+    for 1 K and the required strokes; without required strokes, for all single-axis strokes at once.
 
-    `freedoms` is the stiffness along ideal motions and constraints (None for six ideal motions), `mass` the effective mass of the platform.
-    `stress` is at the required strokes; for force-driven stages without required strokes, at peak current.
+    `freedoms` contains the stiffness along ideal motions and constraints (None for six ideal motions). `mass` is the platform's effective
+    mass. `stress` is at the required strokes; for force-driven stages without required strokes, at peak current.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("an analysis", "fs.analyse(stage)")
@@ -143,7 +143,7 @@ def analyse(mechanism: Mechanism, model: Model = Model.LUMPED, *, whole: bool = 
     """Return all analyses of one model; without `whole`, only the analyses of the short form, in half the time.
 
     The short form omits responses, isolated units and most of the workspace. Impossible results (lost motion of an under-actuated stage)
-    are `None`, with the reason in `missing`. Raises `DesignError` if the model is refused.
+    are `None`, with the reason in `missing`. Raises `DesignError` if the model cannot be built.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> round(float(analyse(double_triangle(), Model.MAPPED).modes.frequencies[0]), 2)
@@ -240,7 +240,7 @@ def required_command(mechanism: Mechanism) -> Mapping[str, float] | None:
 
 
 def platform_modes(mechanism: Mechanism, model: LinearModel) -> Modes:
-    """Compute the modes, and list those up to the description's frequency limit.
+    """Compute the modes, and list all modes up to the description's frequency limit.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> platform_modes(double_triangle(), mapped(double_triangle())).limit

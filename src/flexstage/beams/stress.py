@@ -55,7 +55,7 @@ def stress(part: Part, material: Material | None, wrench: Array) -> Stress | Non
     tau is the sum of the largest shear and torsion stresses. The von Mises stress is sqrt(sigma^2 + 3 tau^2).
 
     The maxima of a section are added although they occur at different points: the result is an upper bound of the nominal stress. Returns
-    `None` for parts without a known section (piezo stacks have load limits) or a known notch factor.
+    `None` for parts without a known section (for example piezo stacks, which have load limits) or without a known notch factor.
 
     >>> steel = Material(young=200e9, poisson=0.3, density=7750.0)
     >>> from flexstage.parts.leaf import Leaf

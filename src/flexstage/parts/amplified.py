@@ -119,10 +119,10 @@ class Amplified(BetweenFaces, ChargedActuator):
     """Amplified piezo actuator between its two faces: f = k (dx - s u).
 
     `stroke` is the full free stroke of the output along x. `deformation` is the free deformation (x, y, z, rx, ry, rz) of the second face
-    relative to the first at full stroke (default: the stroke along x). It can describe contracting actuators and parasitic motion. Exactly
-    one of `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` specifies the 6x6 stiffness about the centre at constant voltage.
-    Half of `mass` and of `inertia` is at each face, about the centre. `free` lists the degrees of freedom of the ideal model. `resonance`
-    (one face fixed, the other free) is information only: internal modes are not modelled.
+    relative to the first at full stroke (default: the stroke along x). The free deformation can describe contracting actuators and
+    parasitic motion. Exactly one of `diagonal` (x, y, z, rx, ry, rz), `matrix` and `compliance` specifies the 6x6 stiffness about the
+    centre at constant voltage. Half of `mass` and of `inertia` is at each face, about the centre. `free` lists the degrees of freedom of
+    the ideal model. `resonance` (one face fixed, the other free) is information only: internal modes are not modelled.
     """
 
     kind: ClassVar[str] = "amplified"
@@ -147,7 +147,7 @@ class Amplified(BetweenFaces, ChargedActuator):
 
     @property
     def free_deformation(self) -> Array:
-        """Free deformation (..., 6) per unit of stroke: `deformation` over `stroke` (default: along x)."""
+        """Free deformation (..., 6) for a unit stroke: `deformation` over `stroke`, or by default a unit translation along x."""
         if self.deformation is None:
             return np.eye(6)[0]
         return stack(self.deformation) / np.asarray(self.stroke)[..., None]

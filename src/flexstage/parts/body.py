@@ -256,7 +256,7 @@ class Sphere(Solid):
 
     @property
     def is_flat(self) -> bool:
-        """False: its surface is curved."""
+        """False, because a ball's surface is curved."""
         return False
 
     def contains(self, points: Array, slack: float) -> Array:
@@ -404,7 +404,8 @@ def _holds(hole: Solid, points: Array, slack: float) -> Array:
 class PlacedSolid:
     """Solid with its frame relative to its body or the stage.
 
-    The frame's origin is the solid's centre. Its axes are along a block's edges (z along the hole), or x is along a cylinder's axis.
+    The frame's origin is the solid's centre. Its axes are along the edges of a block (z along the hole); for a cylinder, x is along the
+    axis.
     """
 
     solid: Solid
@@ -412,7 +413,7 @@ class PlacedSolid:
 
 
 def pierce(solids: Mapping[str, PlacedSolid]) -> dict[str, PlacedSolid]:
-    """Return the solids of one body by name; solids with `subtract` become holes in the others of the same material.
+    """Return the solids of one body by name; each solid with `subtract` becomes a hole in the body's other solids of the same material.
 
     >>> plate, bolt = Block("steel", (0.1, 0.1, 0.01)), Cylinder("steel", 0.005, 0.02, subtract=True)
     >>> placed = {"plate": PlacedSolid(plate, plate.frame), "bolt": PlacedSolid(bolt, bolt.frame)}
@@ -515,11 +516,12 @@ class Body(Description):
 
     Solids with `subtract` are holes: they remove their volume from the body's other solids of the same material. Specify either solids or
     mass properties; a body with neither is massless. `point`: the specified mass is a point mass without inertia. `reference` is the
-    reference point of the body's twist. Its default is the centre of mass; for a massless body, the mean position of its joints.
+    reference point of the body's twist. The default reference point is the centre of mass; for a massless body, the mean position of its
+    joints.
 
     `of` names another body of the stage, or the ground, that owns these solids. Example: a lug of the platform, drawn in a unit's frame and
-    placed with every instance. Such a body does not move independently: its solids, mass, points and joints belong to the owner. It has no
-    specified mass and no reference.
+    placed with every instance. A body with `of` does not move independently: its solids, mass, points and joints belong to the owner. A
+    body with `of` has neither a specified mass nor a reference point.
     """
 
     solids: Mapping[str, Solid] = field(default_factory=lambda: Table({}))

@@ -52,7 +52,7 @@ class Compound(Elastic):
 
     @property
     def mirrored(self) -> Compound:
-        """The compound itself, because each member is mirrored individually."""
+        """The same compound, because each member is mirrored individually."""
         return self
 
     @property

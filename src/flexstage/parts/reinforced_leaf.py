@@ -33,7 +33,7 @@ class ReinforcedLeaf(Leaf):
 
     @property
     def is_prismatic(self) -> bool:
-        """False: it has steps."""
+        """False, because the thickness has steps."""
         return False
 
     @property
@@ -53,7 +53,7 @@ class ReinforcedLeaf(Leaf):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations: thinner than wide, flexures within the length, fillets within the flexures, middle thicker."""
+        """Order relations: flexures are at most as thick as the middle and fit into the length; fillets fit into steps and flexures."""
         yield from super().orders
         half, advice = 0.5 * self.length, "Make the leaf longer or the flexures shorter"
         yield Order("flexure_length", self.flexure_length, half, "half the length", advice)

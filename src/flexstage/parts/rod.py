@@ -16,7 +16,7 @@ from flexstage.parts.shape import INNER_MODES, Shaped, reversed_or_none
 class Rod(Shaped):
     """Round rod (wire flexure) of constant diameter, `length` along x. Ideal degrees of freedom: all except translation along x.
 
-    `inner_modes` is the number of bending modes in y, of bending modes in z, and of torsion modes in the lumped model. `curvature` is the
+    `inner_modes` contains three numbers for the lumped model: bending modes in y, bending modes in z, and torsion modes. `curvature` is the
     initial curvature about z of the free rod, as for a leaf.
     """
 

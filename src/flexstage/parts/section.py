@@ -94,11 +94,11 @@ class Section:
         return (self.outline(angles),)
 
     def normal_stress(self, axial: Array, about_y: Array, about_z: Array) -> Array:
-        """Return an upper bound of the normal stress [Pa] for an `axial` stress [Pa] and bending |M_y| / I_y and |M_z| / I_z [Pa/m]."""
+        """Return an upper bound of normal stress [Pa] for the stress `axial` [Pa] and the bending terms |M_y| / I_y, |M_z| / I_z [Pa/m]."""
         return axial + 0.5 * self.height * about_z + 0.5 * self.width * about_y
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return the largest shear stress [Pa] of a torque [N m]; `uniform` is the fraction of Saint-Venant torsion; the rest warps."""
+        """Return the largest shear stress [Pa] of a torque [N m]. Saint-Venant torsion carries its fraction `uniform`, warping the rest."""
         raise NotImplementedError
 
     def each(self, function: Callable[[Number], Any]) -> Self:
@@ -238,7 +238,7 @@ def rectangle_torsion(thickness: Number, width: Number) -> Array:
 
 
 def cowper_rectangle(poisson: Number) -> Number:
-    """Return the shear factor of a rectangular prism, (12 + 11 nu) / (10 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966), as in SPACAR Light.
+    """Return the shear factor of a rectangular prism, (12 + 11 nu) / (10 (1 + nu)) (Cowper 1966), as in SPACAR Light.
 
     >>> round(cowper_rectangle(0.3), 6)
     1.176923
@@ -247,7 +247,7 @@ def cowper_rectangle(poisson: Number) -> Number:
 
 
 def cowper_circle(poisson: Number) -> Number:
-    """Return the shear factor of a circular prism, (7 + 6 nu) / (6 (1 + nu)) (Cowper, J. Appl. Mech. 33, 1966), as in SPACAR Light.
+    """Return the shear factor of a circular prism, (7 + 6 nu) / (6 (1 + nu)) (Cowper 1966), as in SPACAR Light.
 
     >>> round(cowper_circle(0.3), 6)
     1.128205

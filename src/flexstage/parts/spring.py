@@ -39,9 +39,9 @@ class Spring(Elastic):
     With `stiffness`, the other degrees of freedom have zero stiffness. The stiffness may be negative (magnets); only the whole stage must
     be stable. `free` lists the free degrees of freedom of the ideal model (default: all).
 
-    With a `length` L, the spring pivots at both ends: a tension F adds the transverse stiffness F / L. Without a length, it acts at one
-    point. `preload` is the initial force that pushes the ends apart (negative: pulls). With `free_length`, the preload is k (free_length -
-    length). `mass` is uniform over the length.
+    With a `length` L, the spring pivots at both ends: a tension F adds the transverse stiffness F / L. Without a length, the spring acts at
+    one point. `preload` is the initial force that pushes the ends apart (negative: pulls). With `free_length`, the preload is k
+    (free_length - length). `mass` is uniform over the length.
     """
 
     kind: ClassVar[str] = "spring"

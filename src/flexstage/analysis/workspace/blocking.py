@@ -20,11 +20,11 @@ from flexstage.spatial.frame import COMPONENTS, FORCES, MOTION, WRENCH
 
 
 class StackLine(Result):
-    """Force-displacement lines of single stacks against the stage with all other strokes zero, (..., n) each.
+    """Force-displacement lines (..., n) of single stacks that push against the stage while all other strokes are zero.
 
     `free` displacement [m] and `blocking` force [N] are the ends of the stack's line; `stiffness` [N/m] is the stack's stiffness.
     `stage_stiffness` [N/m] is the stiffness of the stage between the ends of the stack, with other strokes fixed. `travel` [m] and `force`
-    [N] (compression) are the intersection of both lines.
+    [N] (compression) are the intersection of the stack's line with the stage's line.
     """
 
     TABLE: ClassVar[Layout] = Layout("Stacks against the stage")
@@ -40,7 +40,7 @@ class StackLine(Result):
 
 
 class PlatformLine(Result):
-    """Force-displacement line of the platform along each coordinate, commanded by the ideal mapping, (..., f) each.
+    """Force-displacement lines (..., f) of the platform along each coordinate, commanded by the ideal mapping.
 
     `travel` [m, rad] is without load (in both directions), `stiffness` [N/m, N m/rad] for a load along this coordinate only. `blocking` [N,
     N m] is the blocked force: the load that returns the platform to zero.
@@ -112,8 +112,8 @@ def _along(model: LinearModel, link: str, name: str, free: Array) -> Array:
 def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) -> PlatformLine:
     """Compute force-displacement lines of the platform at its reference point; `mapping` as for `single_axis`.
 
-    The strokes for coordinate j end where the first actuator reaches its limit. The travel is the elastic motion for these strokes, with
-    lost motion. The load acts only along j; the other coordinates are free, so the stiffness is 1 / C_jj.
+    The strokes for coordinate j end where the first actuator reaches its limit. The travel is the elastic motion for these strokes; it
+    includes lost motion. The load acts only along j; the other coordinates are free, so the stiffness is 1 / C_jj.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -38,7 +38,7 @@ class Ends(Enum):
 
 
 class Buckling(Result):
-    """Euler loads, (..., L) each: `critical` [N], `compression` [N] at the worst stroke corner (negative: always in tension), `length` [m].
+    """Euler load `critical` [N], largest `compression` [N] over the strokes (negative: tension) and `length` [m] of each link (..., L).
 
     `ends` lists the assumed end conditions of each column. `stage` is the buckling of the whole stage: its end conditions are exact, and
     columns and bodies can buckle together.
@@ -89,9 +89,9 @@ def buckling(mechanism: Mechanism, model: LinearModel, limits: StrokeLimits) -> 
     """Compute Euler loads of slender parts, and their largest compression over the corners of the strokes under permanent load.
 
     Slender parts are leaves, rods, notches, necks and stacks. The Euler load is P = pi^2 E I / L_e^2, with the least second moment of the
-    thinnest section assumed over the whole length. The load of notched hinges is thus underestimated. A lower torsional buckling load takes
-    precedence. The load factor of the whole stage is for the actual end conditions. Compressions below 1e-9 of the largest force in any
-    part are rounding errors and count as zero.
+    thinnest section assumed over the whole length. The load of notched hinges is thus underestimated. If the torsional buckling load is
+    lower, it replaces the Euler load. The load factor of the whole stage is computed with the actual end conditions. Compressions below
+    1e-9 of the largest force in any part are rounding errors and count as zero.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

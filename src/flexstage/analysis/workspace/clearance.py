@@ -36,9 +36,9 @@ class Intrusion:
 class Clearance(Result):
     """Clearance of the stage: its bounding box, envelope and clear aperture.
 
-    `intrusions` are outlines inside the clear aperture, whose size is `opening` (..., 2) [m]; empty without an aperture. `low` and `high`
-    are corners (..., 3) [m] of the bounding box. `envelope` is the size (..., 3) [m] of the envelope, or `None`. `extreme` names the
-    outermost outlines (low x, y, z, high x, y, z; first design).
+    `intrusions` are the outlines inside the clear aperture (empty without an aperture). `opening` (..., 2) [m] is the size of the aperture.
+    `low` and `high` are corners (..., 3) [m] of the bounding box. `envelope` is the size (..., 3) [m] of the envelope, or `None`. `extreme`
+    names the outermost outlines (low x, y, z, high x, y, z; first design).
     """
 
     TABLE: ClassVar[Layout] = Layout("Clearance", "table reached_by", head="axis")

@@ -41,11 +41,11 @@ _LIMIT = 'Add e.g. peak_current = "2 A" to the coil, or maximum = "20 N" to the 
 class ForceWorkspace(Result):
     """Force workspace: elastic travel of a point along single coordinates, in both directions.
 
-    `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate. The other ideal
-    coordinates are zero if `alone`, else free. `bounds` (coordinates x causes) [m, rad] are the continuous motion limits by cause, `short`
-    the limits for short use (a coil's `duty`); NaN if unspecified. `current`, `voltage`, `power` and `rise` (coordinates x coils) are the
-    values for holding a unit motion: i, R i, i^2 R, and i^2 R times the thermal resistance [K]. `unmoved` are ideal motions that no input
-    drives.
+    `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate. If `alone` is
+    true, the other ideal coordinates are zero; otherwise they are free. `bounds` (coordinates x causes) [m, rad] are the limits of
+    continuous motion by cause (NaN if unspecified). `short` are the limits for short use, at the `duty` of a coil. `current`, `voltage`,
+    `power` and `rise` (coordinates x coils) are the values for holding a unit motion: i, R i, i^2 R, and i^2 R times the thermal resistance
+    [K]. `unmoved` are ideal motions that no input drives.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -108,10 +108,10 @@ def _least(bounds: Array) -> Array:
 def force_workspace(mechanism: Mechanism, kinematics: Kinematics, model: LinearModel, *, point: str = PLATFORM) -> ForceWorkspace:
     """Compute the force workspace of a stage with force actuators: the limits of the elastic motion along every ideal motion.
 
-    The elastic model gives C = dx/du for strokes and forces u. The inputs per motion are G = C^-1 for as many inputs as motions; for more
-    inputs, G is the least-norm inverse relative to the input limits. Coils limit the motion by peak and continuous current, heat i^2 R
-    through the thermal resistance, static amplifier voltage R i, largest force and magnetic travel. Other limits are strokes, the nearer
-    side of each stop, and yield in a hinge under permanent load. The computation is linear.
+    The elastic model gives C = dx/du for strokes and forces u. With as many inputs as motions, the inputs per motion are G = C^-1. With
+    more inputs, G is the least-norm inverse of C, relative to the input limits. Coils limit the motion by their peak and continuous
+    currents, heat i^2 R through the thermal resistance, amplifier voltage R i, largest force and magnetic travel. Stroke limits, the nearer
+    side of each stop, and yield in a hinge under permanent load also limit the motion. The computation is linear.
 
     An input drives a coordinate if its effect exceeds 1e-9 of the Cauchy-Schwarz bound (c E)^1/2. Here c is the compliance of the
     coordinate, and E is twice the strain energy due to the input. Raises `DesignError` if the stage has no force actuator, no ideal motion,
@@ -318,7 +318,7 @@ def _needs(assembly: Assembly, inputs: tuple[str, ...], names: tuple[str, ...], 
 
 
 def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
-    """Return the limits of every input: strokes from zero voltage, symmetric forces; for a coil, the least specified short-use limit.
+    """Return the limits of every input: strokes from zero voltage, or symmetric forces (of a coil, the least short-use limit).
 
     An input is also limited so that, acting alone, it displaces its coil by at most half the magnetic travel. Raises `DesignError` for a
     force actuator without a limit.
@@ -344,7 +344,7 @@ def input_limits(mechanism: Mechanism, model: LinearModel) -> StrokeLimits:
 
 
 def bounds_along(found: ForceWorkspace, name: str) -> Array:
-    """Return the limits (..., k) of the motion along one coordinate, infinite if unspecified. Raises `DesignError` if none is specified."""
+    """Return the limits (..., k) of the motion along one coordinate, infinite if unspecified. Raises `DesignError` without any limit."""
     if name not in found.coordinates:
         what = "no actuator drives this motion" if name in found.unmoved else "not an ideal motion of this stage"
         raise refuse(f"stroke.{name}", what, f"Use one of {', '.join(found.coordinates)}")

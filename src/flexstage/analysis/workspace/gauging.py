@@ -27,10 +27,10 @@ _LEVEL = 1e-9
 class GaugeRange(Result):
     """Gauge readings at the worst corner of a box of displacements, and half ranges (gauges start at mid-range), (..., g) each.
 
-    `swing` is the largest reading and `limit` half the range, in `units` by gauge (m, rad). `radius` [m] is each gauge's distance from the
-    platform's axis. `largest_here` [m] is the largest radius at the gauge's angle for which the reading is within the range,
-    `largest_anywhere` [m] the largest such radius at any angle. An infinite radius means that the gauge is within its range everywhere. NaN
-    means that the gauge is outside even on the axis, or not between platform and ground.
+    `swing` is the largest reading and `limit` half the range, in the gauge's unit, which `units` contains (m or rad). `radius` [m] is each
+    gauge's distance from the platform's axis. `largest_here` [m] is the largest radius at the gauge's angle for which the reading is within
+    the range, `largest_anywhere` [m] the largest such radius at any angle. An infinite radius means that the gauge is within its range
+    everywhere. NaN means that the gauge is outside even on the axis, or not between platform and ground.
     """
 
     TABLE: ClassVar[Layout] = Layout("Gauge ranges", "table used")
@@ -47,7 +47,7 @@ class GaugeRange(Result):
 
     @property
     def used(self) -> Annotated[Array, INNER, SHARE, Bound(high=1.0), Along("gauges")]:
-        """Reading at the corner over half the range (..., g)."""
+        """Largest reading relative to half the range (..., g)."""
         return self.swing / self.limit
 
     @property
@@ -67,9 +67,10 @@ class GaugeRange(Result):
 class PoseResolution(Result):
     """Pose resolution: platform motion (..., 6) [m, rad] for one resolution step of every gauge, by S = V (R_s V)^+.
 
-    The columns of S are single gauges, including gauges in sums. `gauge_steps` and `gauge_noise` (..., g) [m, rad] are their resolution r
-    and noise. `worst` is for one step of all gauges with the worst signs, sum |S_ij| r_j. `rms` is for independent steps, (sum S_ij^2
-    r_j^2)^(1/2). `noise` is the rms motion due to the specified noise densities over the gauges' bandwidths (NaN if unspecified).
+    The columns of S are single gauges, including gauges in sums. `gauge_steps` and `gauge_noise` (..., g) [m, rad] are the gauges'
+    resolution r and noise. `worst` is the motion if the reading errors of all gauges equal one step and have the worst signs, sum |S_ij|
+    r_j. `rms` is for independent steps, (sum S_ij^2 r_j^2)^(1/2). `noise` is the rms motion due to the specified noise densities over the
+    gauges' bandwidths (NaN if unspecified).
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -174,8 +175,8 @@ def pose_resolution(mechanism: Mechanism, kinematics: Kinematics) -> PoseResolut
 def gauge_range(mechanism: Mechanism, kinematics: Kinematics, command: Mapping[str, Number]) -> GaugeRange:
     """Compute gauge readings over the corners of a box of displacements (half widths by coordinate [m, rad]), and half ranges.
 
-    The platform's axis is the line along z through its reference point. Gauges that are not between platform and ground have no largest
-    radius.
+    The platform's axis is the line along z through its reference point. `largest_here` and `largest_anywhere` are NaN for gauges that are
+    not between platform and ground.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -29,7 +29,7 @@ SAFETY = Graded(1.5, 1.0, Mark.PLAIN)
 
 
 class LoadRange(Result):
-    """Compression [N] of each stack over the strokes, with its ratios to maximum load (`usage`) and tension limit (`pull`)."""
+    """Least and largest compression [N] of each stack over the strokes, and the ratios to maximum load and tension limit."""
 
     TABLE: ClassVar[Layout] = Layout(
         "Axial forces of the stacks over all strokes",
@@ -49,10 +49,10 @@ class LoadRange(Result):
 class LoadShare(Result):
     """Axial forces of the stacks under permanent load, positive in compression.
 
-    `loads` (actuators x own weight, payloads and forces) [N] are the forces by cause. `share` (actuators x wrench components) are the
-    forces per unit wrench at the platform's reference point. `stroke` (actuators x strokes) [N/m] are the forces per stroke. `maximum`,
-    `preload` and `tensile` (..., n) [N] are the stacks' limits (NaN: not specified). `reference` (..., 3) [m] is the platform's reference
-    point.
+    `loads` (actuators x causes) [N] are the forces due to own weight, payloads and specified forces. `share` (actuators x wrench
+    components) are the forces per unit wrench at the platform's reference point. `stroke` (actuators x strokes) [N/m] are the forces per
+    stroke. `maximum`, `preload` and `tensile` (..., n) [N] are the stacks' limits (NaN: not specified). `reference` (..., 3) [m] is the
+    platform's reference point.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -131,8 +131,8 @@ class LoadShare(Result):
 def load_share(mechanism: Mechanism, model: LinearModel) -> LoadShare:
     """Compute the distribution of weight (bodies, links, payloads) and specified forces over the stacks, with strokes fixed.
 
-    Every force f at a point acts on its body's coordinates; the stack forces are C K^-1 f. Displacements are small. All stacks are assumed
-    to transmit tension, also without preload and tensile limit: check `pull`.
+    Every external force f at a point is a generalised force on the coordinates of its body; the resulting stack forces are C K^-1 f.
+    Displacements are small. All stacks are assumed to transmit tension, even stacks without preload and tensile limit; check `pull`.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped
@@ -191,7 +191,7 @@ def _preloads(mechanism: Mechanism, model: LinearModel) -> dict[str, Array]:
 
 
 def preload_pairs(assembly: Assembly) -> dict[str, tuple[Force, Force]]:
-    """Return the preload forces by link, on its first and second body.
+    """Return a pair of preload forces for each link: the forces on its first and on its second body.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> preload_pairs(expand(double_triangle()))

@@ -27,9 +27,9 @@ _ROUNDING = 64.0 * float(np.finfo(float).eps)
 class MapError(Result):
     """Error of the linear map: finite pose minus J a.
 
-    `errors` (k, ..., 6) [m, rad] are for the `strokes` (k, ..., n) [m]. `worst` (..., 6) is the largest error by axis, at `worst_strokes`
-    (..., 6, n). If all errors are rounding errors, `worst` is 0 at the first strokes. `residual` (...) [m] is the largest residual of
-    redundant constraints.
+    `errors` (k, ..., 6) [m, rad] are the errors at the `strokes` (k, ..., n) [m]. `worst` (..., 6) is the largest error by axis, at
+    `worst_strokes` (..., 6, n). If all errors are rounding errors, `worst` is 0 at the first strokes. `residual` (...) [m] is the largest
+    residual of redundant constraints.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -70,7 +70,7 @@ class MapError(Result):
 
 
 def linear_map_error(mechanism: Mechanism, kinematics: Kinematics, limits: StrokeLimits, *, inside: int = 64) -> MapError:
-    """Compute the error of x = J a over the box of strokes: corners, centres of faces and `inside` points of a Halton sequence.
+    """Compute the error of x = J a in the box of strokes: at corners, centres of faces, and `inside` points of a Halton sequence.
 
     Redundant strokes strain the links unless they are consistent with a pose. For redundant actuators, the points are therefore the
     vertices of the reachable polytope and points halfway to them. Raises `DesignError` for more than 12 actuators or none.

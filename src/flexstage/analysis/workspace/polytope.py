@@ -44,7 +44,7 @@ class Polytope(Result):
 
     @property
     def poses(self) -> Annotated[Matrix, VIEW]:
-        """Vertices; only for a single design."""
+        """Vertices of the polytope; supported only for a single design."""
         known = self.vertices[~np.isnan(self.vertices).any(axis=-1)]
         units = tuple(map(MOTION.unit, self.coordinates))
         return Matrix(known, tuple(str(number + 1) for number in range(len(known))), self.coordinates, (units,) * len(known))

@@ -32,7 +32,7 @@ _ATOM = 1e-10
 
 @dataclass(frozen=True)
 class SecondOrder:
-    """Second-order error of linear kinematics over a box of motions: largest relative `error`, in the part `link`, with the cause `why`.
+    """Second-order error of linear kinematics over a box of motions: `error` is the largest relative error, `link` its part.
 
     `shortening` is the foreshortening [m] of the bent leaf or rod `shortened` (empty if there is none), which displaces a guide sideways.
     `held_twice` is true if redundant constraints may also stretch flexures.
@@ -47,7 +47,7 @@ class SecondOrder:
 
     @property
     def text(self) -> str:
-        """Sentence on the kinematic error; stiffness and frequencies have no such bound.
+        """Sentence on the error of linear kinematics. This error is no bound for changes of stiffness and frequencies.
 
         >>> SecondOrder(0.0002, "left", "bends by 0.02 of its length").text.partition(". ")[0]
         'Over the strokes the error of linear kinematics is up to 0.02 % (left bends by 0.02 of its length)'
@@ -65,7 +65,7 @@ class SecondOrder:
 
 @dataclass(frozen=True, eq=False)
 class SmallMotion:
-    """Rotation `turn` [rad] and `bend` (deflection over length) of every link and the platform, per unit of each coordinate (L, f).
+    """Rotation `turn` [rad] and `bend` (deflection over length) of every link and the platform, for unit coordinates (L, f).
 
     `limit` (L) is the largest rotation [rad], limited by second-order error or, if `closes`, by contact of notch faces. `span` (L) is the
     bending length of a part [m]; zero for bending at a point.
@@ -92,7 +92,7 @@ class SmallMotion:
         return float(shares[worst]), self.names[worst]
 
     def second_order(self, command: Mapping[str, Number]) -> SecondOrder:
-        """Return the largest theta^2 / 2 of a rotation, or of a deflection over length, in a box of displacements (half widths).
+        """Return half the square of the largest rotation or deflection over length, in a box of displacements (half widths).
 
         The foreshortening of a leaf or rod of length L is 3 u^2 / (5 L) + L theta^2 / 24. Here u is the end deflection relative to the
         middle, theta the rotation between the ends.

@@ -33,12 +33,12 @@ class HingeStress(Result):
     """Largest stress in every hinge over the corners of the stroke range, (..., L) each.
 
     `nominal` and `peak` (with the notch factor) are von Mises stresses [Pa]. `yield_stress` [Pa] is NaN if unspecified. `strokes` (..., L,
-    n) [m] is the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices, restricted parts). `limit`
-    [Pa] is the least of yield stress, fatigue limit and allowable stress (NaN if none is specified; `None`: the yield stress). `governing`
-    names this limit in the first design.
+    n) [m] contains the strokes at the worst corner. `unchecked` names links without a section to check (stacks, compliance matrices,
+    restricted parts). `limit` [Pa] is the least of yield stress, fatigue limit and allowable stress (NaN if none is specified; `None`: the
+    yield stress). `governing` names this limit in the first design.
 
     `places` are the ends and faces with the largest stress (empty for a batch). `condition` describes the range of strokes in words.
-    `actuators` with their `units` may be stroke or force actuators, or coordinates of the platform.
+    `actuators` are stroke or force actuators, or platform coordinates; `units` are their units.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -114,10 +114,10 @@ def hinge_stress(
 ) -> HingeStress:
     """Compute the stress of every hinge from the link wrenches of an elastic model, with permanent load.
 
-    `limits` depend on the assembly:
+    The right `limits` depend on how the stage is assembled:
 
-    - `stroke_limits(mechanism).from_zero` for a stage assembled without voltage, whose hinges are also bent by the bias;
-    - `stroke_limits(mechanism)` for a stage that is stress-free at its bias.
+    - for a stage assembled at zero voltage, whose hinges the bias also bends, `stroke_limits(mechanism).from_zero`;
+    - for a stage that is stress-free at its bias, `stroke_limits(mechanism)`.
 
     With a `command`, `limits` are the limits of its coordinates. `condition` describes the limits in words. The stress is by linear beam
     theory, with the maxima of a section added (see `beams.stress`).

@@ -121,7 +121,7 @@ class Utilisation(Result):
 
 
 def beside(points: Array, depth: int) -> Array:
-    """Return points (k, ..., n) with at least `depth` batch axes in the middle, to broadcast with a batch of designs.
+    """Return points (k, ..., n) with at least `depth` batch axes between the first and the last axis, to broadcast with a batch of designs.
 
     >>> beside(np.zeros((64, 6)), 1).shape
     (64, 1, 6)
@@ -174,7 +174,8 @@ def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFO
     `mapping` replaces R_a, e.g. by the correction gains of lost motion (strokes per platform coordinate).
 
     Translations of a rigid platform are equal at all points; rotations are about the named point. With fewer than six ideal motions, the
-    coordinates keep their names. Raises `DesignError` if the point cannot move along each coordinate independently.
+    coordinates of the point have the same names as those of the platform. Raises `DesignError` if the point cannot move along each
+    coordinate independently.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -191,7 +192,7 @@ def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFO
 
 
 def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Array:
-    """Compute the twist (..., 6, f) of a point per ideal motion: `platform` (its reference point), a platform point, or `body.point`.
+    """Compute the twist (..., 6, f) of a point for unit ideal motions; the point is `platform` (its reference point), or named.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal
@@ -211,7 +212,7 @@ def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Ar
 def single_axis(mapping: Matrix, limits: StrokeLimits, *, at: str = PLATFORM, provenance: str = "") -> SingleAxis:
     """Compute the single-axis strokes x within the stroke limits low <= R_a x <= high.
 
-    `mapping` is `kinematics.mapping`, `mapping_at` of a point, or the correction gains of lost motion. For a single actuator:
+    `mapping` is `kinematics.mapping`, `mapping_at` of a point, or the correction gains of lost motion. Example of a single actuator:
 
     >>> lever = Matrix(np.array([[0.5]]), ("B1",), ("z",), "1")
     >>> stroke = single_axis(lever, StrokeLimits(("B1",), np.array([-1e-4]), np.array([1e-4])))
