@@ -238,7 +238,7 @@ def rectangle_torsion(thickness: Number, width: Number) -> Array:
 
 
 def cowper_rectangle(poisson: Number) -> Number:
-    """Return the shear factor of a rectangular prism, (12 + 11 nu) / (10 (1 + nu)) (Cowper 1966), as in SPACAR Light.
+    """Return the shear factor of a rectangle, (12 + 11 nu) / (10 (1 + nu)) (Cowper, Journal of Applied Mechanics 33, 1966; SPACAR Light).
 
     >>> round(cowper_rectangle(0.3), 6)
     1.176923
@@ -247,7 +247,7 @@ def cowper_rectangle(poisson: Number) -> Number:
 
 
 def cowper_circle(poisson: Number) -> Number:
-    """Return the shear factor of a circular prism, (7 + 6 nu) / (6 (1 + nu)) (Cowper 1966), as in SPACAR Light.
+    """Return the shear factor of a circle, (7 + 6 nu) / (6 (1 + nu)) (Cowper, Journal of Applied Mechanics 33, 1966; SPACAR Light).
 
     >>> round(cowper_circle(0.3), 6)
     1.128205

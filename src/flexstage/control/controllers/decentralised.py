@@ -43,8 +43,8 @@ class Decentralised(CheckedFields):
         """Return the controller as a linear system.
 
         Inputs are `error.<c>`, `pose.<c>` (only if a law uses it), `reference.<c>` (with `feedforward` or `prefilters`) and
-        `applied.<actuator>`, the applied minus the commanded input. Outputs are `command.<actuator>`. Raises `DesignError` for a law that
-        is too fast for the sampling rate.
+        `applied.<actuator>` (applied minus commanded input). Outputs are `command.<actuator>`. Raises `DesignError` for a law that is too
+        fast for the sampling rate.
 
         >>> from flexstage.control.controllers.pi import PI
         >>> from flexstage.control.controllers.loops import platform_loops

@@ -25,8 +25,9 @@ class Family:
     """Controller family `name`: `laws` returns control laws C with |C g| = 1 at the crossover of a plant g.
 
     The arguments of `laws` are a `Place` and the sampling interval [s] (None: continuous). For each loop, tuning selects the law with the
-    lowest peak of S. If `notched`, it adds notches at modes that need them. `others` names the kinds to suggest if the specification is not
-    met. `steps` are the ratios of successive trial bandwidths, above and below 5 % of the first mode's frequency.
+    lowest peak of S. If `notched` is true, tuning adds notches at modes that need them. `others` names the kinds of controllers that an
+    error suggests if the specification is not met. `steps` are the ratios of successive trial bandwidths: the first above 5 % of the first
+    mode's frequency, the second below.
     """
 
     name: str
@@ -49,5 +50,5 @@ def tracking_gain(place: Place, turning: float, feedback: complex) -> float | No
 
 
 def warped(frequency: float, step: float | None) -> float:
-    """Compute the prewarped angular frequency [1/s] of a frequency [Hz] sampled by Tustin's rule."""
+    """Compute the angular frequency [1/s] that Tustin's rule maps to a `frequency` [Hz] (prewarping)."""
     return 2.0 * np.pi * frequency if step is None else float(2.0 / step * np.tan(np.pi * frequency * step))

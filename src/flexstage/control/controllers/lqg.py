@@ -23,8 +23,9 @@ DOUBLINGS, _SETTLED = 30, 1e-15
 class Weights:
     """Weights of the regulator's cost, the integral of w^2 |z|^2 + p |y|^2 + |u|^2, where z is the integral of the loop's error.
 
-    y is the pose in lengths (rotations times the stage's length), u the strokes. w = 2 pi `bandwidth` [Hz] and p = `pose` [1] are equal for
-    all coordinates, or specified for each. With a static plant of gain 1 the gain crossover is exactly `bandwidth` (u' = w e).
+    y is the pose in lengths (rotations times the stage's length), u are the strokes. w = 2 pi `bandwidth` [Hz] and p = `pose` [1] are
+    common to all coordinates, or specified for each coordinate. With a static plant of gain 1 the gain crossover is exactly `bandwidth` (u'
+    = w e).
     """
 
     bandwidth: float | tuple[float, ...]
@@ -33,7 +34,7 @@ class Weights:
 
 @dataclass(frozen=True)
 class Disturbances:
-    """Noise densities assumed by the observer: white noise of every command, `strokes` [m/Hz^(1/2)], and of each gauge, `gauges`."""
+    """White-noise densities that the observer assumes: `strokes` [m/Hz^(1/2)] for every command, and `gauges` for each gauge by name."""
 
     strokes: float
     gauges: Mapping[str, float]
@@ -43,11 +44,11 @@ class Disturbances:
 class LQG:
     """LQG controller with integrators, for a model: u = -K x^ + K_z z + N r.
 
-    The estimate is x^ = x- + M (y - C x-), with the prediction x- = A x^ + B u from the previous sample. The integral is z+ = z + T e. The
-    sampled `model` has inputs `command.<actuator>` and outputs `pose.<c>`. `regulator` is K (n, s), `integral` K_z (n, f), `observer` M (s,
-    f). `feedforward` (n, f) is the matrix of static strokes for a reference, which determines N; default: no feedforward. `tracking` [s] is
-    the anti-windup time of the integrators; the observer uses the applied strokes directly. `weights` are the design weights, `expected`
-    the disturbances assumed by the observer, if known.
+    The estimate is x^ = x- + M (y - C x-), with the prediction x- = A x^ + B u from the previous sample. The integral z of the error e is
+    updated by z+ = z + T e. The sampled `model` has inputs `command.<actuator>` and outputs `pose.<c>`. `regulator` is K (n, s), `integral`
+    K_z (n, f), `observer` M (s, f). `feedforward` (n, f) maps a reference to static strokes and determines N (default: no feedforward).
+    `tracking` [s] is the anti-windup time of the integrators. The observer needs none, because it uses the applied strokes. `weights` are
+    the design weights, `expected` the disturbances assumed by the observer, if known.
     """
 
     model: System
@@ -121,7 +122,7 @@ def _regulator(model: System, coordinates: Coordinates, weights: Weights) -> tup
 
 
 def observer_gain(model: System, coordinates: Coordinates, expected: Disturbances) -> Array:
-    """Compute the gain M (s, f) of the Kalman filter. If D transmits the strokes' noise, state and output noise are correlated.
+    """Compute the gain M (s, f) of the Kalman filter. If D transmits noise of the strokes, it correlates state and output noise.
 
     >>> from flexstage.control.controllers.pose_plant import pose_plant
     >>> from flexstage.control.example import integral_loop

@@ -23,9 +23,9 @@ _FAR = 0.1
 class Notch(CheckedFields):
     """Notch filter (s^2 + 2 d zeta w s + w^2) / (s^2 + 2 zeta w s + w^2): gain d = `depth` at w = 2 pi `frequency`, 1 far from it.
 
-    `damping` zeta is the damping ratio of the poles: the gain is below 1/sqrt(2) in a band about 2 zeta times the frequency wide. Depth
-    zeta_m / zeta cancels a mode of damping ratio zeta_m: the notch's poles replace the mode's poles. Raises `DesignError` for invalid
-    numbers.
+    `damping` zeta is the damping ratio of the poles. The gain is below 1/sqrt(2) in a band with a width of about 2 zeta times the
+    frequency. Depth zeta_m / zeta cancels a mode of damping ratio zeta_m: the notch's poles replace the mode's poles. Raises `DesignError`
+    for invalid numbers.
 
     >>> from flexstage.control.controllers.notch import Notch
     >>> gains = Notch(frequency=110.9, depth=0.02).system().transfer(np.array([0.0, 110.9]))

@@ -22,9 +22,9 @@ class IntegralResonant(CheckedFields):
 
     An integrator -k/s around the plant with feed-through G - d is equivalent to Q around the plant (Aphale, Fleming & Moheimani 2007;
     Fleming, Aphale & Moheimani 2010). `gain` k [1/s], `feedthrough` d [1] (positive, because it is subtracted), `tracking` k_t [1/s]. y is
-    the loop's pose [m], e its error, u its command. The static gain of Q is 1/d: the loop is stable only if d exceeds the plant's static
-    gain. The anti-windup time is 1/k_t, or `tracking_time` [s]. Raises `DesignError` for negative gains, and for a feed-through that is not
-    positive.
+    the loop's pose [m], e its error, u its command. The static gain of Q is 1/d; therefore the loop is stable only if d exceeds the plant's
+    static gain. The anti-windup time is `tracking_time` [s], by default 1/k_t. Raises `DesignError` for negative gains, and for a
+    feed-through that is not positive.
 
     >>> control = IntegralResonant(gain=1000.0, feedthrough=2.0, tracking=100.0)
     >>> control.system().transfer(np.array([0.0001]))[0, 0, 1].real.round(6).item()  # 1/d at rest
@@ -63,10 +63,11 @@ class IntegralResonant(CheckedFields):
 
 
 def resonant_law(frequency: float, damping: float, static: float = 1.0, tracking: float = 0.0) -> IntegralResonant:
-    """Compute the gains that give an undamped mode at `frequency` [Hz] the ratio zeta = `damping`, the highest with this feed-through.
+    """Compute gains that give an undamped mode at `frequency` [Hz] the damping ratio zeta = `damping`, the highest that d permits.
 
-    d = g (1 + 2 zeta)^2 / ((1 + 2 zeta)^2 - 1), k d = w_p (1 + 2 zeta)^(1/2) (Namavar, Fleming & Aphale 2014). w_p is the mode's angular
-    frequency, g = `static` the plant's static gain, `tracking` k_t [1/s]. Raises `DesignError` for numbers that are not positive.
+    The gains are d = g (1 + 2 zeta)^2 / ((1 + 2 zeta)^2 - 1) and k d = w_p (1 + 2 zeta)^(1/2) (Namavar, Fleming & Aphale 2014). Here w_p is
+    the mode's angular frequency, g = `static` the plant's static gain, and k_t [1/s] is `tracking`. Raises `DesignError` for numbers that
+    are not positive.
 
     >>> control = resonant_law(100.0, damping=0.5 * (2.0**0.5 - 1.0))
     >>> round(control.feedthrough, 9), round(control.gain * control.feedthrough / (200.0 * np.pi), 4)  # 2, and 2^(1/4)

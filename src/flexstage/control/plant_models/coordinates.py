@@ -26,11 +26,11 @@ _MISSING = 1e-9
 class Coordinates:
     """The f coordinates of a loop: ideal motions xi of a stage (x ... rz, or a subset).
 
-    `pose` (f, g) = (R_s V)^+ maps gauge readings to xi: R_s^-1 of Eq. 14 of Shin & Moon for six gauges, a least-squares solution for more.
-    `gauges` are the single gauges; sums of gauges are included in `pose`. `strokes` (n, f) maps xi to strokes, R_a of Eq. 13; `back` (f, n)
-    is its (least-squares) inverse. For force actuators `back` is the static motion per unit input, and `strokes` its pseudo-inverse, the
-    minimum-norm inputs [A, N]. `units` are m or rad; `length` [m] makes rotations comparable with translations. `gauge_units` and
-    `input_units` are units of readings and inputs (default: m).
+    `pose` (f, g) = (R_s V)^+ maps gauge readings to xi. For six gauges it is R_s^-1 (equation 14 of Shin & Moon), for more gauges a
+    least-squares solution. `gauges` are the single gauges; sums of gauges are included in `pose`. `strokes` (n, f) maps xi to strokes: R_a
+    of equation 13. `back` (f, n) is the (least-squares) inverse of `strokes`. For force actuators `back` is the static motion per unit
+    input, and `strokes` its pseudo-inverse, the minimum-norm inputs [A, N]. `units` are m or rad; `length` [m] makes rotations comparable
+    with translations. `gauge_units` and `input_units` are units of readings and inputs (default: m).
     """
 
     names: tuple[str, ...]
@@ -83,8 +83,8 @@ def coordinates(kinematics: Kinematics, model: LinearModel | None = None) -> Coo
     """Compute the coordinates of a stage's loop (one design). For force actuators the elastic `model` provides the static motion.
 
     The inputs of force actuators follow from the pseudo-inverse of the static motion per unit input. Each loop's plant then has a static
-    gain of 1, as with strokes. Raises `DesignError`, with the missing directions, if the gauges cannot observe the pose or the actuators
-    cannot produce it. Strokes and forces together are also refused.
+    gain of 1, as for a stroke-driven stage. Raises `DesignError`, with the missing directions, if the gauges cannot observe the pose or the
+    actuators cannot produce it. Stages that combine stroke and force actuators are also refused.
 
     >>> from flexstage.cases.double_triangle import SM_REF_A, double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -39,10 +39,10 @@ class ChargeHold(CheckedFields):
 class AmplifierSettings(amplifier.Amplifier):
     """Amplifier data that the design file does not contain; absent values impose no limit.
 
-    `slew` [V/s] is the maximum voltage rate, `noise_density` [V/Hz^(1/2)] is one-sided and white before the amplifier's lag, `bits` is the
+    `slew` [V/s] is the maximum voltage rate. `noise_density` [V/Hz^(1/2)] is one-sided and white before the amplifier's lag. `bits` is the
     resolution of the converter before the amplifier. An amplifier of voice coils controls the current: `bandwidth`, `current` and `bits`
     apply, and its noise is `current_noise` [A/Hz^(1/2)]. An amplifier with `charge` controls the charge of its stack. Commands, range,
-    slew, noise and steps are then in volts that give the same charge to an unloaded stack.
+    slew, noise and steps of an amplifier with `charge` are in volts that give the same charge to an unloaded stack.
     """
 
     slew: float | None = None
@@ -56,7 +56,7 @@ class AmplifierSettings(amplifier.Amplifier):
 class GaugeSettings(CheckedFields):
     """Gauge data that replace or extend the design file; an absent value keeps the gauge's value in the design, or imposes no limit.
 
-    `bandwidth` [Hz] belongs to the first-order lag. `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is one-sided and white before the lag.
+    `bandwidth` [Hz] is the corner of the first-order lag. `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is one-sided and white before the lag.
     `resolution` [m, rad] is the step of the reading. `filter_order` and `filter_corner` [Hz] belong to a Butterworth filter before the
     sampler (order 0: no filter).
     """
@@ -70,7 +70,7 @@ class GaugeSettings(CheckedFields):
 
 @dataclass(frozen=True)
 class ChargeDrive:
-    """Charge drive of a stack with `coupling` k above a `corner` [Hz]; `residual_hysteresis` is the fraction that remains."""
+    """Charge drive of a stack with `coupling` k above a `corner` [Hz]; the fraction `residual_hysteresis` of the hysteresis remains."""
 
     coupling: float
     corner: Annotated[float, FREQUENCY]
@@ -80,7 +80,7 @@ class ChargeDrive:
     def stiffening(self) -> Annotated[float, VIEW]:
         """Axial stiffness at constant charge relative to constant voltage, 1/(1 - k^2).
 
-        Preumont, Vibration Control of Active Structures, 2018, ch. 4: a stack with open electrodes.
+        This is the stiffness of a stack with open electrodes (Preumont, Vibration Control of Active Structures, 2018, chapter 4).
 
         >>> round(ChargeDrive(0.6, 0.1, 0.2).stiffening, 12)
         1.5625
@@ -90,12 +90,12 @@ class ChargeDrive:
 
 @dataclass(frozen=True)
 class Amplifier:
-    """Amplifier, converter and stack of one actuator, in free strokes from the bias; for a force actuator in its inputs [A or N].
+    """Amplifier, converter and stack of one actuator; values are free strokes from the bias, or inputs [A or N] of a force actuator.
 
     `low` to `high` [m] is the stroke range. `slew` [m/s] is the maximum rate: the lesser of current x gain / capacitance and the
-    amplifier's slew x gain, where gain is the free stroke per volt. `bandwidth` [Hz] belongs to the lag after the hold. `noise_density`
-    [m/Hz^(1/2)] is free-stroke noise before that lag (None: not specified). `step` [m] is the converter's resolution (0: no rounding).
-    Infinite values impose no limit. `charge` is the charge drive, if any, with its corner.
+    amplifier's slew x gain, where gain is the free stroke per volt. `bandwidth` [Hz] is the corner of the lag after the hold.
+    `noise_density` [m/Hz^(1/2)] is the noise of the free stroke before the lag (None: not specified). `step` [m] is the converter's
+    resolution (0: no rounding). Infinite values impose no limit. `charge` is the charge drive, if any, with its corner.
     """
 
     low: float = -np.inf
@@ -111,9 +111,9 @@ class Amplifier:
 class Sensor:
     """One gauge between stage and computer.
 
-    `bandwidth` [Hz] belongs to the lag (infinite: no lag), `filter_order` and `filter_corner` [Hz] to the Butterworth filter after it.
-    `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is one-sided and white before lag and filter (None: not specified). `resolution` [m, rad] is
-    the step of the reading (0: no rounding). `half_range` [m, rad] is half the measuring range.
+    `bandwidth` [Hz] is the corner of the lag (infinite: no lag). `filter_order` and `filter_corner` [Hz] describe the Butterworth filter
+    after the lag. `noise_density` [m/Hz^(1/2), rad/Hz^(1/2)] is one-sided and white before lag and filter (None: not specified).
+    `resolution` [m, rad] is the step of the reading (0: no rounding). `half_range` [m, rad] is half the measuring range.
     """
 
     bandwidth: float = np.inf
@@ -159,7 +159,7 @@ def sampling_chain(
     amplifiers: AmplifierSettings | Mapping[str, AmplifierSettings] | None = None,
     gauges: GaugeSettings | Mapping[str, GaugeSettings] | None = None,
 ) -> Hardware:
-    """Describe the sampling chain of a stage from the data of its stacks and gauges, and from settings for all of them or by name.
+    """Describe the sampling chain of a stage from the data of its stacks and gauges, and from common settings or settings by name.
 
     Raises `DesignError` for unknown names, and for settings that need missing stack data (capacitance for `resistance`, `current` and
     `leakage`; voltage range for `current`, `slew` and `noise_density`).

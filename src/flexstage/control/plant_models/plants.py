@@ -37,12 +37,12 @@ _REPEATED = 1e-3
 class Plant:
     """Continuous plant between hold and sampler: a stage with amplifiers and gauges.
 
-    `system` has these inputs: free strokes [m] or currents [A] `<actuator>` from the hold to the amplifiers, `ground.<c>` [m, rad], and
-    wrenches `platform.fx` ... [N, N m]. Outputs: `gap.<gauge>` [m, rad] (its reading after lag and filter, before noise and rounding),
-    absolute motions `platform.<c>` and `<point>.<c>` [m, rad], and motions relative to the ground, `relative.<c>` and
-    `relative.<point>.<c>`. `states` names its states. `frequencies` [Hz] and `ratios` belong to the retained modes; `left_out` counts the
-    omitted modes, whose compliance is a static term. `note` lists the simplifications. `heard` are the noise densities of further inputs:
-    noise of sensors of inner loops.
+    Inputs of `system` are free strokes [m] or currents [A] `<actuator>` (between hold and amplifiers), ground motions `ground.<c>` [m,
+    rad], and wrenches `platform.fx` ... [N, N m]. Outputs: `gap.<gauge>` [m, rad] (its reading after lag and filter, before noise and
+    rounding), absolute motions `platform.<c>` and `<point>.<c>` [m, rad], and motions relative to the ground, `relative.<c>` and
+    `relative.<point>.<c>`. `states` names the states of `system`. `frequencies` [Hz] and `ratios` belong to the retained modes; `left_out`
+    counts the omitted modes, whose compliance is a static term. `note` lists the simplifications. `heard` contains the noise densities of
+    further inputs: the noise of sensors in inner loops.
     """
 
     system: Annotated[System, INNER]
@@ -81,10 +81,10 @@ def plant(
     """Build the plant of a stage's model; `kinematics` defines its loop's coordinates.
 
     `modes` is the number of modes to retain. Default: all modes below half the sampling rate; of a continuous loop, all modes. At least as
-    many as loop coordinates are retained, and both modes of a pair (frequencies within 0.1 %). The static compliance of omitted modes is
-    kept. `points` are further bodies or points for motion outputs, `links` the links for axial force outputs `<link>.fx` [N]. Raises
-    `DesignError` for a batch of designs, for gauges that cannot observe the pose, actuators that cannot produce it, and a design without
-    damping.
+    many modes as loop coordinates are retained, and modes of a pair (frequencies within 0.1 %) are retained together. The static compliance
+    of omitted modes is kept. `points` are further bodies or points for motion outputs, `links` the links for axial force outputs
+    `<link>.fx` [N]. Raises `DesignError` for a batch of designs, a design without damping, gauges that cannot observe the pose, and
+    actuators that cannot produce it.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -130,11 +130,11 @@ def plant(
 
 
 def zero_order_hold(given: Plant) -> System:
-    """Discretise the plant by zero-order hold, exact at the samples; strokes with the `delay`, wrenches without.
+    """Discretise the plant by zero-order hold, exactly at the samples; the `delay` applies to strokes, but not to wrenches.
 
     Ground motion is linear between samples (`first_order_hold`): a hold would add jumps to the gauge readings. Gauges are read before the
-    output of the same sample: without delay and lag they still show the previous output. A continuous plant is returned unchanged. Inputs
-    and outputs are as in `Plant.system`. The delayed strokes follow its states.
+    output of the same sample; without delay and lag, their readings still result from the previous output. A continuous plant is returned
+    unchanged. Inputs and outputs are as in `Plant.system`. The states of the result are those of the plant, then the delayed strokes.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram

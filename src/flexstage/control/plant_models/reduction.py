@@ -46,7 +46,7 @@ def resonances(given: Plant) -> Array:
     """Compute the resonance peak (k,) of every mode between strokes and pose, relative to a static stroke-to-pose gain of 1.
 
     With strokes and pose expressed as platform motions in lengths, the peak is |c| |b| / (2 zeta omega^2): c and b are the modal output and
-    input. It is infinite at 0 Hz.
+    input. The peak of a mode at 0 Hz is infinite.
 
     >>> from flexstage.control.example import integral_loop
     >>> resonances(integral_loop().plant).round(1).tolist()  # the guide's mode: about 1/(2 zeta) = 50

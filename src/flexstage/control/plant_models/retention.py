@@ -37,9 +37,9 @@ _UNDERDAMPED = 1e-3
 class Retention:
     """Modes retained in the plant, `retained` of `total`; the static compliance of the others is kept.
 
-    `gain` is the largest closed-loop resonance |L (1 + L)^-1| of an omitted mode (`frequency` [Hz]), all loops closed. `change` is the
-    largest relative change of peak of S, margins and rejection by all omitted modes. `wanted` (k,) marks the modes to retain. `retune` is
-    true if added modes change the loop, not only the residual of a step.
+    `gain` is the largest loop gain of an omitted mode at its resonance (`frequency` [Hz]), with all loops closed. `change` is the largest
+    relative change that all omitted modes cause in the peak of S, the margins and the rejection. `wanted` (k,) marks the modes to retain.
+    `retune` is true if modes to be added change loop gain or margins, not only the ringing after a step.
     """
 
     retained: int
@@ -57,12 +57,13 @@ class Retention:
 
 
 def retention(whole: Plant, closed: Loop) -> Retention:
-    """Find the significant modes of a `whole` plant in a loop closed around a subset, with its present controller.
+    """Find the significant modes of a `whole` plant, for a loop closed around a subset of them with its present controller.
 
-    An omitted mode is significant by one of three criteria. First, its loop gain at resonance with other loops and axes closed: |a| |b K S|
-    for its pulse transfer function a b psi(z). This is exact between hold and sampler, also above half the sampling rate. Second, ringing
-    beyond `RINGING` in a step, in the true platform motion along any axis. Third, a margin changed by all omitted modes together: modes of
-    lower loop gain are added until no change exceeds `MARGIN_CHANGE`, if no omitted mode meets the first criterion.
+    An omitted mode is significant if it meets one of three criteria. First, the mode's loop gain at resonance, with other loops and axes
+    closed, is at least 0.1. For a pulse transfer function a b psi(z) of the mode, this loop gain is |a| |b K S|. It is exact between hold
+    and sampler, also above half the sampling rate. Second, the true platform motion rings by at least `RINGING` along any axis after a
+    step. Third, the mode is needed for the margins. If no mode meets the first criterion, modes are added by decreasing loop gain until the
+    others change no margin by more than `MARGIN_CHANGE`.
 
     >>> from flexstage.control.systems.closed import loop
     >>> from flexstage.control.example import integral_loop

@@ -105,7 +105,7 @@ class ComparedController:
 
     @property
     def worst_noise(self) -> Annotated[tuple[str, ...], INNER, Heading("positioning noise")]:
-        """Largest rms of the translations, and of the rotations."""
+        """Largest rms value of the translations, and largest of the rotations."""
         largest = {unit: max(value for value, own in zip(self.noise, self.units, strict=True) if own == unit) for unit in self.units}
         return tuple(f"{1e9 * value:.3g} n{unit}" for unit, value in largest.items())
 
@@ -121,7 +121,7 @@ class ComparedController:
 
     @property
     def figures(self) -> Mapping[str, float]:
-        """Criteria by name (smaller is better): worst values of all coordinates, but the mean logarithm of noise (if any)."""
+        """Criteria by name (smaller is better): the worst of all coordinates, but for noise (if any) the mean of its logarithm."""
         return {
             "rejection": -self.crossover,
             **({"noise": float(np.mean(np.log(self.noise)))} if np.all(self.noise > 0.0) else {}),
@@ -179,9 +179,9 @@ def compare_controllers(
 ) -> Comparison:
     """Tune PI, PID, integral resonant control, LQG and the kinds of `CONTROLLERS` for one set-up, and compare their step responses.
 
-    PI and PID are optimised, unless the set-up specifies plain tuning; LQG is optimised for a specified goal. The others are tuned to the
-    highest bandwidth within the same peak of S. `workers` is the number of parallel processes (0: the calling process); the results do not
-    depend on it. Raises `DesignError` if no design succeeds. A kind fails if the set-up contains gains that it does not have.
+    PI and PID are optimised, unless the set-up specifies plain tuning; LQG is optimised for a specified goal. All other kinds are tuned to
+    the highest bandwidth within the same peak of S. `workers` is the number of parallel processes (0: the calling process); the results do
+    not depend on it. Raises `DesignError` if no design succeeds. A kind fails if the set-up specifies gains that this kind does not have.
     """
     asked = replace(setup or LoopSetup(), trajectory=StepMotion())
     rivals = _rivals(mechanism, asked, tested=test is not None)

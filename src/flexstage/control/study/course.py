@@ -38,7 +38,8 @@ _MOST_SAMPLES = 5_000_000
 class NamedTrajectory:
     """Named trajectory; `plane` are the two coordinates of a plan view.
 
-    It is periodic with `period` [s] between the two times `repeats` [s] (default: not periodic), and truncated at its `end` [s].
+    The trajectory is periodic with `period` [s] between the start and end times `repeats` [s] (default: not periodic). It is truncated at
+    `end` [s].
     """
 
     name: str

@@ -76,7 +76,7 @@ class DisturbedLoop:
 
 
 def part_of(found: Simulated, part: slice) -> Simulated:
-    """Return the samples `part` of a simulation, with time from their start. Fractions of time at limits refer to the whole simulation."""
+    """Return the samples `part` of a simulation, timed from their start. Fractions of time at limits refer to the whole simulation."""
     names = [field.name for field in fields(Simulated) if np.shape(getattr(found, field.name))[:1] == found.times.shape]
     kept = {name: getattr(found, name)[part] for name in names}
     return replace(found, **(kept | {"times": found.times[part] - found.times[part.start]}))

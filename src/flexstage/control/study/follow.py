@@ -26,9 +26,9 @@ _FEWEST = 2.0
 def follow(
     asked: FollowSetup, closed: Loop, control: System, path: Array, course: NamedTrajectory, *, noisy: DisturbedLoop
 ) -> tuple[Simulated, dict[str, Any]]:
-    """Simulate a path (n, f), with rest before and after it, by a tracking method; also return further fields of its `Run`.
+    """Simulate a path (n, f) with a tracking method, with rest before and after the path; also return the tracking fields of `Run`.
 
-    Raises `DesignError` if the loop is not known well enough for an inverse at any frequency, and for too few periods.
+    Raises `DesignError` if the uncertain loop permits no inverse at any frequency, and for too few periods of repetitive control.
     """
     step = closed.step or 1.0
     around = round(noisy.rest / step)

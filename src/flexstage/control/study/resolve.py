@@ -50,11 +50,11 @@ class ResolvedSetup:
     """Set-up completed for a stage: its kinematics, linear model, plant, and the floor's spectra by input.
 
     `plant` has the retained modes, or the specified number of modes. `whole` has all modes of the model; `stage` has all modes too, but no
-    inner loops. `highest` [Hz] is the highest of the f lowest platform modes, for f loop coordinates. If `displaced`, the model is
-    linearised at an operating point, deflection included. `loaded` is the effect of permanent load on the nominal stage; if it is
+    inner loops. `highest` [Hz] is the highest of the f lowest platform modes, for f loop coordinates. If `displaced` is true, the model is
+    linearised at an operating point, including its deflection. `loaded` is the effect of permanent load on the nominal stage; if it is
     significant, the model is the loaded stage. With a measured plant, `predicted` is the model's plant. `damping` describes the force
-    feedback, `charge` the charge amplifiers. The plants include both; `model` is at constant voltage, which is correct for statics. `solid`
-    is the finite-element stage, if that is the model.
+    feedback, `charge` the charge amplifiers. The plants include force feedback and charge amplifiers; `model` is at constant voltage, which
+    is correct for statics. `solid` is the finite-element stage, if that is the model.
     """
 
     mechanism: Mechanism
@@ -90,7 +90,7 @@ class ResolvedSetup:
 
 
 def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None = None, solid: FeaModes | None = None) -> ResolvedSetup:
-    """Complete a set-up for a stage that is nominal, at an operating point, or under permanent load if that is significant.
+    """Complete a set-up for the nominal stage, an operating point, or the loaded stage if its permanent load is significant.
 
     With a `solid`, the model is the nominal finite-element stage, with the kinematics of the ideal stage.
 
@@ -177,8 +177,8 @@ def _with_inner_loops(given: ResolvedSetup, found: Plant, stage: StagePlant) -> 
 class StagePlant:
     """Stage with all modes of its model and without inner loops, from which reduced plants are derived.
 
-    `moving` is the model with the legs `charged` at constant charge; `drives` are their charge drives. `sensed` are the legs with force
-    feedback.
+    `moving` is the model with constant charge in the legs `charged`; `drives` are the charge drives of these legs. `sensed` are the legs
+    with force feedback.
     """
 
     plant: Plant

@@ -25,9 +25,9 @@ from flexstage.models.theory import Model
 class RestErrors(InNotebook):
     """Static errors of a stage: commanded with R_a (`ideal_map`), and with lost-motion gains of the same model (`lost_motion_gains`).
 
-    `other_gains` is the error with lost-motion gains of the `other_model` (`None` if that model does not apply). `load` (6,) [m, rad] is
-    the platform's deflection under all its loads with fixed actuators. `load_strokes` (n,) [m] are the strokes that cancel this deflection
-    where possible; `load_left` (6,) is the residual deflection.
+    `other_gains` is the error with the lost-motion gains of another model, `other_model` (`None` if that model does not apply). `load` (6,)
+    [m, rad] is the platform's deflection under all its loads with fixed actuators. `load_strokes` (n,) [m] are the strokes that cancel this
+    deflection as far as possible; `load_left` (6,) is the remaining deflection.
     """
 
     ideal_map: StaticError

@@ -21,8 +21,8 @@ from flexstage.experiment.progress import part
 def control_and_modes(given: ResolvedSetup, gains: Array) -> tuple[ResolvedSetup, Control, Retention]:
     """Design the controller for the retained modes, add the modes that are significant with it, and repeat until no mode is added.
 
-    Modes are never removed, because that could repeat endlessly. A number of modes specified in the set-up is not changed. `gains` (n, f)
-    map poses to strokes. Raises `DesignError` as `make_controller` does.
+    Modes are never removed, because adding and removing could alternate endlessly. A number of modes specified in the set-up is not
+    changed. `gains` (n, f) map poses to strokes. Raises `DesignError` as `make_controller` does.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.control.study.resolve import resolve
@@ -56,7 +56,7 @@ def control_and_modes(given: ResolvedSetup, gains: Array) -> tuple[ResolvedSetup
 
 
 def stated_modes_warnings(given: ResolvedSetup, control: Control, closed: Loop, found: Retention) -> list[Finding]:
-    """Warn if too few modes are specified, so that margins change with all significant modes."""
+    """Warn if so few modes are specified that the margins differ from those with all significant modes."""
     if given.setup.modes is None or found.complete:
         return []
     more = loop(retain_modes(given, found.wanted).plant, control.system)

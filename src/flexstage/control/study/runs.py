@@ -85,7 +85,7 @@ class StepAnswer:
 
 @dataclass(frozen=True)
 class CoilHeat:
-    """Thermal load of a force actuator in a repeated trajectory: `rms` input, and the continuous limit `held` [`unit`].
+    """Thermal load of a force actuator in a repeated trajectory: `rms` input, and the continuous limit `held`, both in `unit`.
 
     `power` [W] is the dissipated power, `warming` [K] the steady temperature rise; both are absent without data.
     """
@@ -284,7 +284,7 @@ def _with_legs(run: Run, computed: Machine) -> Run:
 
 
 def command_ends(given: ResolvedSetup) -> StrokeLimits:
-    """Return the limits of the strokes, relative to the bias, or of the inputs of force actuators."""
+    """Return the limits of the strokes, relative to the bias; for force actuators, the limits of their inputs."""
     if not given.kinematics.thrusts:
         return stroke_limits(given.mechanism)
     powers = [given.plant.hardware.amplifiers[name] for name in given.plant.actuators]
@@ -342,7 +342,7 @@ def rest_rms(given: ResolvedSetup, control: Control, closed: Loop) -> RestRms:
     """Compute the rms in regulation from several simulations with independent random numbers, for rounding that is not white noise.
 
     Each simulation regulates at a different pose within the gauges' resolution steps. The motion is small if a reading is in the middle of
-    a step, and larger near its edge, where the reading alternates between two values.
+    a resolution step; near an edge it is larger, because the reading alternates between two values.
     """
     (noisy, whole), to_pose, squares = _resting_loop(given, control, closed), given.plant.coordinates.pose, list[Array]()
     count = whole // 3

@@ -71,7 +71,7 @@ GAINS = ("proportional", "integral", "derivative")
 
 @dataclass(frozen=True)
 class AxisAmplitudes(CheckedFields):
-    """Amplitudes of the platform coordinates. If any is specified, the others are zero."""
+    """Amplitudes of the platform coordinates. If any amplitude is specified, unspecified amplitudes are zero."""
 
     x: Annotated[float, DISPLACEMENT] | None = None
     y: Annotated[float, DISPLACEMENT] | None = None
@@ -138,9 +138,9 @@ class PrefilterSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class LoopNumbers(CheckedFields):
-    """Parameters of the loops named in `axes`: x, rz ... in platform coordinates, otherwise mode1 ... or names of actuators.
+    """Parameters of the loops named in `axes`: x, rz ... in platform coordinates, mode1 ... in modal ones, or names of actuators.
 
-    Missing parameters have the common values of all loops; `notches` are additional to the common ones.
+    Unspecified parameters have the common values of all loops; `notches` are added to the common notches.
     """
 
     axes: tuple[str, ...]
@@ -174,15 +174,15 @@ class GoalSetup(CheckedFields):
 
 @dataclass(frozen=True)
 class ControllerSetup(CheckedFields):
-    """Controller: `kind`, coordinates, and either a specification or gains.
+    """Controller: its `kind`, the coordinates of its loops, and either a specification for tuning or specified gains.
 
     The default kind is PI; for force-driven stages without specified gains it is PID. The specification consists of `sensitivity`, the
     highest permitted peak of S, and of `bandwidth`, the gain crossover (default: the highest that `sensitivity` allows). The gains
     `proportional`, `integral` and `derivative`, with the corner `filter` of the derivative, apply to all loops; `loops` override them for
-    single loops. `notches` are additional to automatic ones. `prefilter` filters the reference.
+    single loops. `notches` are added to the automatic notches. `prefilter` filters the reference.
 
-    By default, PI and PID are optimised for the `goal` balance, within `sensitivity`. `quick`, a bandwidth, gains or notches disable the
-    optimisation.
+    By default, PI and PID are optimised for the `goal` balance, with a peak of S of at most `sensitivity`. `quick`, a bandwidth, gains or
+    notches disable the optimisation.
     """
 
     kind: Annotated[ControllerKind | OfferedKind, KINDS] | None = None
@@ -208,7 +208,7 @@ class ControllerSetup(CheckedFields):
 
     @property
     def stated(self) -> tuple[str, ...]:
-        """Names of the gains specified for all loops or for single loops. With any of them, the controller is not tuned."""
+        """Names of the gains specified for all loops or for single loops. If any gain is specified, the controller is not tuned."""
         return tuple(name for name in GAINS if any(getattr(each, name) is not None for each in (self, *self.loops)))
 
     @property
@@ -224,9 +224,9 @@ class DampingSetup(CheckedFields):
     `ratio` is the required damping ratio of the modes with the largest residues; `gain` specifies the feedback directly. `corner` is the
     corner of a high-pass filter (default: a tenth of the lowest frequency that these modes have without the stacks' stiffness). A filter of
     `order` 2 preserves the static stiffness; order 1 reduces it to the fraction a / (a + gain), with a = 2 pi `corner`. The tension is
-    measured by a force sensor in each leg, with white `noise`, or by strain `gauges` on links of the legs, with their noise and bandwidth
-    in the design. `lag` and `delay` describe analogue electronics. With `rate`, an integer multiple of the loop's sampling rate, a computer
-    runs the feedback; the default `delay` is then one sample of this rate.
+    measured by a force sensor in each leg, with white `noise`, or by strain `gauges` on links of the legs. The design specifies noise and
+    bandwidth of the strain gauges. `lag` and `delay` describe the electronics of analogue feedback. With `rate`, an integer multiple of the
+    loop's sampling rate, a computer runs the feedback; the default `delay` is then one sample of this rate.
     """
 
     ratio: Annotated[float, RATIO, _DAMPED] | None = None
@@ -244,8 +244,8 @@ class DampingSetup(CheckedFields):
 class FollowSetup(CheckedFields):
     """Tracking method for a trajectory known in advance; the error is relative to the trajectory.
 
-    `method` is the inverse of the modelled loop, iterative learning (`passes`, `gain`), or repetitive control with this `gain` for a
-    periodic path (raster or sine). These three act in the frequency band in which relative mode shifts up to `spread` are permissible.
+    `method` is the inverse of the modelled loop, iterative learning (with `passes` and `gain`), or repetitive control (with `gain`) of a
+    periodic path: raster or sine. These three methods act only at frequencies where relative mode shifts up to `spread` are permissible.
     Alternatively, `method` is an input shaper for a mode of `frequency` and `damping` ratio.
     """
 
@@ -261,9 +261,10 @@ class FollowSetup(CheckedFields):
 class HystereticStacks(CheckedFields):
     """Hysteresis of the stacks: a model in a `file` of `flexstage hysteresis`, or only the loop's `width` relative to the stroke.
 
-    The model is scaled to each stack's stroke and voltage, and defines the inverse. `plant` selects the simulated stacks: the same model,
-    or Bouc-Wen stacks of the same width, which the inverse does not cancel exactly. Default: the model with a file, Bouc-Wen with a width.
-    `creep` is the creep per decade of time after 0.1 s, relative to the stroke (default: the creep in the file).
+    The model is scaled to each stack's stroke and voltage, and defines the inverse. `plant` selects the simulated stacks: the model itself,
+    or Bouc-Wen stacks of equal width, whose hysteresis the inverse does not cancel exactly. The default of `plant` is the model if a `file`
+    is specified, and Bouc-Wen if a `width` is specified. `creep` is the creep per decade of time after 0.1 s, relative to the stroke
+    (default: the creep in the file).
     """
 
     file: str | None = None
@@ -338,7 +339,7 @@ class SineMotion(CheckedFields):
 
 @dataclass(frozen=True)
 class FileMotion(CheckedFields):
-    """Trajectory in a CSV `file`: a first column `time [s]`, then coordinates with units, e.g. `x [um]`, `rz [urad]`."""
+    """Trajectory in a CSV `file`: a first column `time [s]`, then coordinates with units, such as `x [um]` and `rz [urad]`."""
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("kind", "file")
 

@@ -43,8 +43,8 @@ _TURNS = (1.0, -1.0, 0.7, -0.7, 0.4, -0.4, 0.0)
 class Stacks:
     """Stacks of the actuators: `plant` is their simulated behaviour, `model` the inverted model, both from volts to strokes [m].
 
-    `electric` converts strokes to voltages. `width` (n,) is the plant's loop width relative to the stroke. `creep` follows the hysteresis
-    (`None`: no creep).
+    `electric` converts strokes to voltages. `width` (n,) is the plant's loop width relative to the stroke. `creep` acts after the
+    hysteresis (`None`: no creep).
     """
 
     electric: Drive
@@ -102,9 +102,9 @@ class Sweep:
 def stacks_of(mechanism: Mechanism, given: HystereticStacks) -> Stacks:
     """Construct the stacks of a stage with the hysteresis of a set-up, scaled to their strokes and voltages.
 
-    A file's model is scaled so that its loop over each stack's voltage range has the full stroke. With only a width, the plant is by
-    default a Bouc-Wen stack, and the model is identified from a simulated record of such a stack. Raises `DesignError` for invalid files,
-    and for stacks without a voltage range.
+    A file's model is scaled so that the hysteresis loop over each stack's voltage range has the full stroke. With only a width, the plant
+    is by default a Bouc-Wen stack, and the model is identified from a simulated record of such a stack. Raises `DesignError` for invalid
+    files, and for stacks without a voltage range.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = stacks_of(double_triangle(), HystereticStacks(width=0.15))

@@ -68,12 +68,13 @@ _NO_STROKES = "a force-driven stage has no lost motion: its stiffness determines
 class LoopStudy(InNotebook):
     """Loop study: a loop and all its results.
 
-    `closed` is the loop with the retained modes of the plant (see `retention`). `growth_all_modes` [1/s] is the spectral abscissa with all
-    modes of the model. `margins`, `peaks`, `disk_margin` (all loops varied together), `bandwidths` and `curves` are those of the loops
-    opened at the pose. In open loop they are absent (see `reasons`). `static_errors` are open-loop errors of the stage. `noise` is the
-    noise budget in regulation; `still` is a simulation in regulation, if there is noise. If rounding is not white, the budget does not
-    apply; `resting` then summarises several simulations. `stacks` are the hysteretic stacks, if specified; `hysteresis` is their open-loop
-    sweep. `runs` are the simulated trajectories. `warnings` list assumptions and limitations.
+    `closed` is the loop with the retained modes of the plant (see `retention`). `growth_all_modes` [1/s] is the growth rate of the loop
+    with all modes of the model; it is negative if the loop is stable. `margins`, `peaks`, `disk_margin` (all loops varied together),
+    `bandwidths` and `curves` are those of the loops opened at the pose. Without a closed loop, these results are absent (see `reasons`).
+    `static_errors` are open-loop errors of the stage. `noise` is the noise budget in regulation; `still` is a simulation in regulation, if
+    there is noise. If rounding is not white noise, the budget is invalid; `resting` then summarises several simulations. `stacks` are the
+    hysteretic stacks, if specified; `hysteresis` is their open-loop sweep. `runs` are the simulated trajectories. `warnings` list
+    assumptions and limitations.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a loop study", "fs.control.loop_study(stage)")
@@ -103,7 +104,7 @@ class LoopStudy(InNotebook):
 
     @property
     def setup(self) -> Annotated[LoopSetup, VIEW]:
-        """Keys of the set-up file with the specified values in SI units. A null value means the default from the stage."""
+        """Keys of the set-up file with the specified values in SI units. A null value means that the stage determines the default."""
         return self.settled.setup
 
     @property
@@ -176,10 +177,10 @@ def loop_study(
 ) -> LoopStudy:
     """Analyse the control loop of a stage for a set-up. Missing keys have default values.
 
-    The plant is linearised at an operating point `there`, if specified. Otherwise it is the set-up's model of the stage, or its lumped
-    model under permanent load if that load is significant. With a `solid`, the plant is the finite-element model of the nominal stage. With
-    a `test`, it is the identified plant from strokes to gauges (`measured_plant`); margins are then also computed from the measured
-    responses (`measured`).
+    The plant is linearised at an operating point `there`, if specified. Without an operating point, the plant is the set-up's model of the
+    stage, or the lumped model under permanent load if this load is significant. With a `solid`, the plant is the finite-element model of
+    the nominal stage. With a `test`, it is the identified plant from strokes to gauges (`measured_plant`); margins are then also computed
+    from the measured responses (`measured`).
 
     Raises `DesignError` as `resolve`, `make_controller` and `runs` do, and for an unstable loop, with the cause.
 
@@ -248,7 +249,7 @@ def loop_study(
 
 @check_arguments
 def sensitivity_crossover(mechanism: Mechanism) -> float | None:
-    """Return the lowest sensitivity crossover [Hz] of all coordinates with the default controller. Raises as `loop_study` does.
+    """Return the lowest sensitivity crossover [Hz] of all coordinates with the default controller. Raises the errors of `loop_study`.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> 300.0 < sensitivity_crossover(parallelogram()) < 1000.0

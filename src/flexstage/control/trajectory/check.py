@@ -12,7 +12,7 @@ from flexstage.spatial.frame import COMPONENTS, TWIST_UNITS
 
 
 def reach_findings(poses: Array, times: Array, polytope: Polytope) -> list[Finding]:
-    """Check poses (n, f) against the `polytope` of reachable poses: one finding, with the first and worst times, and a permissible scale.
+    """Find poses (n, f) outside the `polytope` of reachable poses; the finding has the first and worst times, and a permissible scale.
 
     The columns of `poses` are the polytope's coordinates. The boundary counts as reachable.
 

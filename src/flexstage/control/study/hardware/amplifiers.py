@@ -37,7 +37,7 @@ class AmplifierForm(CheckedFields):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Findings in the table that do not depend on the stage; each has its key."""
+        """Findings on the amplifier's table that do not depend on the stage; each finding names its key."""
         yield from ()
 
 
@@ -68,7 +68,7 @@ class AmplifierSetup(AmplifierForm):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Check for both a bandwidth and a resistance."""
+        """Check that bandwidth and resistance are not both specified."""
         if self.bandwidth is not None and self.resistance is not None:
             yield Finding(
                 "amplifier",
@@ -79,13 +79,13 @@ class AmplifierSetup(AmplifierForm):
 
 @dataclass(frozen=True)
 class ChargeSetup(AmplifierSetup):
-    """Charge amplifiers for stacks, with the data of voltage amplifiers, converted to the voltage of an unloaded stack.
+    """Charge amplifiers for stacks; their data are those of voltage amplifiers, converted to the voltage of an unloaded stack.
 
     `coupling` is the coupling k of the stack (at most k33 of its ceramic, 0.7 for soft PZT); at constant charge the stack is stiffer by the
     factor 1/(1 - k^2). Below the `corner` the drive acts as a voltage drive. With a `leakage` resistance R parallel to the stack, the
-    corner is 1/(2 pi R C). `residual_hysteresis` is the fraction of hysteresis and creep that remains above the corner. Default: one fifth
-    (Ge & Jouaneh, IEEE Trans. Control Syst. Technol. 4 (1996) 209, by Fleming & Leang, Design, Modeling and Control of Nanopositioning
-    Systems, 2014, ch. 12).
+    corner is 1/(2 pi R C). `residual_hysteresis` is the fraction of hysteresis and creep that remains above the corner. The default is one
+    fifth (Ge & Jouaneh, IEEE Transactions on Control Systems Technology 4 (1996) 209, cited by Fleming & Leang, Design, Modeling and
+    Control of Nanopositioning Systems, 2014, chapter 12).
     """
 
     kind: ClassVar[str] = "charge"
@@ -102,7 +102,7 @@ class ChargeSetup(AmplifierSetup):
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Check for a missing coupling, for a corner that is missing or specified twice, and as for voltage amplifiers."""
+        """Check the data of a voltage amplifier, that the coupling is specified, and that the corner is specified exactly once."""
         yield from super().faults
         if self.coupling is None:
             advice = "Use e.g. coupling = 0.7. An estimate from data-sheet values, d^2 k / C, is too large"
