@@ -20,7 +20,7 @@ _CARRIERS = ("numpy.libs", "scipy.libs")
 
 
 def missing_place(folders: Iterable[Path | str]) -> Path | None:
-    """Find the folder for the library within these `site-packages` folders. Returns None if no library needs it or if it exists.
+    """Find the folder for the library within these `site-packages` folders. Returns None if the library exists or is not needed.
 
     >>> missing_place([]) is None
     True

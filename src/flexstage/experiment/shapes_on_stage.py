@@ -27,8 +27,8 @@ class StageShapes:
     """Measured shapes as motions of the stage.
 
     `motions` maps each body to its twists (6, k) [m, rad] in the modes. `used` names the outputs used. `explained` (k,) is the fraction of
-    each measured shape that ideal motion explains. It is 1 if there are no more outputs than degrees of freedom. `missing` is the reason
-    why there are no twists.
+    each measured shape that ideal motion explains. `explained` is 1 if there are no more outputs than degrees of freedom. `missing` is the
+    reason why there are no twists.
     """
 
     motions: Mapping[str, Array]
@@ -46,9 +46,9 @@ class StageShapes:
 def stage_shapes(kinematics: Kinematics, found: Identified) -> StageShapes:
     """Fit ideal stage motions to the measured shapes s by least squares: x = V (R V)^+ s.
 
-    The columns of V are the ideal motions. A row of R is the row of a gauge in R_s, or a component of a body's twist. Rotations are
-    weighted by the kinematics' characteristic length. For six gauges the result equals R_s^-1 s of the paper (Eq. 14). All bodies move with
-    the ideal kinematics: hinges are free about their intended axes.
+    The columns of V are the ideal motions. Each row of R is a gauge's row of R_s, or a component of a body's twist. Rotations are weighted
+    by the kinematics' characteristic length. For six gauges the result equals R_s^-1 s (equation 14 of the paper). All bodies move with the
+    ideal kinematics: hinges are free about their intended axes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

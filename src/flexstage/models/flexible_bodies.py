@@ -99,10 +99,10 @@ def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
 
     No estimate exists for the following bodies; the reason is returned instead:
 
-    - bodies without outlines, or with imported outlines;
-    - bodies on superelements, ideal joints or locked DOFs;
-    - bodies with links that end far from their outlines;
-    - all bodies of large stages.
+    - bodies without outlines, or with imported outlines or many outlines;
+    - bodies joined to superelements or ideal joints, or with locked DOFs;
+    - bodies with links that end far from the body's outlines;
+    - all bodies of stages with many bodies.
 
     Equal bodies share their estimate.
 

@@ -110,11 +110,9 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     - Free internal modes without effect on the platform are removed and listed in `idle`; their inertia is included.
     - With `elastic_bodies`, bodies have the compliance that `body_flexibilities` estimates; only for single designs.
 
-    Raises `DesignError`:
-
-    - for a mechanism (K singular), naming the free bodies;
-    - for a stroke that locked DOFs block;
-    - for a nominal position that negative stiffnesses make unstable. If only later designs of a batch are unstable, their stiffness is NaN.
+    Raises `DesignError` for a mechanism (K is singular), with the names of its free bodies, and for a stroke that locked DOFs block. The
+    error is also raised if negative stiffnesses make the nominal position unstable. If only later designs of a batch are unstable, their
+    stiffness is NaN.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> len(lumped(double_triangle()).coordinates)

@@ -38,7 +38,7 @@ _COLLINEAR = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class LeverStiffness:
-    """Springs of a lever unit as in Fig. 7 and Eqs. 3-11 of the paper, SI.
+    """Springs of a lever unit in SI units (figure 7 and equations 3 to 11 of the paper).
 
     The fields are `drive` K_1 (stack and its hinges), `pivot` K_theta2, `pole` K_3, `short_arm` r_1, and `long_arm` r_2.
     """
@@ -58,12 +58,12 @@ class LeverStiffness:
 
     @property
     def gain(self) -> Annotated[Number, RATIO]:
-        """First term of Eq. 11: output per stroke, (r_2 / r_1) / (1 + eps)."""
+        """Output per stroke, the first term of equation 11: (r_2 / r_1) / (1 + eps)."""
         return self.long_arm / self.short_arm / (1.0 + self.softness)
 
     @property
     def tip_compliance(self) -> Annotated[Number, COMPLIANCE]:
-        """Load term of Eq. 11: r_2^2 / (K_theta2 + r_1^2 K_1) + 1 / K_3 [m/N]."""
+        """Compliance at the tip, the load term of equation 11: r_2^2 / (K_theta2 + r_1^2 K_1) + 1 / K_3 [m/N]."""
         return self.long_arm**2 / (self.pivot + self.short_arm**2 * self.drive) + 1.0 / self.pole
 
     @property
@@ -76,9 +76,8 @@ class LeverStiffness:
 def mapped(mechanism: Mechanism) -> LinearModel:
     """Build the model of the paper: axial springs in actuator coordinates under a rigid platform.
 
-    The stiffness of each unit is specified in the description, or computed for direct units (a straight strut) and lever units.
-
-    Raises `DesignError` for other units without a specified stiffness, with the key that specifies it.
+    The stiffness of each unit is specified in the description, or computed by `unit_stiffness`. Raises `DesignError` if it is neither
+    specified nor computable; the error names the key that specifies it.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> (mapped(double_triangle()).stiffness_matrix[0, 0] / 1e6).round(2).item()  # 1.5 K_a
@@ -146,7 +145,7 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
     """Return the stiffness of every actuator's unit in actuator coordinates [N/m], specified or computed.
 
     For a unit that is not a straight strut or a lever, the stiffness is computed for the chain of links that carry its load
-    (`chain_compliance`). This requires the `kinematics`, and a chain that is statically determinate.
+    (`chain_compliance`). The chain must be statically determinate, and `kinematics` is required.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()
@@ -173,13 +172,13 @@ def unit_stiffness(mechanism: Mechanism, assembly: Assembly, kinematics: Kinemat
 
 
 def chain_compliance(assembly: Assembly, kinematics: Kinematics, actuator: str) -> Number | None:
-    """Compute the compliance [m/N] of all links that carry an actuator's load, in actuator coordinates: the sum of f^T C f (virtual work).
+    """Compute the compliance [m/N] of all links that carry an actuator's load, in actuator coordinates, by virtual work (sum of f^T C f).
 
-    f is the wrench in the locked DOFs of a link, in equilibrium with fixed strokes. The platform wrench w loads only this actuator, V^T w =
-    R_a^T e, and no guide. Free DOFs carry no load; ideal joints are rigid.
+    f is the wrench in the locked DOFs of a link in equilibrium, with strokes fixed; C is the link's compliance. The platform wrench w loads
+    only this actuator (V^T w = R_a^T e) and no guide. Free DOFs carry no load; ideal joints are rigid.
 
-    Returns `None` if statics does not determine f (redundant constraints or a guide), if a link has no known compliance, or if all links
-    are rigid.
+    Returns `None` if statics does not determine the wrenches (redundant constraints or a guide), if a link has no known compliance, or if
+    all links are rigid.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> stage = double_triangle()

@@ -138,10 +138,10 @@ def row_table(
 ) -> Table:
     """Make a table with one row for each record or name, and one column for each field.
 
-    `source` is a mapping or sequence of records of one class, or a record. In a record, arrays with `Along` names and labelled matrices
-    have one row for each name. `fields` are the shown fields in sequence, by default all that fit into cells. The head of a column is the
-    field's `Heading`, else its name and unit. `head` is the head of the column of names, or `path, axis` for two such columns. Values
-    outside a field's `Bound` are marked.
+    `source` is a single record, or a mapping or sequence of records of one class. A record with labelled matrices or arrays with `Along`
+    has one row for each of their names. `fields` are the shown fields in sequence; by default, all fields whose values fit into cells. The
+    head of a column is the field's `Heading`, else its name and unit. `head` is the head of the column of names; for two such columns it
+    contains both heads, for example `path, axis`. Values outside a field's `Bound` are marked.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
@@ -233,7 +233,7 @@ def sheet_table(title: str, sheet: Sheet, notes: Iterable[str] = (), provenance:
 def column_table(title: str, matrix: Matrix, *, head: str = "", unit: str = "", notes: Iterable[str] = (), provenance: str = "") -> Table:
     """Make a table of a labelled matrix whose columns are quantities (see `matrix_columns`).
 
-    `head` is the head of the row names; `unit` replaces the preferred display unit.
+    `head` is the head of the column of row names; `unit` replaces the preferred display unit.
 
     >>> column_table("a", Matrix(np.array([[2e-6, 3.0]]), ("x",), ("low", "share"), (("m", "1"),)), head="along").texts()
     [['along', 'low [um]', 'share'], ['x', '2', '3']]
@@ -254,7 +254,7 @@ def _columns_table(title: str, columns: Sequence[_ColumnCells], notes: Iterable[
 def array_table(
     title: str, record: Any, *fields: str, names: Mapping[str, Iterable[Any]] = MappingProxyType({}), notes: Iterable[str] = ()
 ) -> Table:
-    """Make a table with arrays of a record as columns. `names` contains the columns of row names, by their head."""
+    """Make a table with arrays of a record as columns. `names` contains the columns of row names, each with its head as key."""
     columns = (field_column(field, list(values)) for field, values in (field_at(record, name) for name in fields))
     return _columns_table(title, [*(_name_column(*each) for each in names.items()), *columns], notes)
 
@@ -397,7 +397,7 @@ def _plain_column(field: Field, values: Sequence[Any], units: Sequence[str]) -> 
 
 
 def interval_text(low: float, high: float) -> str:
-    """Format an interval. Its ends are rounded to two significant digits of the width.
+    """Format an interval. Both ends are rounded to two significant digits of the interval's width.
 
     >>> interval_text(118.0101, 118.0145), interval_text(1.0, float("inf"))
     ('118.0101 to 118.0145', '-')
@@ -456,9 +456,9 @@ def matrix_table(
 ) -> Table:
     """Make a table of a labelled matrix (first design of a batch) in display units.
 
-    Rows and columns have units, and the unit of an entry is row unit per column unit. If the units of the entries are not such ratios, each
-    entry shows its unit. Rounding noise is shown as 0; a further matrix `against` may define its level. `units`
-    replace the preferred display units (with mrad, lever arms are in mm).
+    Rows and columns have units, and the unit of an entry is row unit per column unit. If the units of the entries are not ratios of row and
+    column units, each entry shows its unit. Rounding noise is shown as 0; a further matrix `against` may define the noise level. `units`
+    replace the preferred display units; for example, with mrad, lever arms are in mm.
 
     >>> table = matrix_table("K", Matrix(np.array([[2e6]]), ("fx",), ("x",), (("N/m",),)))
     >>> table.texts()

@@ -166,7 +166,8 @@ def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[
 def coherence_figure(found: Identified, multiple: Array | None, lines: Array | None = None) -> Any:
     """Plot the multiple coherence of the first outputs, and the ordinary coherence with every input, as a matplotlib Figure.
 
-    `multiple` (f, p) is absent for an analyser's responses. Its frequencies `lines` [Hz] are by default those of the identified responses.
+    `multiple` (f, p) is the multiple coherence at the frequencies `lines` [Hz], by default those of the identified responses. For responses
+    from an analyser, `multiple` is None.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify

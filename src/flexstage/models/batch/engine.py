@@ -50,8 +50,8 @@ class Plan:
     """Data computed once for a family of designs.
 
     - `tables`: topology for the kernel.
-    - `starts`: start values of the iteration, first for the required modes, then for more modes in case modes cross. If empty, all designs
-      are solved by dense matrices.
+    - `starts`: start values of the iteration, first for the required modes, then for additional modes, which are needed if modes cross. If
+      `starts` is empty, all designs are solved by dense matrices.
     - `surface`: the polynomial fit of the kernel's input over specified ranges.
     """
 
@@ -78,9 +78,9 @@ Ranges = tuple[Array, Array]
 def plan(mechanism: Mechanism, addresses: tuple[str, ...], choice: Choice | None = None, ranges: Ranges | None = None) -> Plan:
     """Plan a family of designs, which differ in the numbers at the addresses.
 
-    With `ranges`, the kernel's input is fitted once by polynomials (in seconds), if their error is at most 1e-10. For a design within the
-    ranges, computing the input then takes less time than the solution. Without a fit, or outside the ranges, the input is computed from the
-    description.
+    With `ranges`, the kernel's input is fitted once by polynomials (in seconds), if their error is at most 1e-10. Within the ranges,
+    computing the input of a design then takes less time than solving it. Without a fit, or outside the ranges, the input is computed from
+    the description.
 
     Raises `DesignError` for unknown addresses, and for a mechanism whose nominal stiffness is singular.
 
@@ -141,8 +141,8 @@ def platform_modes(plan_: Plan, values: Array) -> PlatformModes:
 
     The frequencies agree with the dense solution of `models.lumped` within 1e-6 (relative), which is proven for each design.
 
-    An invalid design has the status `NONE` and does not affect the other designs. Causes are non-finite numbers, a stiffness that is not
-    positive, or outlines without a mass.
+    An invalid design has the status `NONE` and does not affect the other designs. A design is invalid if it has non-finite numbers, a
+    stiffness that is not positive, or outlines without a mass.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> result = platform_modes(plan(double_triangle(), ("parts.neck.thickness",)), np.array([[1.54e-3], [1.60e-3], [np.nan]]))

@@ -31,7 +31,7 @@ Draw = Callable[[tuple[Array, ...]], Mechanism]
 class Family:
     """Designs that differ in P numbers from a nominal design, `mechanism`; `nominal` (P,) are the numbers of the nominal design.
 
-    `points` (3,) are the nominal reference points of bodies that do not specify one. They are used for all designs.
+    `points` (3,) are the nominal reference points of bodies that do not specify one. All designs use these points.
     """
 
     mechanism: Mechanism

@@ -38,7 +38,7 @@ SHAPES: Mapping[str, tuple[int, ...]] = {
 class Topology:
     """Connectivity of the stage: `links` are the numbers of (part, first body, second body); body 0 is the platform.
 
-    `locked`: bodies do not have exactly six free coordinates, because a DOF is locked or has no stiffness, or a part has internal
+    `locked` is true if bodies do not have exactly six free coordinates: a DOF is locked or has no stiffness, or a part has internal
     coordinates.
     """
 
@@ -61,7 +61,7 @@ class Topology:
 
     @property
     def mirror(self) -> Array:
-        """Index of the symmetric entry of each number in its matrix; its own index for numbers without one.
+        """Index of the transposed entry for each number of a symmetric matrix; all other numbers have their own index.
 
         >>> Topology(("platform",), ((0, -1, 0),), 1, locked=False).mirror[:7].tolist()
         [0, 6, 12, 18, 24, 30, 1]
@@ -106,7 +106,7 @@ def topology(assembly: Assembly) -> Topology:
 class Elimination:
     """Elimination order of bodies, with the kept body last. `edges` are the pairs (first, later) of the filled graph, sorted by first.
 
-    The numbers in `edges` are positions in this order.
+    The numbers in `edges` are positions in the elimination order.
     """
 
     order: tuple[int, ...]

@@ -49,8 +49,8 @@ class Piece:
 class Surface:
     """Polynomial fit of the kernel input of a family for values from `low` to `high` (P,). `fixed` (numbers,) are the constant numbers.
 
-    `error` is the largest error at random designs, relative to the maximum value. Numbers below the diagonal of symmetric matrices are not
-    fitted: they have their `fixed` values.
+    `error` is the largest error at random designs, relative to the maximum value. Numbers below the diagonals of symmetric matrices are not
+    fitted; they have the values in `fixed`.
     """
 
     low: Array

@@ -58,7 +58,7 @@ def misalign_data(mechanism: Mechanism, found: Misaligned) -> StageData:
 
 
 def buckling_data(mechanism: Mechanism, cases: Sequence[CaseFactor], after: PostBuckling | None = None) -> StageData:
-    """Return viewer data of buckling: for each load case, the buckling mode about the last stable state, and the path `after` buckling."""
+    """Return viewer data of buckling: the buckling mode of each load case about the last stable state, and the path `after` buckling."""
     still = still_data(mechanism)
     motions = [
         motion
@@ -78,7 +78,7 @@ def _buckling_motions(still: StageData, case: CaseFactor, found: Critical, numbe
 
 
 def modes_at_data(mechanism: Mechanism, there: OperatingPoint, found: Modes, said: str, *, count: int = 12) -> StageData:
-    """Return viewer data of a stage with its `count` lowest modes about an operating point; `said` describes the point."""
+    """Return viewer data of a stage with its `count` lowest modes about an operating point, which the text `said` describes."""
     still = still_data(mechanism)
     moved = mode_motions(there.state, found.shapes[:, :count], there.locked)
     return replace(still, motions=tuple(_about(still, there.state, moved, _labels(found.frequencies[:count], said))))
@@ -114,7 +114,7 @@ def quantities_of(along: Matrix) -> Iterator[tuple[str, Array, DisplayUnit]]:
 
 
 def limits(found: Stroke | Misaligned) -> tuple[str, ...]:
-    """Describe the exceeded limits at each point. The text is empty if no limit is exceeded."""
+    """Describe the exceeded limits at each point. The text of a point is empty if no limit is exceeded there."""
     return tuple(to_typography("; ".join(_words(found, point))) for point in range(len(found.along.values)))
 
 

@@ -71,11 +71,11 @@ class StageData:
 
     @cached_property
     def links(self) -> tuple[int, ...]:
-        """Part numbers of hinges and actuators, in the sequence of a motion's strain energies."""
+        """Numbers of hinges and actuators among the drawn parts, in the sequence of a motion's strain energies."""
         return tuple(number for number, thing in enumerate(self.things) if thing.kind in {Kind.HINGE, Kind.DRIVE})
 
     def reach(self, motion: Motion) -> float:
-        """Return the largest displacement [m] of a vertex in a motion; at large displacements, of a body's reference point or a node."""
+        """Return the largest displacement [m] in a motion: of a vertex, or at large displacements of a body's reference point or a node."""
         if motion.course is not None:
             return motion.course.reach
         moved = self.mesh.displacement(motion.twists)
@@ -142,7 +142,7 @@ def stage_data(
     """Compute the data of a viewer for a stage (first design of a batch), with motions.
 
     The lumped `model`, the ideal `kinematics`, the modes `found` and the data `still` without motions are computed unless specified.
-    Motions that cannot be computed are left out, with the reason in the notes. `weighed` is the model for modes about the loaded stage.
+    Motions that cannot be computed are left out, with the reason in the notes. `weighed` is the model for the modes of the loaded stage.
     `text` is the text of the design file, for line numbers. `count` is the number of lowest modes shown; platform modes are always
     included. Raises `DesignError` if the stage cannot be drawn.
     """

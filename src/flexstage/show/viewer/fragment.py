@@ -16,8 +16,8 @@ from flexstage.show.viewer.data import StageData
 def element(key: str, *, motion: str = "", instead: str = "") -> str:
     """Write the HTML element of a viewer for the data named `key`.
 
-    The viewer starts with a `motion` such as "mode 1" or "stroke B1", by default with the undeformed stage. `instead` is HTML, inserted
-    without escapes, that is shown in print, and without scripts or WebGL.
+    The viewer starts with a `motion` such as "mode 1" or "stroke B1", by default with the undeformed stage. `instead` is HTML that is shown
+    in print, and without scripts or WebGL; it is inserted without escapes.
 
     >>> element("stage", motion="mode 1", instead="<p>a picture</p>")
     '<div data-flexstage="stage" data-motion="mode 1"><p>a picture</p></div>'

@@ -20,9 +20,9 @@ class Mesh:
     """Vertices, triangles and edges of a stage in its frame.
 
     `points` (v, 3) [m] are the positions of vertices. `part`, `carrier` and `station` (v,) contain indices for each vertex. A carrier is a
-    piece between two bodies, with their numbers `bodies` (c, 2), 0 for the ground, and its `ends` (c, 2, 3) [m] at the bodies. For a rigid
-    piece, both bodies are equal. The rows of `stations` (s, 5) are values of a `Bend`. `triangles` (t, 3) are counter-clockwise from
-    outside; `edges` (e, 2) are sharp edges.
+    piece between two bodies: `bodies` (c, 2) are their numbers (0: ground), `ends` (c, 2, 3) [m] are the ends of the piece at these bodies.
+    A rigid piece has the same body at both ends. The rows of `stations` (s, 5) are values of a `Bend`. `triangles` (t, 3) are
+    counter-clockwise from outside; `edges` (e, 2) are sharp edges.
     """
 
     points: Array
@@ -37,7 +37,7 @@ class Mesh:
 
     @cached_property
     def centres(self) -> Array:
-        """Points (v, 3) on the lines between the ends of carriers, at the vertices' fractions of their lengths."""
+        """Points (v, 3) on the straight lines between the ends of carriers, at each vertex's fraction of the length."""
         first, second = self.ends[self.carrier, 0], self.ends[self.carrier, 1]
         return first + self.stations[self.station, :1] * (second - first)
 

@@ -53,7 +53,7 @@ class Curve:
 
     @property
     def span(self) -> str:
-        """Text of the range from the first value to the last."""
+        """Text with the first value, the last value and the unit."""
         first, last = (to_typography(number(float(value), 4)) for value in (self.values[0], self.values[-1]))
         return f"{first} … {last} {self.unit}".strip()
 
@@ -75,10 +75,10 @@ class Response:
 class PathMotion:
     """Large displacements through the points of a path, or a small motion about one displaced state.
 
-    `poses` (f, rows, 6) are displacements and rotation vectors of the reference points of the bodies, the ground first, then of the nodes
-    along bending pieces. `frames` (f,) are the numbers of the path's points with these poses. `shape` (rows, 6) is a small motion about the
-    only pose. `curves` are quantities along the path; the first is the drive. For every point, `beyond` contains the numbers of parts that
-    exceed a limit, and `said` describes the exceeded limits.
+    `poses` (f, rows, 6) are displacements and rotation vectors: of the ground, the reference points of the bodies, and the nodes along
+    bending pieces. `frames` (f,) are the numbers of the path's points with these poses. `shape` (rows, 6) is a small motion about the
+    displaced state (None for large displacements). `curves` are quantities along the path; the first is the drive. For every point,
+    `beyond` contains the numbers of parts that exceed a limit, and `said` describes the exceeded limits.
     """
 
     frames: Array
@@ -101,9 +101,9 @@ class Motion:
 
     `name` is unique in its group; `remark` contains further information; modes have a `frequency` [Hz]. `energy` contains the strain-energy
     fractions of links and other elastic parts by name, `None` if unknown. `stress` contains the utilisation of links by name, in the state
-    that `stressed` describes, for example at the full stroke. The amplitude is physical except for modes. Large displacements, along a path
-    or about a state, have a `course` instead of twists. Motions over time have a `response`; their twists belong to the time of the largest
-    displacement.
+    that `stressed` describes, for example at the full stroke. The amplitudes of all motions except modes are physical. A motion with large
+    displacements, along a path or about a displaced state, has a `course` instead of twists. Motions over time have a `response`; their
+    twists belong to the time of the largest displacement.
     """
 
     group: Group
@@ -126,7 +126,7 @@ class Skeleton:
     references: Mapping[str, Array]
 
     def at_origin(self, twists: Mapping[str, Array]) -> Array:
-        """Convert twists at reference points to twists (b + 1, 6) at the stage's origin, the ground first; zero for bodies not named."""
+        """Convert twists at reference points to twists (b + 1, 6) at the stage's origin: ground first, zeros for bodies without a twist."""
         own = [np.real(twists[name]) if name in twists else np.zeros(6) for name in self.references]
         rows = np.array([np.zeros(6), *own])
         rows[1:, :3] += np.cross(self._points, rows[1:, 3:])
@@ -142,7 +142,8 @@ def body_twists(
 ) -> dict[str, Array]:
     """Compute the twists (6,) of bodies for a shape (n,) of the model's coordinates, and for `inputs` (m,) if specified.
 
-    For a batch, computes the first design. If the model contains only the platform, the other bodies move by the ideal kinematics.
+    For a batch, the twists of the first design are computed. If the model contains only the platform, the other bodies move by the ideal
+    kinematics.
 
     >>> import flexstage as fs
     >>> from flexstage.cases.double_triangle import double_triangle
@@ -168,7 +169,7 @@ def body_twists(
 def mode_motions(
     model: LinearModel, kinematics: Kinematics | None, found: Modes, bones: Skeleton, count: int, *, about: str = ""
 ) -> Iterator[Motion]:
-    """Yield the `count` lowest modes and all higher platform modes as mass-normalised motions. Remarks end with `about`."""
+    """Yield the `count` lowest modes and all higher platform modes as mass-normalised motions. All remarks end with `about`."""
     frequencies, shapes = first_design(found.frequencies, 1), first_design(found.shapes, 2)
     last = max((*found.platform, -1)) + 1
     for index in range(min(len(found.names), max(count, last))):
@@ -192,7 +193,7 @@ def _energy(model: LinearModel, motion: Array, inputs: Array | None = None) -> d
 
 
 class Bearing:
-    """Computation of the stress utilisation of links, if their sections and limits and the forces in the model are known."""
+    """Calculator of the stress utilisation of links; it needs their sections and limits, and a model with their forces."""
 
     def __init__(self, mechanism: Mechanism, model: LinearModel) -> None:
         known = {channel.name for channel in model.outputs}

@@ -52,7 +52,7 @@ class Describer:
         self._facts: dict[int, tuple[Fact, ...]] = {}
 
     def thing(self, name: str, kind: Kind, first: int, second: int) -> DrawnEntry:
-        """Describe the drawn entry of this name. `first` and `second` are the numbers of the bodies that it connects."""
+        """Describe the drawn entry named `name`. `first` and `second` are the numbers of the bodies that it connects."""
         what, address, facts = self._description(name)
         unit = name.rpartition("/")[0]
         line = line_of(address, self._lines) if address else None
@@ -95,7 +95,7 @@ class Describer:
 
 
 def part_facts(record: object) -> Iterator[Fact]:
-    """Yield the scalar numbers of a part or other record, with the names of their keys. Positions and matrices are left out."""
+    """Yield the scalar numbers of a part or another record, each with the name of its key. Positions and matrices are left out."""
     for address, value, node in node_of(type(record)).numbers(record):
         if "." not in address or address.startswith("profile."):
             form = field_unit(node.quantity)

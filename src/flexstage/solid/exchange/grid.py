@@ -24,7 +24,7 @@ _EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Quadratic tetrahedra: `points` (p, 3) [m], `cells` (c, 10) in VTK's order, and the piece (index) of each cell, `owner` (c,)."""
+    """Quadratic tetrahedra: `points` (p, 3) [m], `cells` (c, 10) in VTK's sequence of nodes, and each cell's piece index `owner` (c,)."""
 
     points: Array
     cells: Array

@@ -45,9 +45,9 @@ def export_superelement(
     its link (`left`, or `left-platform` if both ends of the link are ports). Its frame is at the middle of the face. Its axes are those of
     the stage, of the unit that contains the solid, or of the link if the solid is a single link.
 
-    Stiffness `K` and mass `M` are in SI units. Their coordinates are the twists of the ports, then inner coordinates: the `reduction.modes`
-    lowest modes with all ports fixed, and static responses that replace the omitted modes. The latter are responses to wrenches on the
-    bodies and to the inertia of the ports' motions.
+    Stiffness `K` and mass `M` are in SI units. Their first coordinates are the twists of the ports. The inner coordinates are the
+    `reduction.modes` lowest modes with all ports fixed, and static responses that replace the omitted modes. The static responses are due
+    to wrenches on the bodies and to the inertia of the ports' motions.
 
     Raises `DesignError` for the errors of `model`, for an unknown name, for fewer than two ports, and for a stack, because the matrices
     cannot represent its stroke.

@@ -123,13 +123,13 @@ def _stress_picture(stage: SolidStage) -> Picture:
 
 
 def verification_headline(found: Verification) -> Headline:
-    """Make the headline of a verification; it is good if theory is sufficient for all figures of the last group, the stage."""
+    """Make the headline of a verification; it is good if theory suffices for all figures of the stage, the last group."""
     rows = list(found.groups.values())[-1]
     return Headline(found.headline, all(row.trust in {TheoryCheck.EITHER, TheoryCheck.THEORY} for row in rows))
 
 
 def solid_motions(mechanism: Mechanism, stage: SolidStage, theory: Mapping[int, Pair] = MappingProxyType({})) -> tuple[Motion, ...]:
-    """Convert the platform's modes by finite elements to motions of a viewer; remarks describe the paired modes of `theory`, by index."""
+    """Convert the platform's finite-element modes to motions of a viewer; remarks describe the paired modes of `theory`, by index."""
     return fea_motions(still_data(mechanism).bones, Moving(stage.modes, stage.read.model), theory)
 
 

@@ -114,7 +114,7 @@ def _stated_note(stated: Mapping[str, str]) -> list[str]:
 
 
 def verification_table(rows: tuple[Row, ...]) -> Table | None:
-    """Tabulate theory and FEA for one group of rows, with both errors and the verdict.
+    """Tabulate theory and FEA for one group of rows, with their difference, the estimated FEA error and the verdict.
 
     >>> from flexstage.solid.results.verification import Row
     >>> table = verification_table((Row("stage", "mode 1", "Hz", 101.0, 100.0, 0.001),))

@@ -17,13 +17,13 @@ class ObjectiveDirection(Enum):
 
     @property
     def sense(self) -> Sense:
-        """Sense of a limit that better designs meet."""
+        """Sense of a limit that better values meet: `at least` to maximise, `at most` to minimise."""
         return Sense.AT_LEAST if self is ObjectiveDirection.MAXIMISE else Sense.AT_MOST
 
 
 @dataclass(frozen=True)
 class Objective(RequestedMeasure):
-    """A response by name, its measure, and its direction."""
+    """Objective: a named response, its measure, and whether to maximise or minimise it."""
 
     direction: ObjectiveDirection
 
@@ -33,7 +33,7 @@ class OptimisationProblem:
     """Optimisation problem, as the `[optimise]` section of a study's file defines it.
 
     It has one objective, or two for a front of `points` designs. `starts` is the number of initial designs: the nominal design, then a
-    Sobol sequence with this `seed`. `requirements`: the `[requirements]` of the design are also limits.
+    Sobol sequence with this `seed`. If `requirements` is true, the `[requirements]` of the design are also limits.
     """
 
     objectives: tuple[Objective, ...]
@@ -44,7 +44,7 @@ class OptimisationProblem:
 
 
 def limits(study: Study, definition: OptimisationProblem) -> tuple[Requirement, ...]:
-    """List all limits: those of the study, then the requirements of the design on measures that the study does not limit on that side.
+    """List all limits: those of the study, and the design's requirements, except where the study limits the same measure on the same side.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> [each.key for each in limits(*leaf_study())]

@@ -121,7 +121,7 @@ class LimitAt:
 
 @dataclass(frozen=True)
 class DesignPoint:
-    """A design: variables and objectives by name in SI units, and its limits. Relative variables are factors on the design's values."""
+    """A design: variables and objectives by name in SI units, and its limits. A relative variable is a factor on a design value."""
 
     variables: Mapping[str, float]
     objectives: Mapping[str, float]
@@ -140,8 +140,8 @@ class RoundedPoint(DesignPoint):
 class Contradiction:
     """Minimal set of limits that contradict each other within the ranges.
 
-    `violation` is the minimum, over all designs, of the largest relative violation. `point` is the design at this minimum, where no named
-    limit is violated by more.
+    `violation` is the minimum, over all designs, of the largest relative violation. `point` is the design at this minimum; it violates each
+    limit in `limits` by at most `violation`.
     """
 
     limits: tuple[Requirement, ...]
@@ -226,7 +226,7 @@ class Optimum(Outcome):
 
     @property
     def on_steps(self) -> Annotated[RoundedPoint | None, VIEW, Called("rounded")]:
-        """The best design on the steps of the variables. Null without steps, or if no neighbour is feasible."""
+        """The best design on the steps of the variables. Null if no variable has a step, or if no neighbour is feasible."""
         if self.rounded is None or self.rounded.point is None:
             return None
         found = self.design(self.rounded.point)

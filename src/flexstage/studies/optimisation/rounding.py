@@ -20,11 +20,11 @@ _EDGE = 1e-9
 
 
 def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
-    """Find the best feasible neighbour on the steps of the variables. Returns `None` if no variable has a step.
+    """Find the best feasible design near `point` whose variables are multiples of their steps. Returns `None` if no variable has a step.
 
-    Neighbours are ranked by the linear model of objective and limits; for more than 12 variables, only the nearest ones are considered.
-    They are evaluated in this sequence until one is feasible. Then single steps of every variable are tried as long as they improve the
-    design. Variables without a step are constant.
+    Neighbours are ranked by the linear model of objective and limits; for more than 12 variables, only the nearest ones are considered. The
+    neighbours are evaluated in batches, best rank first, until one is feasible. Then single steps of every variable are tried as long as
+    they improve the design. Variables without a step are constant.
     """
     stepped = [number for number, each in enumerate(setting.study.variables) if each.step is not None]
     if not stepped:

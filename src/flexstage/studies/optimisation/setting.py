@@ -40,7 +40,7 @@ class Setting:
         return Problem((self.objective(0),), tuple(self.side(number) for number in range(len(self.kept))))
 
     def objective(self, number: int) -> Side:
-        """Return an objective as a side: c is its value divided by its scale, with a negative sign if it is maximised."""
+        """Return an objective as a side: c is value / scale for an objective to minimise, -value / scale for one to maximise."""
         return Side(number, self.definition.objectives[number].direction.sense, 0.0, self.scale(number))
 
     def scale(self, number: int) -> float:

@@ -25,9 +25,9 @@ _SPECTRAL = (frequency, platform_frequency)
 
 @dataclass(frozen=True, eq=False)
 class Scalars:
-    """Pieces of a measure at one design: `values` (m,) in SI, and `gradient` (m, n), in which each variable's range is the unit.
+    """Pieces of a measure at one design: `values` (m,) in SI, and `gradient` (m, n) with respect to fractions of the ranges.
 
-    A minimum or maximum has several pieces.
+    A measure that is a minimum or maximum of several values has one piece for each value.
     """
 
     values: Array
@@ -41,7 +41,7 @@ class Scalars:
 
     @property
     def slope(self) -> Array:
-        """The gradient (n,) of the active piece."""
+        """The gradient (n,) of the piece that determines the measure."""
         return self.gradient[int(np.argmin(self.values) if self.extreme is Extreme.LEAST else np.argmax(self.values))]
 
 
@@ -79,7 +79,7 @@ class Point:
 
     @property
     def gradient(self) -> Array:
-        """Derivatives (r, n) of the measures, in which each variable's range is the unit."""
+        """Derivatives (r, n) of the measures with respect to fractions of the ranges."""
         return np.array([each.slope for each in self.found])
 
 
@@ -88,8 +88,8 @@ class Values:
     """Evaluator of the `measures` of a study's designs.
 
     Derivatives are exact (complex step through the formulas of the models; analytical for eigenvalues), except for `map_error` and
-    `opening`, whose corners and outlines are computed in real numbers only. Their derivatives are central differences with steps of a
-    thousandth of the range, for which rounding and curvature have equal effects.
+    `opening`, whose corners and outlines are computed in real numbers only. The derivatives of these two are central differences. A step of
+    a thousandth of the range makes the effects of rounding and curvature equal.
     """
 
     study: Study
@@ -120,7 +120,7 @@ class Values:
         return self._evaluate(np.asarray(shares, dtype=float), slopes=True)
 
     def evaluate(self, shares: Array) -> list[Point | str]:
-        """Compute points without derivatives for designs at fractions (s, n) of the ranges. A failed design is replaced by the reason."""
+        """Compute measures without derivatives for designs at fractions (s, n) of the ranges. A failed design is replaced by the reason."""
         return self._evaluate(np.asarray(shares, dtype=float), slopes=False)
 
     def _evaluate(self, shares: Array, *, slopes: bool) -> list[Point | str]:

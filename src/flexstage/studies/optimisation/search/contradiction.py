@@ -20,9 +20,9 @@ _COUNTS = 1e-4
 def contradictions(setting: Setting, starts: Sequence[Array], told: CountReport | None = None) -> tuple[Contradiction, ...]:
     """Find irreducible infeasible sets of limits, from any of the starts. Returns an empty tuple if all limits can be met.
 
-    The largest relative violation is minimised. Then limits are removed one at a time as long as the others remain infeasible. The
-    resulting set is irreducible: if any one of its limits is removed, the others can be met. The remaining limits are searched for further
-    sets.
+    The largest relative violation is minimised. Then limits are removed as long as the remaining limits still contradict each other. The
+    resulting set is irreducible: if any one of its limits is removed, the others can be met. The search is repeated for the limits that are
+    in no set yet.
     """
     return tuple(_irreducible_sets(setting, list(starts), told))
 

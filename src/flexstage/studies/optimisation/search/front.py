@@ -32,9 +32,9 @@ _KEEP = 1e-6
 def pareto_front(study: Study, definition: OptimisationProblem, progress: Progress | None = None) -> Front:
     """Compute the Pareto front of two objectives within ranges and limits (epsilon-constraint method: Haimes, Lasdon & Wismer 1971).
 
-    First, each objective is optimised individually; then the other is improved without a loss of the first. Between these two ends, the
-    first objective is optimised with equally spaced bounds on the second, each time starting from both ends. Dominated designs are left
-    out. An interruption ends the search with the designs so far.
+    First, each objective is optimised alone; then the other objective is optimised without a loss of the first one. Between the two
+    resulting designs, the first objective is optimised with equally spaced bounds on the second. Each search starts from both designs.
+    Dominated designs are left out. An interruption ends the search with the designs so far.
     """
     if len(definition.objectives) != 2:
         raise refuse("optimise", f"a front needs two objectives (got {len(definition.objectives)})", "Use `optimise` for one objective")

@@ -18,9 +18,9 @@ SPARE = 1e-8
 
 @dataclass(frozen=True)
 class Side:
-    """One-sided bound of the measure number `index`: it is met if c <= 0.
+    """One-sided bound of the measure with number `index`; a design meets the bound if c <= 0.
 
-    c is (limit - value) / scale for `at least`, and its negative for `at most`.
+    For `at least`, c = (limit - value) / scale; for `at most`, c = (value - limit) / scale.
     """
 
     index: int
@@ -29,7 +29,7 @@ class Side:
     scale: float
 
     def of(self, value: float) -> float:
-        """Compute c for a value of the measure.
+        """Compute the constraint value c for a value of the measure.
 
         >>> Side(0, Sense.AT_LEAST, 100.0, 100.0).of(90.0)
         0.1
@@ -50,11 +50,11 @@ class Problem:
     limits: tuple[Side, ...]
 
     def worth(self, point: Point) -> float:
-        """Return the largest c of the objective."""
+        """Return the largest constraint value c of the objective's sides."""
         return max(side.at(point) for side in self.objective)
 
     def excess(self, point: Point) -> float:
-        """Return the largest c of the limits. It is positive for a violation, and 0 without limits."""
+        """Return the largest constraint value c of the limits. A positive value is a violation; without limits the value is 0."""
         return max((side.at(point) for side in self.limits), default=0.0) if self.limits else 0.0
 
     def violation(self, point: Point) -> float:
@@ -64,7 +64,7 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """Linear model of one side around a design: c is the largest eigenvalue of constant (k, k) + sum_p d_p slope_p (n, k, k).
+    """Linear model of a side: after a change d of the design, c is the largest eigenvalue of constant (k, k) + sum_p d_p slope_p (n, k, k).
 
     For scalars, the matrices are diagonal, and only their diagonals (m,) and (n, m) are stored.
     """
@@ -78,7 +78,7 @@ class Linear:
         return self.constant.ndim == 1
 
     def project(self, vector: Array) -> tuple[float, Array]:
-        """Return the constant and the gradient (n,) of v^T C v. For a unit vector v, this value is at most c."""
+        """Return constant and gradient (n,) of v^T C v, with the model's matrix C. For a unit vector v, v^T C v is at most c."""
         return float(vector @ self.constant @ vector), np.einsum("i,pij,j->p", vector, self.slope, vector)
 
     def after(self, change: Array) -> tuple[Array, Array]:
@@ -89,9 +89,9 @@ class Linear:
 def linear(side: Side, point: Point) -> Linear:
     """Linearise a side around a design.
 
-    A lower bound of a minimum applies to all pieces of the measure, and so does an upper bound of a maximum. For a bound in the opposite
-    direction, only the active piece is used. A lower bound of a frequency applies to all modes from the requested number upward, an upper
-    bound to all modes up to this number.
+    A lower bound of a minimum, or an upper bound of a maximum, applies to all pieces of the measure. A lower bound of a maximum, or an
+    upper bound of a minimum, applies only to the active piece. A lower bound of a frequency applies to all modes from the requested number
+    upward, an upper bound to all modes up to this number.
 
     >>> at = Point(np.zeros(1), (Scalars(np.array([3.0, 2.0]), np.ones((2, 1)), Extreme.LEAST),))
     >>> linear(Side(0, Sense.AT_LEAST, 1.0, 1.0), at).constant.tolist()
@@ -107,7 +107,7 @@ def linear(side: Side, point: Point) -> Linear:
 
 
 def second_order_correction(side: Side, point: Point, tried: Point) -> Linear:
-    """Linearise a side around a design, with a constant that is corrected to match the value at another design, `tried`.
+    """Linearise a side around a design; the constant is corrected so that the model has the exact value at another design, `tried`.
 
     >>> first, second = (Point(np.array([x]), (Scalars(np.array([x * x]), np.array([[2.0 * x]]), Extreme.LEAST),)) for x in (1.0, 2.0))
     >>> second_order_correction(Side(0, Sense.AT_MOST, 0.0, 1.0), first, second).constant.tolist()  # 4 - 2 (2 - 1)
@@ -169,8 +169,8 @@ def sides(problem: Problem) -> Iterator[Side]:
 def lagrangian(problem: Problem, point: Point, weights: tuple[Weights, ...], seen_from: Point | None = None) -> Array | None:
     """Compute the gradient (n,) of the Lagrangian at a design `point`.
 
-    The multipliers `weights` belong to the modes and pieces of the design `seen_from`, by default `point`. Returns `None` if the pieces of
-    both designs do not correspond.
+    The multipliers `weights` were computed for the modes and pieces of the design `seen_from`, by default `point`. Returns `None` if the
+    pieces of both designs do not correspond.
 
     >>> at = Point(np.zeros(1), (Scalars(np.array([3.0]), np.array([[2.0]]), Extreme.LEAST),))
     >>> lagrangian(Problem((Side(0, Sense.AT_MOST, 0.0, 1.0),), ()), at, (Weights(np.ones(1)),)).tolist()

@@ -32,7 +32,7 @@ Walk = Generator[Array, "Point | str", "Trace"]
 class Trace:
     """History of a search: the best `point` and its `weights`, the `history` of accepted points, the number of `evaluated` points.
 
-    `converged`: no further gain to first order. `reason` explains a missing point.
+    `converged` is true if no change improves the objective to first order. `reason` explains a missing point.
     """
 
     point: Point | None = None

@@ -41,10 +41,10 @@ class Modes:
 
 
 def spectra(model: LinearModel, asked: tuple[Modes, ...], shape: tuple[int, int]) -> list[tuple[Spectrum, ...]]:
-    """Compute the spectra of s designs from the model of a batch (s n,), in which each design occurs n times.
+    """Compute the spectra of s designs; the batch (s n,) of the model contains each design n times.
 
-    Each occurrence has a tiny imaginary step in one variable. `shape` is (s, n). With n = 0, the batch (s,) is real, and there are no
-    slopes. Raises `DesignError` if the stage has too few modes.
+    Each copy has a tiny imaginary step in another variable. `shape` is (s, n). With n = 0, the batch (s,) is real, and there are no slopes.
+    Raises `DesignError` if the stage has too few modes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

@@ -20,7 +20,7 @@ _SAME = 9
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """Result of one step: the `change` (n,) of the design in fractions of the ranges, and the `weights` of all sides.
+    """Result of one step: the `change` (n,) of the design in fractions of the ranges, and the multipliers `weights` of all sides.
 
     In the model, `gain` is the improvement of the merit function, and `excess` the remaining violation of limits.
     """
@@ -59,12 +59,12 @@ class Bounds:
 
 
 def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: Point | None = None) -> Step:
-    """Minimise t + d^T B d / 2 + penalty s over a change d within the radius and the ranges.
+    """Minimise t + d^T B d / 2 + penalty s over all changes d within the radius and the ranges.
 
-    To first order, t is an upper bound of every side of the objective, and s >= 0 of every limit. Sides of frequencies are matrices: their
-    eigenvectors after the change are added as planes until no eigenvalue exceeds t or s. This is exact even for crossing modes. The planes
-    are shifted to the values of a design that was already `tried`. Without this second-order correction, steps along curved limits are
-    short.
+    To first order, t is an upper bound of all sides of the objective, and s >= 0 is an upper bound of all limits. Sides of frequencies are
+    matrices. Eigenvectors of the changed matrices are added as planes until no eigenvalue exceeds t (objective) or s (limits). This method
+    of planes is exact even for crossing modes. With `tried`, the planes are shifted so that they match the values of this design. Without
+    this second-order correction, the steps along curved limits would be short.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting
