@@ -46,7 +46,7 @@ def has_section(part: Part) -> bool:
 
 
 def stress(part: Part, material: Material | None, wrench: Array) -> Stress | None:
-    """Compute the largest stress in a part under `wrench` (..., 6) [N, N m] at its centre, on its second end, in its link frame.
+    """Compute the largest stress in a part whose second end carries `wrench` (..., 6) [N, N m], taken at the centre in the link frame.
 
     The stress is computed by beam theory at every station from end to end: N = F_x, M_z = m_z - x F_y, M_y = m_y + x F_z.
 

@@ -104,7 +104,7 @@ class _Stage:
 def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
     """Build the linear model of a stage: rigid bodies joined by links with 6x6 stiffness.
 
-    Valid for small displacements about the nominal position and for frequencies below the first resonance of the parts.
+    The model is valid for small displacements about the nominal position and for frequencies below the first resonance of the parts.
 
     - Locked DOFs of `Restricted` and `Joint` parts are eliminated exactly. A stroke along a locked axis is an imposed motion.
     - Free internal modes without effect on the platform are removed and listed in `idle`; their inertia is included.
@@ -124,9 +124,9 @@ def lumped(mechanism: Mechanism, masses: Masses = Masses.ALL) -> LinearModel:
 def variants(
     mechanism: Mechanism, kept: Iterable[Mapping[str, tuple[Freedoms, Freedoms]]], masses: Masses = Masses.ALL
 ) -> Iterator[LinearModel]:
-    """Build one model for each item of `kept`, which replaces the (elastic, free) DOFs of restricted parts by name.
+    """Build one model for each item of `kept`; an item replaces the (elastic, free) DOFs of the restricted parts that it names.
 
-    The stage is expanded only once. Raises `DesignError` as `lumped`.
+    The stage is expanded only once. Raises `DesignError` as `lumped` does.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.mechanism.restrict import restrict

@@ -47,7 +47,7 @@ class Compound(Elastic):
 
     @property
     def is_axisymmetric(self) -> bool:
-        """False: its members are on different sides of the x axis."""
+        """False, because the members are on different sides of the x axis."""
         return False
 
     @property

@@ -35,7 +35,7 @@ class Membrane(Elastic):
 
     @property
     def mirrored(self) -> Membrane:
-        """The membrane itself, by symmetry."""
+        """The same membrane, because it is symmetric."""
         return self
 
     @property

@@ -35,7 +35,7 @@ class Rod(Shaped):
 
     @property
     def is_bent(self) -> bool:
-        """Whether it is curved when free."""
+        """Whether the rod is curved when free."""
         return self.curvature is not None
 
     @property

@@ -37,7 +37,7 @@ class RotaryCoil(Coil):
 
     A positive torque turns the second body in the positive sense about x; a negative `torque_constant` reverses it. `stiffness` is the
     magnets' stiffness about x, `damping` the coil's damping about x. `angular_travel` is the whole angle over which the torque constant is
-    valid. All other fields are as for a `VoiceCoil`. The masses are point masses: specify moments of inertia in the bodies.
+    valid. All other fields have the same meaning as in `VoiceCoil`. The masses are point masses: specify moments of inertia in the bodies.
     """
 
     kind: ClassVar[str] = "rotary_coil"

@@ -42,8 +42,8 @@ class StackLine(Result):
 class PlatformLine(Result):
     """Force-displacement lines (..., f) of the platform along each coordinate, commanded by the ideal mapping.
 
-    `travel` [m, rad] is without load (in both directions), `stiffness` [N/m, N m/rad] for a load along this coordinate only. `blocking` [N,
-    N m] is the blocked force: the load that returns the platform to zero.
+    `travel` [m, rad] is the motion without load in both directions; `stiffness` [N/m, N m/rad] is for a load along this coordinate only.
+    `blocking` [N, N m] is the blocked force: the load that returns the platform to zero.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -110,10 +110,10 @@ def _along(model: LinearModel, link: str, name: str, free: Array) -> Array:
 
 
 def platform_lines(mapping: Matrix, model: LinearModel, limits: StrokeLimits) -> PlatformLine:
-    """Compute force-displacement lines of the platform at its reference point; `mapping` as for `single_axis`.
+    """Compute force-displacement lines of the platform at its reference point; `mapping` is the same as for `single_axis`.
 
     The strokes for coordinate j end where the first actuator reaches its limit. The travel is the elastic motion for these strokes; it
-    includes lost motion. The load acts only along j; the other coordinates are free, so the stiffness is 1 / C_jj.
+    includes lost motion. The load acts only along coordinate j; the other coordinates are free, so the stiffness is 1 / C_jj.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -32,7 +32,7 @@ class Drive(Result):
 
 
 def drive(mechanism: Mechanism) -> Drive:
-    """Return the electrical data of a stage's actuators. The default bias is mid-range.
+    """Return the electrical data of a stage's actuators. The default bias is the middle of the voltage range.
 
     Raises `DesignError` for stacks without a voltage range.
 

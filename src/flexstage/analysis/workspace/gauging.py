@@ -25,7 +25,7 @@ _LEVEL = 1e-9
 
 
 class GaugeRange(Result):
-    """Gauge readings at the worst corner of a box of displacements, and half ranges (gauges start at mid-range), (..., g) each.
+    """Gauge readings (..., g) at the worst corner of a box of displacements, and half ranges (gauges start at mid-range).
 
     `swing` is the largest reading and `limit` half the range, in the gauge's unit, which `units` contains (m or rad). `radius` [m] is each
     gauge's distance from the platform's axis. `largest_here` [m] is the largest radius at the gauge's angle for which the reading is within
@@ -52,7 +52,7 @@ class GaugeRange(Result):
 
     @property
     def fits(self) -> Annotated[Array, Along("gauges")]:
-        """Whether the corner is within each gauge's range (..., g)."""
+        """Whether the largest reading is within each gauge's range (..., g)."""
         return self.swing <= self.limit * (1.0 + 1e-12)
 
     @property
@@ -69,8 +69,8 @@ class PoseResolution(Result):
 
     The columns of S are single gauges, including gauges in sums. `gauge_steps` and `gauge_noise` (..., g) [m, rad] are the gauges'
     resolution r and noise. `worst` is the motion if the reading errors of all gauges equal one step and have the worst signs, sum |S_ij|
-    r_j. `rms` is for independent steps, (sum S_ij^2 r_j^2)^(1/2). `noise` is the rms motion due to the specified noise densities over the
-    gauges' bandwidths (NaN if unspecified).
+    r_j. `rms` is the motion for independent errors of one step, (sum S_ij^2 r_j^2)^(1/2). `noise` is the rms motion due to the specified
+    noise densities over the gauges' bandwidths (NaN if unspecified).
     """
 
     TABLE: ClassVar[Layout] = Layout(

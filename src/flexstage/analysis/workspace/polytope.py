@@ -58,7 +58,7 @@ class Polytope(Result):
 
 
 def reachable(mapping: Matrix, limits: StrokeLimits, *, provenance: str = "") -> Polytope:
-    """Compute the polytope of poses with low <= R_a xi <= high. `mapping` as for `single_axis`.
+    """Compute the polytope of poses with low <= R_a xi <= high. `mapping` is the same as for `single_axis`.
 
     With as many strokes as coordinates, it is a parallelotope with the vertices R_a^-1 a for all corners a of the strokes, and the volume
     prod(full strokes) / |det R_a|.

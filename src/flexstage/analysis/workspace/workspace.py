@@ -64,7 +64,7 @@ class Workspace(Result):
 
     @property
     def bearing(self) -> Annotated[LoadRange | None, VIEW]:
-        """Load range of the stacks over all strokes from zero voltage."""
+        """Load range of the stacks over all strokes, which start at zero voltage."""
         return None if self.loads is None else self.loads.over(self.limits.from_zero)
 
 
@@ -79,7 +79,7 @@ def workspace(
     command: Mapping[str, Number] | None = None,
     whole: bool = True,
 ) -> Workspace:
-    """Compute the workspace of one design; default `command`: all single-axis strokes at once.
+    """Compute the workspace of one design for displacements `command`, by default all single-axis strokes at once.
 
     Without `whole`, only strokes, resolution, stress and buckling are computed (in two thirds of the time); other fields are `None` without
     a reason. Raises `DesignError` if the strokes do not determine the platform's motion.

@@ -25,7 +25,7 @@ class Law(Protocol):
     """Single-loop controller.
 
     The inputs of `system(step)` are `error` (reference minus pose), `pose`, and `applied` for anti-windup (applied minus commanded input, 0
-    without saturation). The output is `command`. Without a step the system is continuous.
+    without saturation). The only output of `system(step)` is `command`. Without a step the system is continuous.
     """
 
     def system(self, step: float | None = None) -> System:

@@ -31,7 +31,7 @@ class Loops:
 
 @check_arguments
 def actuator_loops(coordinates: Coordinates) -> Loops:
-    """Define one loop for each actuator: sense = R_a, drive = I.
+    """Define one loop for each actuator, with `sense` = R_a and `drive` = I.
 
     Raises `DesignError` for more actuators than coordinates: the gauges could not observe all integrators.
 
@@ -50,7 +50,7 @@ def actuator_loops(coordinates: Coordinates) -> Loops:
 
 @check_arguments
 def platform_loops(coordinates: Coordinates, strokes: Array | None = None) -> Loops:
-    """Define one loop for each platform motion: sense = S, drive = R_a S^-1; S multiplies rotations by the stage's length.
+    """Define one loop for each platform motion: `sense` = S, `drive` = R_a S^-1; S multiplies rotations by the stage's length.
 
     `strokes` (n, f) replaces R_a, for example by gains that correct lost motion.
 
@@ -101,7 +101,7 @@ def loop_modes(found: Modes, coordinates: Coordinates) -> tuple[int, ...]:
 
 @check_arguments
 def modal_loops(coordinates: Coordinates, shapes: Array, strokes: Array | None = None) -> Loops:
-    """Define one loop for each of the platform's modes: sense = Phi^-1, drive = R_a Phi.
+    """Define one loop for each of the platform's modes, with `sense` = Phi^-1 and `drive` = R_a Phi.
 
     `shapes` (6, f) are the platform's twists in these modes, columns of `Modes.platform_shapes` (`loop_modes` selects them), of any scale.
     With massless links the loops are exactly decoupled, each an oscillator of static gain 1 (Phi^T K Phi = Omega^2). Lost motion and the

@@ -70,7 +70,7 @@ class Notch(CheckedFields):
 def notch_of_mode(frequency: float, ratio: float, damping: float = _WIDTH) -> Notch:
     """Compute the notch whose zeros cancel a mode of this `frequency` [Hz] and damping `ratio`: depth ratio / `damping`.
 
-    A mode with more damping than the notch's poles needs no notch: depth 1.
+    A mode with more damping than the notch's poles needs no notch; the result has depth 1.
 
     >>> notch_of_mode(110.9, 0.01).depth.__round__(4)
     0.0143

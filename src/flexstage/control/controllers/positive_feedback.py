@@ -26,10 +26,10 @@ _OF_RATE = 0.4
 class PositiveFeedback:
     """Positive position and velocity feedback around an integrator: u = (v s + b w^2) / (s^2 + 2 z w s + w^2) y + (k_t / s) e.
 
-    `position` b [1], `velocity` v [1/s], `frequency` w / (2 pi) [Hz], `damping` z, `tracking` k_t [1/s]. Without v, the law is positive
-    position feedback (Fanson & Caughey, AIAA Journal 28 (1990) 717). The loop is then stable around an undamped mode of static gain g if b
-    g < 1. With v, the law is positive velocity and position feedback (Bhikkaji, Ratnam, Fleming & Moheimani, IEEE Transactions on Control
-    Systems Technology 15 (2007) 853). Raises `DesignError` for invalid numbers.
+    The fields are `position` b [1], `velocity` v [1/s], `frequency` w / (2 pi) [Hz], `damping` z and `tracking` k_t [1/s]. Without v, the
+    law is positive position feedback (Fanson & Caughey, AIAA Journal 28 (1990) 717). The loop is then stable around an undamped mode of
+    static gain g if b g < 1. With v, the law is positive velocity and position feedback (Bhikkaji, Ratnam, Fleming & Moheimani, IEEE
+    Transactions on Control Systems Technology 15 (2007) 853). Raises `DesignError` for invalid numbers.
 
     >>> control = PositiveFeedback(position=0.8, frequency=100.0, damping=0.8)
     >>> control.system().transfer(np.array([1e-3]))[0, 0, 1].real.round(6).item()  # b at rest

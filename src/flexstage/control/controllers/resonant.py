@@ -21,10 +21,10 @@ class IntegralResonant(CheckedFields):
     """Integral resonant control u = Q(s) y + (k_t / s) e, Q(s) = k / (s + k d): damping by positive feedback, tracking by an integrator.
 
     An integrator -k/s around the plant with feed-through G - d is equivalent to Q around the plant (Aphale, Fleming & Moheimani 2007;
-    Fleming, Aphale & Moheimani 2010). `gain` k [1/s], `feedthrough` d [1] (positive, because it is subtracted), `tracking` k_t [1/s]. y is
-    the loop's pose [m], e its error, u its command. The static gain of Q is 1/d; therefore the loop is stable only if d exceeds the plant's
-    static gain. The anti-windup time is `tracking_time` [s], by default 1/k_t. Raises `DesignError` for negative gains, and for a
-    feed-through that is not positive.
+    Fleming, Aphale & Moheimani 2010). The fields are `gain` k [1/s], `feedthrough` d [1] (positive, because it is subtracted) and
+    `tracking` k_t [1/s]. y is the loop's pose [m], e its error, u its command. The static gain of Q is 1/d; therefore the loop is stable
+    only if d exceeds the plant's static gain. The anti-windup time is `tracking_time` [s], by default 1/k_t. Raises `DesignError` for
+    negative gains, and for a feed-through that is not positive.
 
     >>> control = IntegralResonant(gain=1000.0, feedthrough=2.0, tracking=100.0)
     >>> control.system().transfer(np.array([0.0001]))[0, 0, 1].real.round(6).item()  # 1/d at rest

@@ -80,11 +80,11 @@ def plant(
 ) -> Plant:
     """Build the plant of a stage's model; `kinematics` defines its loop's coordinates.
 
-    `modes` is the number of modes to retain. Default: all modes below half the sampling rate; of a continuous loop, all modes. At least as
-    many modes as loop coordinates are retained, and modes of a pair (frequencies within 0.1 %) are retained together. The static compliance
-    of omitted modes is kept. `points` are further bodies or points for motion outputs, `links` the links for axial force outputs
-    `<link>.fx` [N]. Raises `DesignError` for a batch of designs, a design without damping, gauges that cannot observe the pose, and
-    actuators that cannot produce it.
+    `modes` is the number of modes to retain. By default, all modes below half the sampling rate are retained; for a continuous loop, all
+    modes. At least as many modes as loop coordinates are retained, and modes of a pair (frequencies within 0.1 %) are retained together.
+    The static compliance of omitted modes is kept. `points` are further bodies or points for motion outputs, `links` the links for axial
+    force outputs `<link>.fx` [N]. Raises `DesignError` for a batch of designs, a design without damping, gauges that cannot observe the
+    pose, and actuators that cannot produce it.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -14,7 +14,7 @@ _REPEATED = 1e-3
 
 
 def reduce_modes(given: Plant, wanted: Array) -> Plant:
-    """Keep the modes of the mask `wanted` (k,), and as many of the strongest modes as loop coordinates; residualise the other modes.
+    """Keep the modes marked in `wanted` (k,), and the strongest modes, as many as loop coordinates; residualise the other modes.
 
     Repeated modes are retained together. Omitted states follow statically, x = -A^-1 B u, so that every static gain is preserved
     (residualisation: Green and Limebeer, Linear Robust Control, 1995, section 9.2).

@@ -51,9 +51,9 @@ OVERSHOOT = Heading("overshoot", digits=3, unit="%")
 class DetunedController:
     """Controller with its output multiplied by `gains` (g,); gains of unstable loops are omitted.
 
-    All values (g,) are computed without amplifier limits, and with rounding as white noise. `rejection` is the lowest sensitivity crossover
-    of all loops, `settling` the longest settling time (NaN: longer than the simulated step), `delay_margin` the smallest delay margin.
-    `noise` is the rms in regulation, the geometric mean of all loops with rotations converted to lengths (empty: no disturbance).
+    All values (g,) are computed without amplifier limits, and with rounding treated as white noise. `rejection` is the lowest sensitivity
+    crossover of all loops, `settling` the longest settling time (NaN: longer than the simulated step), `delay_margin` the smallest delay
+    margin. `noise` is the rms in regulation, the geometric mean of all loops with rotations converted to lengths (empty: no disturbance).
     """
 
     gains: Annotated[Array, RATIO]

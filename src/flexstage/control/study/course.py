@@ -66,7 +66,7 @@ class NamedTrajectory:
 
 
 def courses(commanded: TrajectorySetup, coordinates: Coordinates) -> tuple[NamedTrajectory, ...]:
-    """Construct the trajectories of a set-up for a loop of these coordinates: for steps, one per coordinate.
+    """Construct the trajectories of a set-up for a loop of these coordinates; a step becomes one trajectory per coordinate.
 
     Raises `DesignError` for unknown coordinates and invalid numbers.
 

@@ -76,7 +76,7 @@ def _apply(table: Any, keys: list[str], value: Any) -> None:
 
 
 def loads_setup(text: str, *, where: str = "text") -> LoopSetup:
-    r"""Parse the text of a set-up file; findings name it `where`.
+    r"""Parse the text of a set-up file; findings refer to the file as `where`.
 
     >>> loads_setup('format = "flexstage loop 1"\nrate = "5 kHz"').rate
     5000.0

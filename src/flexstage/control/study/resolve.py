@@ -94,9 +94,9 @@ def resolve(mechanism: Mechanism, setup: LoopSetup, there: OperatingPoint | None
 
     With a `solid`, the model is the nominal finite-element stage, with the kinematics of the ideal stage.
 
-    Raises `DesignError` for errors of the set-up, for gauges that cannot observe the pose, and for actuators that cannot produce it. It is
-    also raised for missing stack data that amplifiers need, for a sampling rate too low for the platform's modes, and for a model without
-    stiffness.
+    Raises `DesignError` for errors of the set-up, for gauges that cannot observe the pose, and for actuators that cannot produce it. The
+    error is also raised for missing stack data that amplifiers need, for a sampling rate too low for the platform's modes, and for a model
+    without stiffness.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> found = resolve(double_triangle(), LoopSetup())

@@ -328,7 +328,7 @@ def _resting_loop(given: ResolvedSetup, control: Control, closed: Loop) -> tuple
 class RestRms:
     """Rms (f,) of the true motion of the loop's coordinates in regulation, from independent simulations.
 
-    `low` and `high` (f,) are 95 % confidence limits, from the scatter of `count` simulations of `seconds` each.
+    `low` and `high` (f,) are the 95 % confidence limits, from the scatter of `count` simulations that last `seconds` each.
     """
 
     rms: Array

@@ -129,7 +129,7 @@ class LoopStudy(InNotebook):
 
     @property
     def loaded(self) -> Annotated[LoadEffect | None, VIEW]:
-        """Effect of permanent load on the nominal stage; if significant, the plant is the loaded stage."""
+        """Effect of the permanent load on the nominal stage; if it is significant, the plant is the loaded stage."""
         return self.settled.loaded
 
     @property

@@ -15,7 +15,8 @@ from flexstage.base.number import Array
 class Pieces:
     """Piecewise polynomial in time [s], a column for each coordinate; constant before the first and after the last knot.
 
-    `coefficients` (k, m, c) have the highest power first; time counts from the first knot of each piece. `knots` is (m + 1,).
+    `coefficients` (k, m, c) have the highest power first; time counts from the first knot of each piece. `knots` (m + 1,) are the times [s]
+    at which pieces start or end.
     """
 
     coefficients: Array
@@ -27,7 +28,7 @@ class Pieces:
         return float(self.knots[-1])
 
     def at(self, times: Array, order: int = 0) -> Array:
-        """Compute values (n, c), or their time derivative of an `order`, at `times` (n,) [s]."""
+        """Compute values (n, c) at `times` (n,) [s], or time derivatives of the specified `order`."""
         whole = scipy.interpolate.PPoly(self.coefficients, self.knots)
         return np.asarray(whole(np.clip(times, self.knots[0], self.knots[-1]), order))
 

@@ -142,7 +142,7 @@ def _decades(axes: Any) -> None:
 
 
 def estimator_figure(first: Responses, others: Sequence[Responses], band: tuple[float, float]) -> Any:
-    """Plot H1 (`first`) and `others`, such as H2, of each output for its dominant input over `band` [Hz], as a matplotlib Figure.
+    """Plot the estimators H1 (`first`) and `others`, such as H2, of each output for its dominant input in the `band` [Hz], as a Figure.
 
     >>> from flexstage.experiment.spectral.cross_spectra import example_spectra
     >>> from flexstage.experiment.spectral.transfer import h1, h2

@@ -70,7 +70,7 @@ def measured_shape_table(found: Identified) -> Table:
 
 
 def data_warning_table(warnings: Sequence[str]) -> Table | None:
-    """Tabulate the limits of the data; `None` without any.
+    """Tabulate the limits of the data; `None` if there are none.
 
     >>> data_warning_table([]) is None
     True

@@ -124,7 +124,7 @@ class Elimination:
 
 
 def elimination(count: int, edges: Iterable[tuple[int, int]], keep: int) -> Elimination:
-    """Eliminate `count` nodes by minimum fill (ties: fewest neighbours, then the lowest number), node `keep` last.
+    """Eliminate `count` nodes in the order of minimum fill (ties: fewest neighbours, then lowest number), with node `keep` last.
 
     >>> chain = elimination(4, [(0, 1), (1, 2), (2, 3)], keep=0)
     >>> chain.order, chain.edges

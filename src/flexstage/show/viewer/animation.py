@@ -43,7 +43,7 @@ def stroke_data(mechanism: Mechanism, path: LoadPath, found: Stroke, *, text: st
     """Return viewer data of a stage along a load path: one motion through its points, and the first modes at its last stable point.
 
     Flexures follow their centre lines; parts that are known only by a 6x6 matrix are interpolated linearly between their ends. Points
-    without an equilibrium are skipped. `text` is the text of the design file, for line numbers.
+    without an equilibrium are skipped. `text` is the text of the design file, in which the line numbers of parts are found.
     """
     still = still_data(mechanism, text=text)
     motions = [_along(still, path.state, path.drive, found), *_modes_there(still, path)]

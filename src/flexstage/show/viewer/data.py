@@ -143,8 +143,8 @@ def stage_data(
 
     The lumped `model`, the ideal `kinematics`, the modes `found` and the data `still` without motions are computed unless specified.
     Motions that cannot be computed are left out, with the reason in the notes. `weighed` is the model for the modes of the loaded stage.
-    `text` is the text of the design file, for line numbers. `count` is the number of lowest modes shown; platform modes are always
-    included. Raises `DesignError` if the stage cannot be drawn.
+    `text` is the text of the design file, in which the line numbers of parts are found. `count` is the number of lowest modes shown;
+    platform modes are always included. Raises `DesignError` if the stage cannot be drawn.
     """
     still = still or still_data(mechanism, text=text)
     notes, motions, bones = list(still.notes), list[Motion](), still.bones

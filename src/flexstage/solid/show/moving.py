@@ -39,7 +39,7 @@ def to_glb(mechanism: Mechanism, *, modes: int = 12) -> bytes:
 
 
 def glb_of(data: StageData, modes: int = 12) -> bytes:
-    """Return the content of a GLB file, as `to_glb`, from a stage's viewer data."""
+    """Return the content of a GLB file from a stage's viewer data, as `to_glb` does."""
     if find_spec("pygltflib") is None:
         raise refuse("GLB", "the package pygltflib is not installed", "Install it with: pip install 'flexstage[solid]'")
     from flexstage.solid.exchange.gltf import Motion as Animation

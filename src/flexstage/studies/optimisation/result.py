@@ -44,7 +44,7 @@ class Binding:
 
     @property
     def price_unit(self) -> str:
-        """SI unit of the price."""
+        """SI unit of `price`."""
         return self.objective_unit if self.unit == "1" else f"{self.objective_unit}/{self.unit}"
 
     @property
@@ -95,7 +95,7 @@ class Start:
 
 @dataclass(frozen=True, eq=False)
 class Rounded:
-    """The best design with values (d,) on the steps of the variables, and the `loss` of the objective [SI] by rounding (0 or more).
+    """The best design with values (d,) at multiples of the variables' steps, and the `loss` of the objective [SI] by rounding (0 or more).
 
     `tried` is the number of evaluated neighbours. If none of them is feasible, `point` is `None`, and `reason` explains it.
     """
@@ -130,7 +130,7 @@ class DesignPoint:
 
 @dataclass(frozen=True)
 class RoundedPoint(DesignPoint):
-    """The best design on the steps of the variables: `loss` of the objective by rounding [SI], number of evaluated neighbours (`tried`)."""
+    """The best design with variables at multiples of their steps: `loss` of the objective by rounding [SI], number of tried neighbours."""
 
     loss: float
     tried: int
@@ -151,7 +151,7 @@ class Contradiction:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Outcome(InNotebook):
-    """Common results of all optimisations. `before` is the nominal design. `contradictions` explain why no design is feasible.
+    """Results that all optimisations have in common. `before` is the nominal design. `contradictions` explain why no design is feasible.
 
     `idle` names variables without effect on any requested measure. `evaluated` is the number of evaluated designs. `interrupted`: the
     search was interrupted, and the results are the best so far.
@@ -184,7 +184,7 @@ class Outcome(InNotebook):
 
     @property
     def seed(self) -> Annotated[int, VIEW]:
-        """The seed of the starts."""
+        """Seed of the random initial designs."""
         return self.definition.seed
 
     @property
@@ -226,7 +226,7 @@ class Optimum(Outcome):
 
     @property
     def on_steps(self) -> Annotated[RoundedPoint | None, VIEW, Called("rounded")]:
-        """The best design on the steps of the variables. Null if no variable has a step, or if no neighbour is feasible."""
+        """The best design whose variables are multiples of their steps. Null if no variable has a step, or if no neighbour is feasible."""
         if self.rounded is None or self.rounded.point is None:
             return None
         found = self.design(self.rounded.point)

@@ -34,7 +34,7 @@ def pareto_front(study: Study, definition: OptimisationProblem, progress: Progre
 
     First, each objective is optimised alone; then the other objective is optimised without a loss of the first one. Between the two
     resulting designs, the first objective is optimised with equally spaced bounds on the second. Each search starts from both designs.
-    Dominated designs are left out. An interruption ends the search with the designs so far.
+    Dominated designs are left out. An interruption ends the search; the result then contains the designs found so far.
     """
     if len(definition.objectives) != 2:
         raise refuse("optimise", f"a front needs two objectives (got {len(definition.objectives)})", "Use `optimise` for one objective")

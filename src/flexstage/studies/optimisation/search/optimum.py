@@ -97,7 +97,7 @@ def _conclude(
 
 
 class Count:
-    """Counts evaluated designs and reports them."""
+    """Counts evaluated designs and reports their number."""
 
     def __init__(self, progress: Progress | None, about: str) -> None:
         self.progress, self.about, self.done = progress, about, 0

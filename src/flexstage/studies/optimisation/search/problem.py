@@ -74,7 +74,7 @@ class Linear:
 
     @property
     def diagonal(self) -> bool:
-        """Whether the side consists of scalars."""
+        """Whether the side consists of scalars instead of matrices."""
         return self.constant.ndim == 1
 
     def project(self, vector: Array) -> tuple[float, Array]:

@@ -52,7 +52,7 @@ class _Rows:
 
 @dataclass(frozen=True)
 class Bounds:
-    """Largest step, in fractions of the ranges, and the penalty of a unit of violation."""
+    """Largest step, in fractions of the ranges, and the penalty per unit violation."""
 
     radius: float
     penalty: float
