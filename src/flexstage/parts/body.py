@@ -17,9 +17,9 @@ from flexstage.spatial.frame import Frame, axes
 
 
 class Solid(Description):
-    """Solid component of a body, of one `material`. Its geometry refers to a local frame at its centre.
+    """Solid component of a body, of one `material`. The geometry of a solid refers to a local frame at its centre.
 
-    In this frame, a cylinder's axis is x; the height of a block or an extrusion is along z.
+    In the local frame, a cylinder's axis is x; the height of a block or an extrusion is along z.
     """
 
     material: str
@@ -404,8 +404,8 @@ def _holds(hole: Solid, points: Array, slack: float) -> Array:
 class PlacedSolid:
     """Solid with its frame relative to its body or the stage.
 
-    The frame's origin is the solid's centre. Its axes are along the edges of a block (z along the hole); for a cylinder, x is along the
-    axis.
+    The frame's origin is the solid's centre. The axes of the frame are along the edges of a block (z along the hole); for a cylinder, x is
+    along the axis.
     """
 
     solid: Solid

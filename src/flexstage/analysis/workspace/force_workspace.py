@@ -44,8 +44,8 @@ class ForceWorkspace(Result):
     `per_motion` are the inputs (strokes in m, forces in N, currents in A) per motion of the `point` along each coordinate. If `alone` is
     true, the other ideal coordinates are zero; otherwise they are free. `bounds` (coordinates x causes) [m, rad] are the limits of
     continuous motion by cause (NaN if unspecified). `short` are the limits for short use, at the `duty` of a coil. `current`, `voltage`,
-    `power` and `rise` (coordinates x coils) are the values for holding a unit motion: i, R i, i^2 R, and i^2 R times the thermal resistance
-    [K]. `unmoved` are ideal motions that no input drives.
+    `power` and `rise` (coordinates x coils) are the values for holding each coordinate at its continuous limit: i, R i, i^2 R, and i^2 R
+    times the thermal resistance [K]. `unmoved` are ideal motions that no input drives.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -113,9 +113,9 @@ def force_workspace(mechanism: Mechanism, kinematics: Kinematics, model: LinearM
     currents, heat i^2 R through the thermal resistance, amplifier voltage R i, largest force and magnetic travel. Stroke limits, the nearer
     side of each stop, and yield in a hinge under permanent load also limit the motion. The computation is linear.
 
-    An input drives a coordinate if its effect exceeds 1e-9 of the Cauchy-Schwarz bound (c E)^1/2. Here c is the compliance of the
-    coordinate, and E is twice the strain energy due to the input. Raises `DesignError` if the stage has no force actuator, no ideal motion,
-    or no motion that an input drives.
+    An input drives a coordinate if its effect exceeds 1e-9 of the Cauchy-Schwarz bound (c E)^1/2. The compliance of the coordinate is c,
+    and E is twice the strain energy due to the input. Raises `DesignError` if the stage has no force actuator, no ideal motion, or no
+    motion that an input drives.
     """
     if not kinematics.thrusts or not kinematics.mobility:
         raise refuse("force_workspace", "no force actuator moves the stage", "Use the workspace of its strokes")

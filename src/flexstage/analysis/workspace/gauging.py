@@ -28,9 +28,9 @@ class GaugeRange(Result):
     """Gauge readings (..., g) at the worst corner of a box of displacements, and half ranges (gauges start at mid-range).
 
     `swing` is the largest reading and `limit` half the range, in the gauge's unit, which `units` contains (m or rad). `radius` [m] is each
-    gauge's distance from the platform's axis. `largest_here` [m] is the largest radius at the gauge's angle for which the reading is within
-    the range, `largest_anywhere` [m] the largest such radius at any angle. An infinite radius means that the gauge is within its range
-    everywhere. NaN means that the gauge is outside even on the axis, or not between platform and ground.
+    gauge's distance from the platform's axis. `largest_here` [m] is the largest radius at the gauge's own angle for which the reading is
+    within the range; `largest_anywhere` [m] is the largest such radius at any angle. An infinite radius means that the gauge is within its
+    range everywhere. NaN means that the gauge is outside even on the axis, or not between platform and ground.
     """
 
     TABLE: ClassVar[Layout] = Layout("Gauge ranges", "table used")

@@ -60,8 +60,8 @@ class Polytope(Result):
 def reachable(mapping: Matrix, limits: StrokeLimits, *, provenance: str = "") -> Polytope:
     """Compute the polytope of poses with low <= R_a xi <= high. `mapping` is the same as for `single_axis`.
 
-    With as many strokes as coordinates, it is a parallelotope with the vertices R_a^-1 a for all corners a of the strokes, and the volume
-    prod(full strokes) / |det R_a|.
+    With as many strokes as coordinates, the polytope is a parallelotope. Its vertices are R_a^-1 a for all corners a of the strokes, and
+    its volume is prod(full strokes) / |det R_a|.
 
     >>> square = reachable(Matrix(np.diag([1.0, 2.0]), ("A", "B"), ("x", "y"), "1"), StrokeLimits(("A", "B"), -np.ones(2), np.ones(2)))
     >>> float(square.volume), bool(square.contains(np.array([1.0, 0.5]))), bool(square.contains(np.array([1.0, 0.6])))

@@ -18,8 +18,8 @@ from flexstage.control.systems.system import System
 class PI(CheckedFields):
     """PI controller k_p + k_i / s from a loop's error [m] to its command [m]: `proportional` k_p [1], `integral` k_i [1/s].
 
-    Under saturation the integrator follows the applied input with the time constant `tracking` T_t [s], x' = k_i e + (applied -
-    commanded)/T_t (back-calculation; Astrom and Haegglund, Advanced PID Control, 2006, section 3.5). `tracking` is by default (1 +
+    Under saturation the integrator follows the applied input with the time constant `tracking` T_t [s]: x' = k_i e + (applied -
+    commanded)/T_t. This is back-calculation (Astrom and Haegglund, Advanced PID Control, 2006, section 3.5). `tracking` is by default (1 +
     k_p)/k_i, the time constant of the loop around a plant of gain 1, but at least one sample. Raises `DesignError` for negative gains.
 
     >>> control = PI(proportional=0.5, integral=100.0)

@@ -58,7 +58,7 @@ class Prefilter(CheckedFields):
 
 
 def with_prefilters(control: System, filters: tuple[Prefilter | None, ...], sense: Array, coordinates: Coordinates) -> System:
-    """Add one prefilter per loop to a controller: e + (S^+ F S - 1) r replaces e, S^+ F S r replaces r, with S = `sense` (k, f).
+    """Add one prefilter per loop to a controller: with S = `sense` (k, f), S^+ F S r replaces r, and e + (S^+ F S - 1) r replaces e.
 
     Adds inputs `reference.<c>` if the controller has none.
 

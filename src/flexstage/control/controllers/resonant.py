@@ -20,7 +20,7 @@ from flexstage.control.systems.system import System
 class IntegralResonant(CheckedFields):
     """Integral resonant control u = Q(s) y + (k_t / s) e, Q(s) = k / (s + k d): damping by positive feedback, tracking by an integrator.
 
-    An integrator -k/s around the plant with feed-through G - d is equivalent to Q around the plant (Aphale, Fleming & Moheimani 2007;
+    An integrator -k/s around the plant with feed-through, G - d, is equivalent to Q around the plant G (Aphale, Fleming & Moheimani 2007;
     Fleming, Aphale & Moheimani 2010). The fields are `gain` k [1/s], `feedthrough` d [1] (positive, because it is subtracted) and
     `tracking` k_t [1/s]. y is the loop's pose [m], e its error, u its command. The static gain of Q is 1/d; therefore the loop is stable
     only if d exceeds the plant's static gain. The anti-windup time is `tracking_time` [s], by default 1/k_t. Raises `DesignError` for

@@ -80,7 +80,7 @@ class ChargeDrive:
     def stiffening(self) -> Annotated[float, VIEW]:
         """Axial stiffness at constant charge relative to constant voltage, 1/(1 - k^2).
 
-        This is the stiffness of a stack with open electrodes (Preumont, Vibration Control of Active Structures, 2018, chapter 4).
+        A stack with open electrodes has constant charge (Preumont, Vibration Control of Active Structures, 2018, chapter 4).
 
         >>> round(ChargeDrive(0.6, 0.1, 0.2).stiffening, 12)
         1.5625

@@ -45,8 +45,8 @@ def reduce_modes(given: Plant, wanted: Array) -> Plant:
 def resonances(given: Plant) -> Array:
     """Compute the resonance peak (k,) of every mode between strokes and pose, relative to a static stroke-to-pose gain of 1.
 
-    With strokes and pose expressed as platform motions in lengths, the peak is |c| |b| / (2 zeta omega^2): c and b are the modal output and
-    input. The peak of a mode at 0 Hz is infinite.
+    With strokes and pose expressed as platform motions in lengths, the peak is |c| |b| / (2 zeta omega^2), with the modal output c and the
+    modal input b. The peak of a mode at 0 Hz is infinite.
 
     >>> from flexstage.control.example import integral_loop
     >>> resonances(integral_loop().plant).round(1).tolist()  # the guide's mode: about 1/(2 zeta) = 50

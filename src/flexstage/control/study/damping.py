@@ -32,8 +32,8 @@ _WHOLE = 1e-9
 def damp(plant: Plant, whole: Plant, model: LinearModel, legs: tuple[Leg, ...], asked: DampingSetup) -> tuple[Plant, Plant, ActiveDamping]:
     """Close the force-feedback loops of a set-up around `plant` and `whole`; return both plants, and a description of the loops.
 
-    Both plants must have outputs for link forces. Raises `DesignError` if the force feedback is unstable, with all modes or with the
-    retained modes, and for a rate that is not a multiple of the loop's sampling rate.
+    Both plants must have outputs for link forces. Raises `DesignError` for a rate that is not a multiple of the loop's sampling rate. The
+    error is also raised if the force feedback is unstable, with all modes or with the retained modes.
     """
     require(_rate_findings(asked.rate, plant.hardware.rate))
     pairs = pair_zeros(model, legs)

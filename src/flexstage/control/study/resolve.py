@@ -253,7 +253,7 @@ def highest_platform_mode(mechanism: Mechanism, model: LinearModel, count: int) 
 
 
 def default_rate(highest: float) -> float:
-    """Choose the default sampling rate [Hz]: 10 kHz, or ten times the highest platform mode, rounded up to 1, 2 or 5 times a power of ten.
+    """Choose the default sampling rate [Hz]: 10 kHz, or for fast stages ten times the highest platform mode, rounded up by `round_up`.
 
     >>> default_rate(173.0), default_rate(2853.9)
     (10000.0, 50000.0)

@@ -245,8 +245,8 @@ class FollowSetup(CheckedFields):
     """Tracking method for a trajectory known in advance; the error is relative to the trajectory.
 
     `method` is the inverse of the modelled loop, iterative learning (with `passes` and `gain`), or repetitive control (with `gain`) of a
-    periodic path: raster or sine. These three methods act only at frequencies where relative mode shifts up to `spread` are permissible.
-    Alternatively, `method` is an input shaper for a mode of `frequency` and `damping` ratio.
+    periodic path: raster or sine. Inverse, learning and repetitive control act only at frequencies where relative mode shifts up to
+    `spread` are permissible. Alternatively, `method` is an input shaper for a mode of `frequency` and `damping` ratio.
     """
 
     method: Following

@@ -32,8 +32,8 @@ class Objective(RequestedMeasure):
 class OptimisationProblem:
     """Optimisation problem, as the `[optimise]` section of a study's file defines it.
 
-    It has one objective, or two for a front of `points` designs. `starts` is the number of initial designs: the nominal design, then a
-    Sobol sequence with this `seed`. If `requirements` is true, the `[requirements]` of the design are also limits.
+    A problem has one objective, or two objectives for a Pareto front of `points` designs. `starts` is the number of initial designs: the
+    nominal design, then a Sobol sequence with this `seed`. If `requirements` is true, the `[requirements]` of the design are also limits.
     """
 
     objectives: tuple[Objective, ...]

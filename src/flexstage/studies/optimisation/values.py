@@ -87,9 +87,9 @@ class Point:
 class Values:
     """Evaluator of the `measures` of a study's designs.
 
-    Derivatives are exact (complex step through the formulas of the models; analytical for eigenvalues), except for `map_error` and
-    `opening`, whose corners and outlines are computed in real numbers only. The derivatives of these two are central differences. A step of
-    a thousandth of the range makes the effects of rounding and curvature equal.
+    Derivatives are exact: by a complex step through the formulas of the models, analytical for eigenvalues. Exceptions are `map_error` and
+    `opening`, whose corners and outlines are computed in real numbers only. The derivatives of `map_error` and `opening` are central
+    differences. A step of a thousandth of the range makes the effects of rounding and curvature equal.
     """
 
     study: Study

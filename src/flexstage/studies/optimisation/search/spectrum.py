@@ -22,8 +22,8 @@ class Spectrum:
     """k modes of one design: ascending `frequencies` (k,) [Hz] and their `slopes` (n, k, k) [Hz per unit of each variable].
 
     To first order, the frequencies after a small change d are the eigenvalues of diag(f) + sum_p d_p slopes_p, for distinct, repeated or
-    crossing modes. slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM) phi_j / (2 pi (omega_i + omega_j)). `shapes` (N, k) and `weighted`
-    = M shapes are used to pair the modes of two designs.
+    crossing modes. The entries are slopes_ij = phi_i^T (dK - (lambda_i + lambda_j)/2 dM) phi_j / (2 pi (omega_i + omega_j)). `shapes` (N,
+    k) and `weighted` = M shapes are used to pair the modes of two designs.
     """
 
     frequencies: Array
