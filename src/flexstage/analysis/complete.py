@@ -60,15 +60,16 @@ _UNLUMPED = "only the lumped model computes this result"
 class Analysis(InNotebook):
     """All results of one model of a stage. A field without a result is `None`; `missing` has the reason by field name.
 
-    `response` is from the actuators' inputs to the platform's twist and all gauges, `transmissibility` from the ground to the platform.
-    Only the lumped model gives `deflection` and `buckling` under permanent load, drift, error budget, and `units` (each distinct isolated
-    unit). The `verdicts` on requirements always come from the lumped model, whatever the model of the other results.
+    `response` is the frequency response from the actuators' inputs to the platform's twist and all gauges, `transmissibility` the one from
+    the ground to the platform. Only the lumped model gives `deflection` and `buckling` under permanent load, drift, error budget, and
+    `units` (each distinct isolated unit). The `verdicts` on requirements always come from the lumped model, whatever the model of the other
+    results.
 
-    `loaded` is the effect of the permanent load. If it is significant, statics, modes, responses (`felt`), lost motion, drift, error budget
-    and their verdicts are for the loaded stage. The other results and the linear model `linear` belong to the nominal stage. `second_order`
-    is the small-displacement error over the required strokes; without required strokes, over the available strokes. `ends` contains the
-    critical load factors at both ends of each load path, computed up to the required factor (None without load paths). The error budget is
-    for 1 K and the required strokes; without required strokes, for all single-axis strokes at once.
+    `loaded` is the effect of the permanent load. If the permanent load is significant, statics, modes, responses (`felt`), lost motion,
+    drift, error budget and their verdicts are for the loaded stage. The other results and the linear model `linear` belong to the nominal
+    stage. `second_order` is the small-displacement error over the required strokes; without required strokes, over the available strokes.
+    `ends` contains the critical load factors at both ends of each load path, computed up to the required factor (None without load paths).
+    The error budget is for 1 K and the required strokes; without required strokes, for all single-axis strokes at once.
 
     `freedoms` contains the stiffness along ideal motions and constraints (None for six ideal motions). `mass` is the platform's effective
     mass. `stress` is at the required strokes; for force-driven stages without required strokes, at peak current.

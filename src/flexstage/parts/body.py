@@ -135,7 +135,7 @@ class Cylinder(Solid):
 
     @property
     def thinnest(self) -> Number:
-        """Smallest of length and diameter, or of length and wall thickness [m]."""
+        """Smallest dimension [m]: of length and diameter, or for a tube of length and wall thickness."""
         wall = self.diameter if self.bore is None else 0.5 * (self.diameter - self.bore)
         return np.minimum(np.real(wall), np.real(self.length))
 
@@ -519,9 +519,9 @@ class Body(Description):
     reference point of the body's twist. The default reference point is the centre of mass; for a massless body, the mean position of its
     joints.
 
-    `of` names another body of the stage, or the ground, that owns these solids. Example: a lug of the platform, drawn in a unit's frame and
-    placed with every instance. A body with `of` does not move independently: its solids, mass, points and joints belong to the owner. A
-    body with `of` has neither a specified mass nor a reference point.
+    `of` names another body of the stage, or the ground, that owns the solids of this body. An example is a lug of the platform, which is
+    drawn in a unit's frame and placed with every instance. A body with `of` does not move independently: its solids, mass, points and
+    joints belong to the owner. A body with `of` has neither a specified mass nor a reference point.
     """
 
     solids: Mapping[str, Solid] = field(default_factory=lambda: Table({}))

@@ -161,7 +161,7 @@ class Rectangle(Section):
 
 @dataclass(frozen=True, eq=False)
 class Circle(Section):
-    """Circle with its diameter as height and width.
+    """Circular section; its height and its width are the diameter.
 
     >>> round(Circle(1.0, 1.0).shear, 6)
     1.111111
@@ -205,7 +205,7 @@ class Circle(Section):
 
 
 def circle(diameter: Number, shear: Number = ROUND) -> Circle:
-    """Return the circle of `diameter` [m]; default `shear` from the energy of parabolic stress.
+    """Return the circle of `diameter` [m]; by default, `shear` follows from the energy of a parabolic shear stress.
 
     >>> section = circle(2.0, cowper_circle(0.3))
     >>> round(section.area / np.pi, 12), round(section.torsion / np.pi, 12)

@@ -140,8 +140,8 @@ def row_table(
 
     `source` is a single record, or a mapping or sequence of records of one class. A record with labelled matrices or arrays with `Along`
     has one row for each of their names. `fields` are the shown fields in sequence; by default, all fields whose values fit into cells. The
-    head of a column is the field's `Heading`, else its name and unit. `head` is the head of the column of names; for two such columns it
-    contains both heads, for example `path, axis`. Values outside a field's `Bound` are marked.
+    head of a column is the field's `Heading`, or otherwise the field's name and unit. `head` is the head of the column of names; for two
+    such columns it contains both heads, for example `path, axis`. Values outside a field's `Bound` are marked.
 
     >>> from flexstage.analysis.workspace.drive import Drive
     >>> one = np.ones(1)
@@ -344,7 +344,7 @@ def further(rest: int) -> str:
 
 
 def field_column(field: Field, values: Sequence[Any], units: Sequence[str] = ()) -> _ColumnCells:
-    """Make the column of a field and its cells, for tables with other columns too. `units` are the SI units of the values.
+    """Make the column of a field and its cells, for tables that also have other columns. `units` are the SI units of the values.
 
     >>> from flexstage.base.units.quantity import SHARE, STIFFNESS
     >>> from flexstage.base.record import Heading
@@ -550,7 +550,7 @@ def _mark_of(text: str) -> Mark:
 
 
 def first_design(values: Array, axes: int) -> Array:
-    """Return the values of the first design of a batch: the last `axes` axes, real parts.
+    """Return the first design of a batch: the real part of its values, which have the last `axes` axes.
 
     >>> first_design(np.ones((4, 2, 2)), 2).shape
     (2, 2)

@@ -77,7 +77,7 @@ class Clearance(Result):
 
     @property
     def findings(self) -> Annotated[tuple[Finding, ...], VIEW]:
-        """Errors: outlines inside the aperture, edges outside the envelope."""
+        """Errors for outlines inside the aperture and for edges outside the envelope."""
         return (*self._intrusion_findings(), *self._beyond())
 
     def _intrusion_findings(self) -> Iterator[Finding]:

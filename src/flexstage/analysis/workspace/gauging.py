@@ -65,7 +65,7 @@ class GaugeRange(Result):
 
 
 class PoseResolution(Result):
-    """Pose resolution: platform motion (..., 6) [m, rad] for one resolution step of every gauge, by S = V (R_s V)^+.
+    """Pose resolution: platform motion (..., 6) [m, rad] for one resolution step of every gauge, computed with S = V (R_s V)^+.
 
     The columns of S are single gauges, including gauges in sums. `gauge_steps` and `gauge_noise` (..., g) [m, rad] are the gauges'
     resolution r and noise. `worst` is the motion if the reading errors of all gauges equal one step and have the worst signs, sum |S_ij|

@@ -51,8 +51,8 @@ class LoadShare(Result):
 
     `loads` (actuators x causes) [N] are the forces due to own weight, payloads and specified forces. `share` (actuators x wrench
     components) are the forces per unit wrench at the platform's reference point. `stroke` (actuators x strokes) [N/m] are the forces per
-    stroke. `maximum`, `preload` and `tensile` (..., n) [N] are the stacks' limits (NaN: not specified). `reference` (..., 3) [m] is the
-    platform's reference point.
+    unit stroke. `maximum`, `preload` and `tensile` (..., n) [N] are the stacks' limits (NaN: not specified). `reference` (..., 3) [m] is
+    the platform's reference point.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -25,11 +25,11 @@ _ROUNDING = 64.0 * float(np.finfo(float).eps)
 
 
 class MapError(Result):
-    """Error of the linear map: finite pose minus J a.
+    """Error of the linear map: the pose by finite kinematics minus J a.
 
     `errors` (k, ..., 6) [m, rad] are the errors at the `strokes` (k, ..., n) [m]. `worst` (..., 6) is the largest error by axis, at
-    `worst_strokes` (..., 6, n). If all errors are rounding errors, `worst` is 0 at the first strokes. `residual` (...) [m] is the largest
-    residual of redundant constraints.
+    `worst_strokes` (..., 6, n). If all errors are rounding errors, `worst` is 0 and `worst_strokes` contains the first strokes. `residual`
+    (...) [m] is the largest residual of redundant constraints.
     """
 
     TABLE: ClassVar[Layout] = Layout(

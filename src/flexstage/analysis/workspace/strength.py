@@ -69,7 +69,7 @@ class HingeStress(Result):
 
     @property
     def safety(self) -> Annotated[Array, INNER, Heading("safety factor", digits=4, mark=SAFETY)]:
-        """The limit over peak stress (..., L); infinite at zero stress."""
+        """Safety factor (..., L): the limit divided by the peak stress; infinite at zero stress."""
         loaded = self.peak != 0.0
         return np.where(loaded | np.isnan(self.allowed), self.allowed / np.where(loaded, self.peak, 1.0), np.inf)
 
@@ -119,8 +119,8 @@ def hinge_stress(
     - for a stage assembled at zero voltage, whose hinges the bias also bends, `stroke_limits(mechanism).from_zero`;
     - for a stage that is stress-free at its bias, `stroke_limits(mechanism)`.
 
-    With a `command`, `limits` are the limits of its coordinates. `condition` describes the limits in words. The stress is by linear beam
-    theory, with the maxima of a section added (see `beams.stress`).
+    With a `command`, `limits` apply to the command's coordinates. `condition` describes the limits in words. The stress is computed by
+    linear beam theory; the maxima of a section are added (see `beams.stress`).
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

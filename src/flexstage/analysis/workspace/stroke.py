@@ -57,7 +57,7 @@ class StrokeLimits:
         return np.where(high, self.high[..., None, :], self.low[..., None, :])
 
     def points(self, depth: int) -> Array:
-        """Return the corners as points (2^n, ..., n) with at least `depth` batch axes in the middle, to broadcast with many designs."""
+        """Return the corners as points (2^n, ..., n), with at least `depth` batch axes in between, to broadcast with many designs."""
         return beside(np.moveaxis(self.corners, -2, 0), depth)
 
 
@@ -121,7 +121,7 @@ class Utilisation(Result):
 
 
 def beside(points: Array, depth: int) -> Array:
-    """Return points (k, ..., n) with at least `depth` batch axes between the first and the last axis, to broadcast with a batch of designs.
+    """Return points (k, ..., n) with at least `depth` batch axes between first and last axis, to broadcast with a batch of designs.
 
     >>> beside(np.zeros((64, 6)), 1).shape
     (64, 1, 6)

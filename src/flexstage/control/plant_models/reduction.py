@@ -84,7 +84,7 @@ def mode_names(given: Plant) -> list[str]:
 
 
 def residualise(system: System, slow: Array) -> System:
-    """Residualise a system: keep the states of the mask `slow` (n,), and let all others follow statically."""
+    """Residualise a system: keep the states marked in `slow` (n,), and let all others follow statically."""
     fast = ~slow
     if not np.any(fast):
         return system

@@ -35,7 +35,7 @@ _UNDERDAMPED = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Retention:
-    """Modes retained in the plant, `retained` of `total`; the static compliance of the others is kept.
+    """Modes retained in the plant, `retained` of `total`; the static compliance of the other modes is kept.
 
     `gain` is the largest loop gain of an omitted mode at its resonance (`frequency` [Hz]), with all loops closed. `change` is the largest
     relative change that all omitted modes cause in the peak of S, the margins and the rejection. `wanted` (k,) marks the modes to retain.

@@ -52,8 +52,9 @@ class DetunedController:
     """Controller with its output multiplied by `gains` (g,); gains of unstable loops are omitted.
 
     All values (g,) are computed without amplifier limits, and with rounding treated as white noise. `rejection` is the lowest sensitivity
-    crossover of all loops, `settling` the longest settling time (NaN: longer than the simulated step), `delay_margin` the smallest delay
-    margin. `noise` is the rms in regulation, the geometric mean of all loops with rotations converted to lengths (empty: no disturbance).
+    crossover and `delay_margin` the smallest delay margin of all loops. `settling` is the longest settling time (NaN: longer than the
+    simulated step). `noise` is the rms in regulation, the geometric mean of all loops with rotations converted to lengths (empty: no
+    disturbance).
     """
 
     gains: Annotated[Array, RATIO]
@@ -69,7 +70,7 @@ class ComparedController:
 
     `peak` is the peak of S of the coupled loops, `rejection` the first crossing of |S| = 1, `noise` the rms in regulation. `settling` is
     the 2 % settling time (infinite: not settled). `overshoot` is relative to the step. `delay_margin` is the smallest delay margin of all
-    loops. `gauge_share` is the largest fraction of a coordinate's mean square that is caused by gauge noise and quantisation (absent: no
+    loops. `gauge_share` is the largest fraction of a coordinate's mean-square noise that gauge noise and quantisation cause (absent: no
     disturbance). `tuned` describes the tuning, `detuned` is the same controller with reduced gain. `slowly_rounding` are gauges whose
     rounding is not white, although `noise` assumes white rounding. `warnings` are those of the loop study.
     """

@@ -42,7 +42,7 @@ def rest_time(closed: Loop, *, ringing: bool = False) -> float:
 
 @dataclass(frozen=True, eq=False)
 class DisturbedLoop:
-    """Loop with noise. The noise starts `rest` [s] before a simulation, to be stationary in it.
+    """Loop with noise. The noise starts `rest` [s] before a simulation, so that it is stationary during the simulation.
 
     Floor vibration fades in.
     """

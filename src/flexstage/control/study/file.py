@@ -22,7 +22,7 @@ FORMAT = "flexstage loop 1"
 
 @check_arguments
 def load_setup(path: str | os.PathLike[str]) -> LoopSetup:
-    """Return the set-up in a file. Relative file names in it refer to its folder.
+    """Return the set-up in a file. Relative file names in the set-up file refer to its folder.
 
     Raises `DesignError` with all errors, each finding with file, line and key.
 

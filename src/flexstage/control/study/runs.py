@@ -75,7 +75,7 @@ class StepAnswer:
 
     @property
     def cross_axis_error(self) -> Annotated[tuple[str, ...], INNER, Heading("cross-axis error")]:
-        """Largest translation and rotation along other axes, by axis. Values below 0.1 fm or frad are rounding errors, and omitted."""
+        """Largest translation and rotation along other axes, by axis. Values below 0.1 fm or frad are rounding errors and are omitted."""
         largest = {
             each.unit: max((other.largest, name) for name, other in self.others.items() if other.unit == each.unit)
             for each in self.others.values()
@@ -106,7 +106,7 @@ class CoilHeat:
 
 @dataclass(frozen=True)
 class LegUse:
-    """Amplifier load: the largest stroke `added` by force feedback, and the `largest` total stroke, controller included [m].
+    """Amplifier load: the largest stroke `added` by force feedback, and the `largest` total stroke including the controller's [m].
 
     `fastest` [m/s] is the largest rate of the total stroke between samples. `reach` [m] is the amplifier's stroke limit in the direction of
     the largest stroke, `slew` [m/s] its rate limit (infinite: no limit).
@@ -148,7 +148,7 @@ class LegUse:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Simulated trajectory, with the `figures` of a step, and `tracking` errors: rms and peak, true and as measured by the gauges.
+    """Simulated trajectory: the `figures` of a step, and the rms and peak `tracking` errors, true and as measured by the gauges.
 
     `learned` and `repeated` are results of iterative learning and repetitive control, if specified. `heat` is the thermal load of force
     actuators by name, `legs` the amplifier load with force feedback. `commanded` (n, f) is the commanded path if it differs from the

@@ -354,7 +354,7 @@ class LoopSetup(CheckedFields):
     """Loop set-up: plant `model`, sampling `rate`, output `delay`, and the tables of all components.
 
     The default rate is 10 kHz, or ten times the highest platform mode for faster stages; the default delay is one sample. `modes` is the
-    number of retained modes, lowest first (default: all significant modes); the static compliance of the others is kept. The simulation
+    number of retained modes, lowest first (default: all significant modes); the static compliance of other modes is kept. The simulation
     lasts `seconds` (default: the trajectory and settling); `seed` determines its random numbers.
 
     >>> LoopSetup().controller.law.value

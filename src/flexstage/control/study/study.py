@@ -70,11 +70,11 @@ class LoopStudy(InNotebook):
 
     `closed` is the loop with the retained modes of the plant (see `retention`). `growth_all_modes` [1/s] is the growth rate of the loop
     with all modes of the model; it is negative if the loop is stable. `margins`, `peaks`, `disk_margin` (all loops varied together),
-    `bandwidths` and `curves` are those of the loops opened at the pose. Without a closed loop, these results are absent (see `reasons`).
-    `static_errors` are open-loop errors of the stage. `noise` is the noise budget in regulation; `still` is a simulation in regulation, if
-    there is noise. If rounding is not white noise, the budget is invalid; `resting` then summarises several simulations. `stacks` are the
-    hysteretic stacks, if specified; `hysteresis` is their open-loop sweep. `runs` are the simulated trajectories. `warnings` list
-    assumptions and limitations.
+    `bandwidths` and `curves` are computed for the loops opened at the pose. Without a closed loop, these results are absent (see
+    `reasons`). `static_errors` are open-loop errors of the stage. `noise` is the noise budget in regulation; `still` is a simulation in
+    regulation, if there is noise. If rounding is not white noise, the budget is invalid; `resting` then summarises several simulations.
+    `stacks` are the hysteretic stacks, if specified; `hysteresis` is their open-loop sweep. `runs` are the simulated trajectories.
+    `warnings` list assumptions and limitations.
     """
 
     WRITTEN: ClassVar[tuple[str, str]] = ("a loop study", "fs.control.loop_study(stage)")
@@ -179,8 +179,8 @@ def loop_study(
 
     The plant is linearised at an operating point `there`, if specified. Without an operating point, the plant is the set-up's model of the
     stage, or the lumped model under permanent load if this load is significant. With a `solid`, the plant is the finite-element model of
-    the nominal stage. With a `test`, it is the identified plant from strokes to gauges (`measured_plant`); margins are then also computed
-    from the measured responses (`measured`).
+    the nominal stage. With a `test`, the plant is the identified plant from strokes to gauges (`measured_plant`), and margins are also
+    computed from the measured responses (`measured`).
 
     Raises `DesignError` as `resolve`, `make_controller` and `runs` do, and for an unstable loop, with the cause.
 

@@ -62,7 +62,7 @@ def found_section(seen: Identification) -> Section | None:
 
 
 def response_data_section(seen: Identification) -> Section | None:
-    """Make the section of responses (data and fit) and of the estimators side by side; without recorded inputs, of amplitude densities."""
+    """Make the section of responses (data and fit) and of their estimators; without recorded inputs, the section of amplitude densities."""
     found = seen.found
     if not found.inputs:
         picture = to_svg(density_figure(found), "measured-densities", "Amplitude density of outputs over frequency, and the modes found")

@@ -139,7 +139,7 @@ def _shift(values: Array) -> float:
 def platform_modes(plan_: Plan, values: Array) -> PlatformModes:
     """Compute the platform frequencies of designs given by the numbers (b, P) at the plan's addresses.
 
-    The frequencies agree with the dense solution of `models.lumped` within 1e-6 (relative), which is proven for each design.
+    The frequencies agree with the dense solution of `models.lumped` within a relative error of 1e-6; this is proven for each design.
 
     An invalid design has the status `NONE` and does not affect the other designs. A design is invalid if it has non-finite numbers, a
     stiffness that is not positive, or outlines without a mass.

@@ -104,7 +104,7 @@ def topology(assembly: Assembly) -> Topology:
 
 @dataclass(frozen=True)
 class Elimination:
-    """Elimination order of bodies, with the kept body last. `edges` are the pairs (first, later) of the filled graph, sorted by first.
+    """Elimination order of bodies, with the kept body last. `edges` are the pairs (first, later) of the filled graph, sorted by first node.
 
     The numbers in `edges` are positions in the elimination order.
     """

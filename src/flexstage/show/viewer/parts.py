@@ -25,7 +25,7 @@ Fact = tuple[str, str]
 class DrawnEntry:
     """A drawn part, body, gauge or ground: `what` is its kind, `unit` the instance to which it belongs.
 
-    `address` and `line` locate it in the design file. `facts` are pairs of a name and a value with its unit of measurement.
+    `address` and `line` locate the entry in the design file. `facts` are pairs of a name and a value with its unit of measurement.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Describer:
         self._facts: dict[int, tuple[Fact, ...]] = {}
 
     def thing(self, name: str, kind: Kind, first: int, second: int) -> DrawnEntry:
-        """Describe the drawn entry named `name`. `first` and `second` are the numbers of the bodies that it connects."""
+        """Describe the drawn entry named `name`. `first` and `second` are the numbers of the bodies that the entry connects."""
         what, address, facts = self._description(name)
         unit = name.rpartition("/")[0]
         line = line_of(address, self._lines) if address else None

@@ -14,7 +14,7 @@ _MOST = 2
 
 @check_arguments
 def load_optimisation(study: Study, where: str = "text") -> OptimisationProblem:
-    """Read the optimisation problem from the text of the study's file. Raises `DesignError` with every error, each at `where`.
+    """Read the optimisation problem from the text of the study's file. Raises `DesignError` with all errors of the file `where`.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> load_optimisation(leaf_study()[0]).starts

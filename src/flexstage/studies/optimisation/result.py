@@ -49,7 +49,7 @@ class Binding:
 
     @property
     def gain(self) -> Annotated[float, INNER, UnitIn("objective_unit"), Heading("gain for 1 %", digits=3)]:
-        """Gain of the objective if the limit is relaxed by 1 % of its value."""
+        """Improvement of the objective if the limit is relaxed by 1 % of its value."""
         return abs(self.price) * (abs(self.limit) or 1.0) * 0.01
 
 
@@ -97,7 +97,7 @@ class Start:
 class Rounded:
     """The best design with values (d,) at multiples of the variables' steps, and the `loss` of the objective [SI] by rounding (0 or more).
 
-    `tried` is the number of evaluated neighbours. If none of them is feasible, `point` is `None`, and `reason` explains it.
+    `tried` is the number of evaluated neighbours. If no neighbour is feasible, `point` is `None`, and `reason` explains why.
     """
 
     point: Point | None
@@ -279,5 +279,5 @@ class Front(Outcome):
 
     @property
     def values(self) -> Array:
-        """Both objectives [SI] of all points (k, 2)."""
+        """Values [SI] of both objectives for all points (k, 2)."""
         return np.array([point.values[:2] for point in self.points]).reshape(-1, 2)
