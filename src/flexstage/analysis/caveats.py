@@ -197,7 +197,7 @@ def _shared_stacks(mechanism: Mechanism) -> dict[str, Piezo]:
 def design_warnings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Return warnings about loads, parts outside the range of beam theory, blocked strokes, and interfering or intruding outlines.
 
-    The warning about a part that a link overrides names the link.
+    A warning about a part with overrides in a link names this link.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> [each.where for each in design_warnings(double_triangle())]

@@ -66,7 +66,7 @@ class Analysis(InNotebook):
     results.
 
     `loaded` is the effect of the permanent load. If the permanent load is significant, statics, modes, responses (`felt`), lost motion,
-    drift, error budget and their verdicts are for the loaded stage. The other results and the linear model `linear` belong to the nominal
+    drift, error budget and their verdicts are for the loaded stage. All other results and the linear model `linear` belong to the nominal
     stage. `second_order` is the small-displacement error over the required strokes; without required strokes, over the available strokes.
     `ends` contains the critical load factors at both ends of each load path, computed up to the required factor (None without load paths).
     The error budget is for 1 K and the required strokes; without required strokes, for all single-axis strokes at once.

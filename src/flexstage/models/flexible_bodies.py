@@ -97,12 +97,9 @@ class BodyEstimates:
 def body_flexibilities(mechanism: Mechanism) -> BodyEstimates:
     """Estimate the flexibility of every body of one design from its outlines.
 
-    No estimate exists for the following bodies; the reason is returned instead:
-
-    - bodies without outlines, or with imported outlines or many outlines;
-    - bodies joined to superelements or ideal joints, or with locked DOFs;
-    - bodies with links that end far from the body's outlines;
-    - all bodies of stages with many bodies.
+    A body without outlines, or with an imported outline or many outlines, has no estimate. There is also no estimate for a body that joins
+    a superelement, an ideal joint or a part with locked DOFs, or if a link ends far from the outlines. In a stage with many bodies, no body
+    has an estimate. The result contains the reason for each missing estimate.
 
     Equal bodies share their estimate.
 

@@ -550,7 +550,7 @@ def _mark_of(text: str) -> Mark:
 
 
 def first_design(values: Array, axes: int) -> Array:
-    """Return the first design of a batch: the real part of its values, which have the last `axes` axes.
+    """Return the real values of the first design of a batch of arrays, whose last `axes` axes belong to a design.
 
     >>> first_design(np.ones((4, 2, 2)), 2).shape
     (2, 2)

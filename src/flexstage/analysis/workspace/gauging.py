@@ -69,8 +69,8 @@ class PoseResolution(Result):
 
     The columns of S are single gauges, including gauges in sums. `gauge_steps` and `gauge_noise` (..., g) [m, rad] are the gauges'
     resolution r and noise. `worst` is the motion if the reading errors of all gauges equal one step and have the worst signs, sum |S_ij|
-    r_j. `rms` is the motion for independent errors of one step, (sum S_ij^2 r_j^2)^(1/2). `noise` is the rms motion due to the specified
-    noise densities over the gauges' bandwidths (NaN if unspecified).
+    r_j. `rms` is the motion if the gauges have independent errors of one step, (sum S_ij^2 r_j^2)^(1/2). `noise` is the rms motion due to
+    the specified noise densities over the gauges' bandwidths (NaN if unspecified).
     """
 
     TABLE: ClassVar[Layout] = Layout(

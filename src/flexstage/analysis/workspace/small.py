@@ -32,7 +32,7 @@ _ATOM = 1e-10
 
 @dataclass(frozen=True)
 class SecondOrder:
-    """Second-order error of linear kinematics over a box of motions: `error` is the largest relative error, `link` its part.
+    """Second-order error of linear kinematics over a box of motions: the largest relative `error`, which occurs in the part `link`.
 
     `shortening` is the foreshortening [m] of the bent leaf or rod `shortened` (empty if there is none), which displaces a guide sideways.
     `held_twice` is true if redundant constraints may also stretch flexures.

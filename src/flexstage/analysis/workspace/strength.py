@@ -114,10 +114,8 @@ def hinge_stress(
 ) -> HingeStress:
     """Compute the stress of every hinge from the link wrenches of an elastic model, with permanent load.
 
-    The right `limits` depend on how the stage is assembled:
-
-    - for a stage assembled at zero voltage, whose hinges the bias also bends, `stroke_limits(mechanism).from_zero`;
-    - for a stage that is stress-free at its bias, `stroke_limits(mechanism)`.
+    For a stage assembled at zero voltage, whose hinges the bias also bends, use `stroke_limits(mechanism).from_zero` as `limits`. For a
+    stage that is stress-free at its bias, use `stroke_limits(mechanism)`.
 
     With a `command`, `limits` apply to the command's coordinates. `condition` describes the limits in words. The stress is computed by
     linear beam theory; the maxima of a section are added (see `beams.stress`).

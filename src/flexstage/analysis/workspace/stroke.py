@@ -192,7 +192,7 @@ def mapping_at(mechanism: Mechanism, kinematics: Kinematics, point: str = PLATFO
 
 
 def point_motion(mechanism: Mechanism, kinematics: Kinematics, point: str) -> Array:
-    """Compute the twist (..., 6, f) of a point for unit ideal motions; the point is `platform` (its reference point), or named.
+    """Compute the twist (..., 6, f) of a point for unit ideal motions: a named point, or for `platform` its reference point.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.ideal import ideal

@@ -133,8 +133,9 @@ def zero_order_hold(given: Plant) -> System:
     """Discretise the plant by zero-order hold, exactly at the samples; the `delay` applies to strokes, but not to wrenches.
 
     Ground motion is linear between samples (`first_order_hold`): a hold would add jumps to the gauge readings. Gauges are read before the
-    output of the same sample; without delay and lag, their readings still result from the previous output. A continuous plant is returned
-    unchanged. Inputs and outputs are as in `Plant.system`. The states of the result are those of the plant, then the delayed strokes.
+    strokes of the same sample are output; without delay and lag, their readings still result from the previous strokes. A continuous plant
+    is returned unchanged. Inputs and outputs are as in `Plant.system`. The states of the result are those of the plant, then the delayed
+    strokes.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.cases.parallelogram import parallelogram

@@ -59,11 +59,11 @@ class Retention:
 def retention(whole: Plant, closed: Loop) -> Retention:
     """Find the significant modes of a `whole` plant, for a loop closed around a subset of them with its present controller.
 
-    An omitted mode is significant if it meets one of three criteria. First, the mode's loop gain at resonance, with other loops and axes
-    closed, is at least 0.1. For a pulse transfer function a b psi(z) of the mode, this loop gain is |a| |b K S|. It is exact between hold
-    and sampler, also above half the sampling rate. Second, the true platform motion rings by at least `RINGING` along any axis after a
-    step. Third, the mode is needed for the margins. If no mode meets the first criterion, modes are added by decreasing loop gain until the
-    others change no margin by more than `MARGIN_CHANGE`.
+    An omitted mode is significant if it meets one of three criteria. By the first criterion, the mode's loop gain at resonance, with other
+    loops and axes closed, is at least 0.1. For a pulse transfer function a b psi(z) of the mode, this loop gain is |a| |b K S|. The loop
+    gain is exact between hold and sampler, also above half the sampling rate. By the second criterion, the mode makes the true platform
+    motion ring by at least `RINGING` along any axis after a step. By the third criterion, the margins require the mode. If no mode meets
+    the first criterion, modes are added by decreasing loop gain until the others change no margin by more than `MARGIN_CHANGE`.
 
     >>> from flexstage.control.systems.closed import loop
     >>> from flexstage.control.example import integral_loop

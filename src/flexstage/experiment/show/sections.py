@@ -101,7 +101,7 @@ def coherence_section(seen: Identification) -> Section | None:
 
 
 def stabilisation_section(found: Identified) -> Section | None:
-    """Make the section of the stabilisation diagram; `None` if the identification has no such diagram."""
+    """Make the section of the stabilisation diagram; `None` if the identification has no stabilisation data."""
     if not found.stabilisation:
         return None
     drawn = to_svg(stabilisation_figure(found), "stabilisation", "Stabilisation diagram: poles by order and frequency")

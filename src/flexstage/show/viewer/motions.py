@@ -218,7 +218,7 @@ class Bearing:
         return [dict(zip(self._links, each, strict=True)) for each in shares.tolist()]
 
     def most(self, actuator: str) -> float | None:
-        """Return the stroke limit [m] of an actuator that has the larger magnitude; `None` if unknown."""
+        """Return the lower or upper stroke limit [m] of an actuator, whichever has the larger magnitude; `None` if unknown."""
         if self._limits is None or actuator not in self._limits.actuators:
             return None
         place = self._limits.actuators.index(actuator)

@@ -20,7 +20,7 @@ _EDGE = 1e-9
 
 
 def round_to_steps(setting: Setting, problem: Problem, point: Point) -> Rounded | None:
-    """Find the best feasible design near `point` whose variables are multiples of their steps. Returns `None` if no variable has a step.
+    """Near `point`, find the best feasible design with variables at multiples of their steps. Returns `None` if no variable has a step.
 
     Neighbours are ranked by the linear model of objective and limits; for more than 12 variables, only the nearest ones are considered. The
     neighbours are evaluated in batches, best rank first, until one is feasible. Then single steps of every variable are tried as long as

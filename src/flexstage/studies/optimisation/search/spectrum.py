@@ -43,8 +43,8 @@ class Modes:
 def spectra(model: LinearModel, asked: tuple[Modes, ...], shape: tuple[int, int]) -> list[tuple[Spectrum, ...]]:
     """Compute the spectra of s designs; the batch (s n,) of the model contains each design n times.
 
-    Each copy has a tiny imaginary step in another variable. `shape` contains the numbers s and n. With n = 0, the batch (s,) is real, and
-    there are no slopes. Raises `DesignError` if the stage has too few modes.
+    Each copy has a tiny imaginary step in a different variable. `shape` contains the numbers s and n. With n = 0, the batch (s,) is real,
+    and there are no slopes. Raises `DesignError` if the stage has too few modes.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> from flexstage.models.lumped import lumped

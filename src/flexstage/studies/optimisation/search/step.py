@@ -64,7 +64,7 @@ def step(problem: Problem, point: Point, hessian: Array, bounds: Bounds, tried: 
     To first order, t is an upper bound of all sides of the objective, and s >= 0 is an upper bound of all limits. Sides of frequencies are
     matrices. Eigenvectors of the changed matrices are added as planes until no eigenvalue exceeds t (objective) or s (limits). This method
     of planes is exact even for crossing modes. With `tried`, the planes are shifted so that they match the values of this design. Without
-    this second-order correction, the steps along curved limits would be short.
+    such shifts (second-order correction), the steps along curved limits would be short.
 
     >>> from flexstage.studies.optimisation.example import leaf_study
     >>> from flexstage.studies.optimisation.setting import setting
