@@ -17,8 +17,8 @@ from flexstage.parts.section import Section
 class Beam:
     """Beam symmetric about its centre: `flexibility` and `inertia` per length at each station (..., m, 6), for (x, y, z, rx, ry, rz).
 
-    The flexibilities are 1/(E A), k/(G A) twice, twist rate per torque, 1/(E I_y), 1/(E I_z). The inertias are rho A three times, rho I_p,
-    rho I_y, rho I_z.
+    The flexibilities are 1/(E A), k/(G A) for y and for z, twist rate per torque, 1/(E I_y), 1/(E I_z). The inertias are rho A for x, y and
+    z, rho I_p, rho I_y, rho I_z.
     """
 
     points: Stations
@@ -68,7 +68,7 @@ def shear_across(material: Material) -> Array | None:
 def flexibility(section: Section, young: Array, shear: Array, twisting: Twisting, across: Array | None = None) -> Array:
     """Compute the flexibility per length (..., m, 6) of a section; moduli `young` and `shear` [Pa] of shape (..., 1).
 
-    `across` is the shear modulus for shear along y, if different.
+    `across` is the shear modulus for shear along y, if it differs from `shear`.
 
     >>> from flexstage.parts.section import circle
     >>> section = circle(np.ones(1), 1.0)

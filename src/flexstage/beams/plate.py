@@ -29,7 +29,7 @@ def moment_factor(slenderness: Number, poisson: Number) -> Number:
 
 
 def shear_factor(slenderness: Number, poisson: Number) -> Number:
-    """Compute the plate factor on 12 EI/L^3 for a guided leaf, whose moment is linear with zero at its centre; `slenderness` = L/b.
+    """Compute the plate factor on 12 EI/L^3 for a guided leaf, whose bending moment is zero at its centre; `slenderness` = L/b.
 
     >>> [round(shear_factor(ratio, 0.3), 4) for ratio in (10.0, 5.0, 2.0, 0.5)]  # reference B6: 1.0209, 1.0376, 1.0679, 1.0912
     [1.0202, 1.0371, 1.0676, 1.0913]

@@ -42,7 +42,7 @@ def validity(part: Part, where: str = "part", material: Material | None = None) 
 
     The errors are correct within 1 % of the compliance (fillets along y and about z: 2 %), compared with three-dimensional finite elements.
 
-    - Errors of notches include the roots, on blocks of full height and width. Straight notches, leaves and rods are between rigid faces.
+    - Errors of notches include the roots on blocks of full height and width. Straight notches, leaves and rods end at rigid faces.
     - Along z and about x, the error of a notch is unknown: its own compliance is too small compared with that of the blocks.
     - The error of parts with a specified matrix is not estimated.
 
@@ -123,7 +123,7 @@ def _axes(profile: Profile | None) -> tuple[Array, Array]:
 def within(family: str, axis: str, hinge: HingeDimensions) -> Array:
     """Return whether the proportions and Poisson's ratio are in the range that was compared with finite elements.
 
-    For bending about z, thin throats and wide hinges have no bound, because the limits are known: beam theory and plane strain.
+    For bending about z, the range has no limit for thin throats and wide hinges, because beam theory and plane strain are exact there.
 
     >>> from flexstage.parts.rod import Rod
     >>> bool(within("bar", "x", hinge_dimensions(Rod("steel", length=0.1, diameter=0.002), 0.45)))

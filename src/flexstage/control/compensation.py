@@ -48,8 +48,8 @@ def lost_motion_compensation(lost: LostMotion, kinematics: Kinematics, deflectio
 
     a = (R_a V^+ T)^-1 R_a (xi - V^+ C w): Eq. 11 of Shin & Moon solved for the strokes, with its load term. C w is the `deflection`: the
     twist of the platform's reference point with all strokes zero (`analysis.deflection`, or a static compliance times a wrench). Strokes
-    cannot cancel deflections outside the ideal motions. The computation is linear. Raises `DesignError` for a deflection that is not a
-    twist.
+    cannot cancel deflections outside the ideal motions. The computation is linear. Raises `DesignError` for a deflection without exactly 6
+    components.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.parallelogram import parallelogram
@@ -95,9 +95,9 @@ class StaticError(InNotebook):
 def static_error(given: Compensation, kinematics: Kinematics, plant: Matrix, deflection: Array | None = None) -> StaticError:
     """Compute the static error of a compensation on a plant of any model.
 
-    E = I - V^+ T G, with the gains G. `plant` is T (6, n), the platform's twist per stroke (`lost_motion(...).gain`, or `static_gain` of
-    any model). With G = R_a, E is R_a^+ Lambda R_a, the result of the lost-motion analysis. `deflection` (6,) is the plant's deflection
-    under the loads with fixed strokes. Raises `DesignError` if the plant has other actuators than the compensation.
+    E = I - V^+ T G, with the gains G. `plant` is the matrix T (6, n): the platform's twist per stroke (`lost_motion(...).gain`, or
+    `static_gain` of any model). For G = R_a, E equals R_a^+ Lambda R_a as in the lost-motion analysis. `deflection` (6,) is the plant's
+    deflection under the loads with fixed strokes. Raises `DesignError` if the plant has other actuators than the compensation.
 
     >>> from flexstage.analysis.linear_statics.lost_motion import lost_motion
     >>> from flexstage.cases.double_triangle import double_triangle

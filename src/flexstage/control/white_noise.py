@@ -28,7 +28,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Source:
-    """Noise source: its kind, and the gauge, actuator or ground motion of its input."""
+    """Noise source: its kind, and the gauge, actuator or ground motion at which it acts."""
 
     kind: Kind
     channel: str
@@ -60,10 +60,10 @@ def mean_squares(system: System) -> Array:
 
 
 def held_noise(A: Array, B: Array, step: float) -> Array:
-    """Compute a factor L (n, k) of the covariance L L^T = int_0^T e^{As} B B^T e^{A^T s} ds, from white noise (density 1) over a step.
+    """Compute a factor L (n, k) of the covariance L L^T = int_0^T e^{As} B B^T e^{A^T s} ds of white noise (density 1) over a step.
 
-    A Taylor series over a small fraction of the step is doubled repeatedly, Q(2t) = Q(t) + e^{At} Q(t) e^{A^T t}, which avoids growing
-    exponentials.
+    A Taylor series gives the covariance Q over a small fraction of the step. The fraction is then doubled repeatedly, Q(2t) = Q(t) + e^{At}
+    Q(t) e^{A^T t}, without growing exponentials.
 
     >>> factor = held_noise(-np.eye(1), np.eye(1), 0.5)
     >>> round(float(factor[0, 0] ** 2), 12), round(float(0.5 * (1.0 - np.exp(-1.0))), 12)
@@ -89,9 +89,9 @@ def held_noise(A: Array, B: Array, step: float) -> Array:
 def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[Source, ...]]:
     """Return the closed loop driven by unit white inputs, and the source of each input.
 
-    Gauge noise is white before lag and filter, and sampled after them with exact aliasing; without lag and filter it is limited to half the
-    sampling rate. Rounding is white with variance step^2/12. Amplifier noise also drives the stage between the samples; noise of an
-    amplifier without lag is omitted here.
+    Gauge noise is white before lag and filter; after them it is sampled with exact aliasing. Without lag and filter, gauge noise is limited
+    to half the sampling rate. Rounding is white with variance step^2/12. Amplifier noise also drives the stage between the samples; noise
+    of an amplifier without lag is omitted here.
 
     >>> from flexstage.control.example import integral_loop
     >>> system, sources = white_system(integral_loop(), ("relative.x",))
@@ -121,7 +121,7 @@ def white_system(closed: Loop, outputs: tuple[str, ...]) -> tuple[System, tuple[
 
 
 def gauge_noise(given: Plant, gauge: str, density: float) -> System:
-    """Return a system from unit white inputs to samples of gauge noise, which has a white `density` before lag and filter (sampled loops).
+    """Return a system from unit white inputs to the gauge noise of a sampled loop; the noise has a white `density` before lag and filter.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = gauge_noise(integral_loop().plant, "S", 1e-12)
@@ -155,7 +155,7 @@ def _with_amplifiers(
 
 
 def bounded_amplifiers(closed: Loop, outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """Find actuators whose amplifier noise acts on gauges and outputs only through a lag, so that its mean square is finite.
+    """Find actuators whose amplifier noise passes a lag before it acts on gauges and outputs: its mean square is then finite.
 
     >>> from flexstage.control.example import integral_loop
     >>> bounded_amplifiers(integral_loop(), ("relative.x",))  # no noise is stated

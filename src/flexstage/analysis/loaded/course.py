@@ -37,7 +37,7 @@ _SWITCH = {"on": 1.0, "off": 0.0}
 
 @dataclass(frozen=True, eq=False)
 class DrivePath:
-    """Load path: `values` (k,) [SI] of the `drive`, relative to the static equilibrium under `loads` and `weight` (0: without weight).
+    """Load path: `values` (k,) [SI] of the `drive`, from the static equilibrium under `loads` and the fraction `weight` of the weight.
 
     `locked` coordinates are fixed at their static equilibrium values.
     """
@@ -49,7 +49,7 @@ class DrivePath:
     weight: float
 
     def rest(self, model: nonlinear.Nonlinear) -> equilibrium.State:
-        """Return the static equilibrium. Raises `DesignError` if there is none."""
+        """Return the static equilibrium. Raises `DesignError` if the stage has no static equilibrium."""
         return _resting(equilibrium.equilibrium(model, self.loads, weight=self.weight))
 
     def path(self, model: nonlinear.Nonlinear, rest: equilibrium.State) -> paths.LoadPath:
@@ -67,7 +67,7 @@ class DrivePath:
         return start + target, {name: float(operating_point.coordinate(rest, name)) for name in self.locked}
 
     def points(self, model: nonlinear.Nonlinear, values: Array | None = None) -> strokes.Points:
-        """Return the points of the path. `Points.column` computes a single characteristic of them."""
+        """Return the points of the path. `Points.column` computes a single characteristic of these points."""
         (result,) = self.points_of_designs((model,), values)
         return result
 
@@ -99,7 +99,7 @@ def _require_continuation(result: equilibrium.State) -> None:
 
 
 def drive_quantity(assembly: Assembly, drive: str, where: str) -> Quantity:
-    """Return the physical quantity of a drive. Raises `DesignError` at `where` if it is neither a coordinate nor a load.
+    """Return the physical quantity of a drive. Raises `DesignError` at `where` if the drive is neither a coordinate nor a load.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> drive_quantity(expand(parallelogram()), "platform.rz", "here").noun

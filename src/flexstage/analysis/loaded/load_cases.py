@@ -46,10 +46,10 @@ _ENDS = 8
 
 @dataclass(frozen=True, eq=False)
 class LoadCase(CheckedFields):
-    """Load case: the load that `grows` (loads by name, including weight and specified forces) at an operating point.
+    """Load case: the load that `grows` at an operating point, as loads by name (`weight` and `forces` included).
 
-    `stays` are constant loads. Coordinates and strokes in `at` are displacements from the static equilibrium. Unless a displaced coordinate
-    is `locked`, the stage is free under the force that displaces it. `gravity` is the fraction of the weight.
+    `stays` contains the constant loads. Coordinates and strokes in `at` are displacements from the static equilibrium. A displaced
+    coordinate remains free under the force that displaces it, unless the coordinate is `locked`. `gravity` is the fraction of the weight.
     """
 
     load: str
@@ -111,7 +111,7 @@ class CaseFactors(Result):
 
     @property
     def least_bound(self) -> CaseFactor | None:
-        """Case whose load path ends at the least factor without buckling; None if all paths are complete."""
+        """Case with the least factor among those whose load path ends without buckling; None if all paths are complete."""
         unknown = [case for case in self.cases if np.isnan(case.factor) and case.bound > 0.0]
         return min(unknown, key=lambda case: case.bound, default=None)
 
@@ -145,9 +145,9 @@ def buckling_factors(
     """Compute the critical load factor of every load case and stroke end of a design, at large displacements.
 
     The loads are the weight with payloads, and the specified forces with preloads; for a path in `[paths]`, also the loads in its `hold`.
-    One load grows at a time; all others are constant. The operating points are the static equilibrium and both ends of every path. For a
-    design without paths, they are both stroke ends of every actuator (if there are at most eight), and the worst corner of the strokes by
-    linearised buckling.
+    One load grows at a time; all others are constant. The operating points are the static equilibrium and both ends of every path. A design
+    without paths has two kinds of operating points instead: both stroke ends of every actuator (if there are at most eight actuators), and
+    the corner of the strokes that is worst by linearised buckling.
 
     At an operating point, a constant-direction force displaces a coordinate, as for `--at`; a stroke is held at its value. Load factors are
     computed up to `most`.
@@ -247,9 +247,10 @@ def _factor(model: Nonlinear, case: LoadCase, most: float) -> CaseFactor:
 
 
 def case_critical(model: Nonlinear, case: LoadCase, *, most: float = _MOST, tolerance: float = ENOUGH) -> Critical:
-    """Compute the critical load factor of a load case on the path from its operating point; if it is below 1, on the path from zero load.
+    """Compute the critical load factor of a load case on the path from its operating point.
 
-    Raises `DesignError` if there is no equilibrium at the operating point, and as `critical_load` does.
+    A factor below 1 is computed on the path from zero load. Raises `DesignError` if there is no equilibrium at the operating point, and
+    whenever `critical_load` raises it.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.stage import nonlinear

@@ -47,8 +47,9 @@ class LoadEffect:
 
     `change` is the largest relative change of the platform stiffness along an axis or of one of the first frequencies; `figure` is the name
     of this quantity. If `figure` is empty, `change` is an upper bound for any stiffness, from linearised buckling. `model` is the model
-    linearised about the loaded state if the change is significant (1 % or more), else None. `links` is the same model without inner
-    coordinates of flexures, for lost motion and drift. `state` is the loaded state. `why` is the reason if the change is unknown.
+    linearised about the loaded state if the change is significant (1 % or more), else None. `links` is the same model with flexures that
+    follow their ends quasi-statically, for lost motion and drift. `state` is the loaded state. `why` is the reason if the change is
+    unknown.
     """
 
     change: Annotated[float, RATIO]
@@ -60,7 +61,7 @@ class LoadEffect:
 
     @cached_property
     def links(self) -> LinearModel | None:
-        """Model linearised about the loaded state without inner coordinates: flexures follow their ends quasi-statically."""
+        """Model linearised about the loaded state; flexures have no inner coordinates and follow their ends quasi-statically."""
         return None if self.model is None or self.state is None else linearise.linearise(self.state, inner=False)
 
     def deflection(self, point: str) -> Array | None:
@@ -104,9 +105,10 @@ class LoadEffect:
 def load_effect(mechanism: Mechanism) -> LoadEffect | None:
     """Compute the effect of the permanent load on a stage; `None` for a batch of designs or an unknown load factor.
 
-    By linearised buckling, the relative change of every stiffness is at most 1 / load factor. If this bound is 1 % or more, the change is
-    computed in the nominal position, and if significant, at large displacements. For flexures that are not straight when free, the bound is
-    not valid: these stages are always computed at large displacements. Raises `DesignError` if the stage has no elastic model.
+    By linearised buckling, the permanent load reduces no stiffness by more than the fraction 1 / load factor; `Stability.stiffens` limits
+    the increase. If one of these limits is 1 % or more, the change is computed in the nominal position. A significant change is computed
+    again with large displacements. Stages with flexures that are not straight when free are always computed with large displacements.
+    Raises `DesignError` if the stage has no elastic model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> load_effect(parallelogram()).model is None
@@ -135,7 +137,7 @@ def load_effect(mechanism: Mechanism) -> LoadEffect | None:
 
 
 def felt_links(mechanism: Mechanism) -> LinearModel:
-    """Return the lumped model; if the permanent load is significant, linearised about the loaded state without inner coordinates.
+    """Return the lumped model. If the permanent load is significant, return `LoadEffect.links`, linearised about the loaded state.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> "geometric" in felt_links(parallelogram()).stiffness

@@ -35,15 +35,15 @@ _HELD = tuple(f"{SEAT}.{name}" for name in COMPONENTS)
 
 
 class Misaligned(Result):
-    """Result for an instance `copy`, misaligned on the ground along (x, y, z) or about (rx, ry, rz) an axis of its frame.
+    """Result for an instance `copy`, misaligned on the ground along (x, y, z) or about (rx, ry, rz) an axis of the instance's frame.
 
     `along` has a row for each misalignment, with the load that forces the instance into this position, and the first frequencies. Further
     columns are the largest stress and strain of a flexure, and the number of unstable modes (0: stable). `state` has the equilibria.
-    `loads` are the wrenches at the largest misalignment on the end of each flexure, in the frame of its start.
+    `loads` are the wrenches at the largest misalignment on the end of each flexure, in the frame at the flexure's start.
 
     `critical` is the misalignment at which the first stiffness vanishes [rad, m]; NaN if none does. `followed` is the largest misalignment
-    known to be stable: `critical`, 0.1 rad, 0.1 of the longest flexure, or the end of the path. Stable states beyond `critical` belong to
-    another branch and have no values.
+    known to be stable. It is `critical`, 0.1 rad, 0.1 times the longest flexure, or the end of the computed path. Stable states beyond
+    `critical` belong to another branch and have no values.
     """
 
     copy: str
@@ -66,9 +66,9 @@ class Misalignments(Result):
     """Critical misalignment of each instance, by axis of its own frame; null if no stiffness vanishes.
 
     `followed` is the misalignment up to which the stage is known to be stable, as in `Misaligned`. `load` is the load that misaligns the
-    instance by `size` [rad, m]; `stress` is the largest stress in a flexure [Pa]. Both are null if no equilibrium was found. `worst` is the
-    result for the instance and axis with the least `followed`; if all are equal, with the largest stress. `worst` is None if no instance is
-    connected to the ground.
+    instance by `size` [rad, m]; `stress` is the largest stress in a flexure [Pa]. `load` and `stress` are null if no equilibrium was found.
+    `worst` is the result for the instance and axis with the least `followed`; if all values are equal, it has the largest stress. `worst`
+    is None if no instance is connected to the ground.
     """
 
     critical: Matrix
@@ -86,11 +86,12 @@ class Misalignments(Result):
 
 @check_arguments
 def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points: int = 11) -> Misaligned:
-    """Compute the internal loads if an instance or link is mounted on a misaligned seat on the ground, at large displacements.
+    """Compute the internal loads of a stage if the seat of an instance or link on the ground is misaligned, with large displacements.
 
-    The seat connects the instance's links to the ground. It moves by `size` [m, rad] along or about an axis of the instance's frame, at
-    `points` values from zero. The centre of rotation is the frame's origin (of a link: its middle). The weight is included. Motions that
-    are not over-constrained remain free. Raises `DesignError` for unknown names and for instances that are not connected to the ground.
+    The seat connects the instance's links to the ground. The seat moves by `size` [m, rad] along or about an axis of the instance's frame,
+    at `points` values from zero. The centre of rotation is the frame's origin (of a link: its middle). The weight is included. Motions
+    without redundant constraints remain free. Raises `DesignError` for unknown names and for instances that are not connected to the
+    ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = misalign(parallelogram(), "left", "ry", 1e-3, points=3)

@@ -35,9 +35,9 @@ _SHARES = np.linspace(0.0, 1.0, 17)[1:-1]
 class OperatingPoint(Result):
     """Operating point: `sag` is the static deflection under weight, loads and heat, `moved` the displacement from static equilibrium.
 
-    Both have a row for each point (the platform and named points); the columns are displacement and rotation vector. `moved` is None
-    without displacement. `held` lists every displaced or fixed coordinate: its value relative to the static equilibrium, and the force that
-    holds it. `rest` is the static equilibrium, `state` the displaced equilibrium, and `linear` the model linearised about `state`.
+    `sag` and `moved` have a row for the platform and for each named point; the columns are displacement and rotation vector. `moved` is
+    None without displacement. `held` lists every displaced or fixed coordinate: its value relative to the static equilibrium, and the force
+    that holds it. `rest` is the static equilibrium, `state` the displaced equilibrium, and `linear` the model linearised about `state`.
     """
 
     sag: Matrix
@@ -52,7 +52,7 @@ class OperatingPoint(Result):
 
     @cached_property
     def links(self) -> LinearModel:
-        """Linearised model without inner coordinates, for lost motion: flexures follow their ends quasi-statically."""
+        """Linearised model for lost motion: flexures have no inner coordinates and follow their ends quasi-statically."""
         return linearise(self.state, locked=self.locked, inner=False)
 
     @property
@@ -73,13 +73,13 @@ def operating_point(
     """Compute the operating point of a stage at large displacements, and linearise about it.
 
     First, the static equilibrium is solved under weight, payloads, preloads, specified forces, `loads` (as in `equilibrium`) and
-    `temperature` (a uniform change [K]). `at` then displaces coordinates relative to this equilibrium by constant-direction forces:
-    `platform.y` [m], or `platform.rz` [rad], a component of the rotation vector. In the linear model, these coordinates are free under the
-    forces. Strokes in `at` (of a stack, by its name) are fixed. Coordinates in `fixed` are fixed at their equilibrium value, or at the
-    value in `at`.
+    `temperature` (a uniform change [K]). `at` then displaces coordinates from this equilibrium by forces of constant direction:
+    `platform.y` [m], or `platform.rz` [rad], a component of the rotation vector. In the linear model, the coordinates displaced by `at` are
+    free, and the displacing forces are constant. Strokes in `at` (of a stack, by its name) are fixed. Coordinates in `fixed` are fixed at
+    their equilibrium value, or at the value in `at`.
 
-    Raises `DesignError` for unknown names, contradictory conditions, and a missing equilibrium (with the largest fraction of the
-    displacement that has one). It is also raised if the stage is unstable under the forces.
+    Raises `DesignError` for unknown names, contradictory conditions, and a missing equilibrium. The error then reports the largest fraction
+    of the displacement that has an equilibrium. `DesignError` is also raised if the stage is unstable under the forces.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = operating_point(parallelogram(), {"platform.x": 1e-4})

@@ -29,8 +29,8 @@ class Seating:
     """Contact loads of a ball in its seat, at the worst contact.
 
     `left` (...) is the ratio of the least normal force to the preload; the ball lifts off at zero. `slip` is the ratio of the tangential
-    force to the friction limit, NaN without specified friction. `pressure` is the largest contact pressure [Pa]. `crush` is its ratio to
-    the pressure at the onset of yield in the softer material, NaN if neither material has a yield stress.
+    force to the friction limit, NaN without specified friction. `pressure` is the largest contact pressure [Pa]. `crush` is the ratio of
+    `pressure` to the pressure at the onset of yield in the softer material, NaN if neither material has a yield stress.
     """
 
     left: Array
@@ -42,7 +42,7 @@ class Seating:
 def seating(mechanism: Mechanism, model: LinearModel) -> dict[str, Seating]:
     """Compute the seating of each ball contact, by link, under the permanent load.
 
-    The wrench of a link determines the motion of its ball (except for motions without stiffness), and thus the force of each contact. The
+    The wrench of a link determines the motion of its ball, and thus the force of each contact. Motions without stiffness are excluded. The
     stiffness is linearised about the preload. A contact slips if the total tangential force exceeds the friction coefficient times the
     normal force (gross sliding).
 

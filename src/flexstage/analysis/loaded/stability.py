@@ -56,7 +56,7 @@ _SHAPES = 6
 
 @dataclass(frozen=True, eq=False)
 class Stability:
-    """Buckling load factors of a stage (...): `dead` for weight, payloads and forces, at zero strokes.
+    """Buckling load factors of a stage (...). `dead` is the load factor of weight, payloads and forces with all strokes zero.
 
     `worst` (...) is the load factor of the permanent load together with the worst `strokes` (..., m) [m]; it is infinite without softening.
     `stiffens` (...) is the largest relative stiffening by the permanent load. `moving` names the bodies with the largest motion in the
@@ -78,7 +78,7 @@ class Stability:
 
     @property
     def refusals(self) -> tuple[Finding, ...]:
-        """Error if the stage buckles in its nominal position under permanent load."""
+        """Error if the stage buckles in its nominal position under permanent load; empty if it is stable."""
         least = float(np.min(np.real(self.dead)))
         if least >= 1.0:
             return ()
@@ -117,7 +117,7 @@ class Stability:
 
 
 def buckling_clause(bodies: str) -> str:
-    """Return the clause that one or several bodies buckle.
+    """Return the clause "BODY buckles" for one body, or "BODIES buckle" for several.
 
     >>> buckling_clause("table"), buckling_clause("table and frame")
     ('table buckles', 'table and frame buckle')
@@ -196,9 +196,9 @@ def is_large(mechanism: Mechanism, model: LinearModel) -> bool:
 
 
 def prestress(mechanism: Mechanism, model: LinearModel) -> LinearModel:
-    """Return the lumped model with the `geometric` stiffness of its permanent load in the nominal position. Only for a single design.
+    """Return the lumped model with the `geometric` stiffness of its permanent load in the nominal position, for a single design.
 
-    Internal bending of parts is massless.
+    The inner bending modes of parts have no mass in this model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.lumped import lumped

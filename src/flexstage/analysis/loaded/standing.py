@@ -18,7 +18,7 @@ _CORNERS = 12
 
 
 def standing(mechanism: Mechanism) -> LinearModel:
-    """Return the lumped model after a check that the nominal position is stable (no check for a batch or superelements).
+    """Return the lumped model after a check that the nominal position is stable. Batches and stages with superelements are not checked.
 
     Raises `DesignError` if the load factor of weight, payloads and forces is below 1.
 
@@ -68,7 +68,7 @@ def _under_load(mechanism: Mechanism) -> tuple[LinearModel, Stability | None]:
 
 
 def require_standing(mechanism: Mechanism) -> None:
-    """Raise `DesignError` if a stage is unstable in its nominal position. If it has no lumped model, there is no check.
+    """Raise `DesignError` if a stage is unstable in its nominal position. A stage without a lumped model is not checked.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> require_standing(parallelogram())
@@ -83,7 +83,7 @@ def require_standing(mechanism: Mechanism) -> None:
 
 @SESSION.keep(2)
 def load_factors(mechanism: Mechanism) -> Stability | None:
-    """Return load factors of the stage over all strokes, which are relative to zero voltage; `None` without an elastic model.
+    """Return load factors of the stage over all strokes, measured from zero voltage; `None` without an elastic model.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> bool(load_factors(parallelogram()).worst > 100.0)

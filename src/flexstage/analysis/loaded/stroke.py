@@ -37,8 +37,8 @@ _FORCE_OF: dict[str, str] = dict(zip(COMPONENTS, FORCES, strict=True))
 class Stroke(Result):
     """Characteristics of a stage over the stroke of a `drive`. The matrix `along` has a row for each point.
 
-    Columns are the drive's value, its holding force and stiffness (of a coordinate), and the platform's displacement and rotation vector.
-    `lost` is the relative lost motion of a stack's stroke. Further columns are the platform's first natural frequencies (with the
+    Columns are the drive's value, the holding force and stiffness of a driven coordinate, and the platform's displacement and rotation
+    vector. `lost` is the relative lost motion of a stack's stroke. Further columns are the platform's first natural frequencies (with the
     coordinate free under the holding force), the largest stress and strain of a flexure, and the number of unstable modes (0: stable).
     Drive and displacements are relative to the static deflection `sag` under weight and loads; if `sag` is None, relative to the nominal
     position.
@@ -67,11 +67,11 @@ class PostBuckling:
 
 @check_arguments
 def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics | None = None) -> Stroke:
-    """Compute the characteristics over a stroke, point by point (docs/nonlinear.md, 25 to 28).
+    """Compute the characteristics over a stroke, point by point (equations 25 to 28 of docs/nonlinear.md).
 
-    Frequencies are NaN if the free stage is unstable. Loads and weight are as on the path. The drive and displacements are relative to
+    Frequencies are NaN if the free stage is unstable. Loads and weight are those of `path`. The drive and displacements are relative to
     `rest`, if specified. With the ideal `kinematics` of the stage, the lost motion of a driven stack is 1 - R_a V^+ (t - t_rest) / a. Here
-    t is the platform's displacement and rotation vector, and a the stroke. R_a and V are for the nominal position (`lost_motion`).
+    t is the platform's displacement and rotation vector, and a the stroke. R_a and V are computed in the nominal position (`lost_motion`).
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> from flexstage.models.nonlinear.paths.load_path import load_path
@@ -93,7 +93,7 @@ def stroke(path: LoadPath, rest: State | None = None, *, kinematics: Kinematics 
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """States (k,) along a drive's `values`, and their characteristics relative to `rest`, computed on first use.
+    """States (k,) at `values` of a drive, and the characteristics of these states relative to `rest`, computed on first use.
 
     `locked` coordinates remain fixed when the drive is released. Lost motion requires the ideal `kinematics`.
     """

@@ -22,7 +22,8 @@ from flexstage.show.command.models import Models
 class Command(NamedTuple):
     """A command: its `name`, its `group`, one line of `help`, its function or `Typer` as module:name, and an `example`.
 
-    The line of help equals the first line of the function's docstring, so that the list of commands needs no import of their modules.
+    The line of help equals the first line of the function's docstring. The list of commands therefore needs no import of the commands'
+    modules.
     """
 
     name: str
@@ -156,7 +157,7 @@ class LazyCommand(TyperCommand):
 
 
 class GroupedCommands(TyperGroup):
-    """A group that lists its commands by purpose, and loads the called one."""
+    """A group that lists its commands by purpose, and imports only the command that is called."""
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return the command with this name, in British or American spelling."""

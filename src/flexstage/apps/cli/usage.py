@@ -22,7 +22,7 @@ _CONDITIONS = (
 
 
 def usage_error(error: TyperException, arguments: Sequence[str], examples: Mapping[str, str]) -> DesignError:
-    """Convert a usage error of the command line to a message; the hint is a similar option, or the example of the command.
+    """Convert a usage error of the command line to a message. The hint is a similar option, or the example of the command.
 
     >>> print(usage_error(TyperException("Got unexpected extra argument (b)"), ["modes", "a", "b"], {"modes": "flexstage modes a"}))
     b: unexpected argument. Use e.g. 'flexstage modes a'.

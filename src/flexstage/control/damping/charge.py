@@ -21,7 +21,7 @@ from flexstage.models.linear.model import Channel, LinearModel
 
 @dataclass(frozen=True, eq=False)
 class ChargedStacks:
-    """Stacks of the `actuators` at constant charge, and their stiffness ratios `stiffer` (n,), 1/(1 - k^2) above the corner frequency.
+    """Stacks of `actuators` at constant charge: above the corner frequency, their stiffness is `stiffer` (n,) = 1/(1 - k^2) times as high.
 
     `corners` (n,) [Hz] are the corner frequencies below which the drive acts as a voltage drive. `residual_hysteresis` (n,) are the
     fractions of hysteresis and creep that remain above the corners. The plant's modes are at `by_volts` (k,) [Hz] with constant voltage,
@@ -52,8 +52,8 @@ def at_constant_charge(model: LinearModel, legs: tuple[Leg, ...], drives: Mappin
     """Return the model with the stacks of `legs` at constant-charge stiffness, k / (1 - kappa^2).
 
     A stack has elongation u, tension F, voltage V, charge Q: u = F/k + d V and Q = d F + C V (Preumont, Vibration Control of Active
-    Structures, 2018, ch. 4). With kappa^2 = d^2 k / C, u = (1 - kappa^2) F/k + (d/C) Q. The stiffness is higher. The free stroke (d/C) Q is
-    d V, with the voltage V that causes the charge Q without load.
+    Structures, 2018, ch. 4). With kappa^2 = d^2 k / C, u = (1 - kappa^2) F/k + (d/C) Q. The stiffness is therefore higher than with
+    constant voltage. The free stroke (d/C) Q equals d V for the voltage V that would cause the charge Q in the unloaded stack.
     """
     stiffness, output, through = dict(model.stiffness), np.array(model.output, dtype=float), np.array(model.feedthrough, dtype=float)
     for each in legs:

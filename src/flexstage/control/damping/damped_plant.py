@@ -27,7 +27,7 @@ _SLOW, _LINES = 1e-3, 200
 
 @dataclass(frozen=True)
 class DampedMode:
-    """Mode of the plant: `frequency` [Hz] and damping `ratio` without the inner loops, and both values with the inner loops.
+    """Mode of the plant: `frequency` [Hz] and damping `ratio` without the inner loops, `damped_frequency` and `damped_ratio` with them.
 
     `zero` [Hz] is the frequency without the stacks' axial stiffness. `most` is the maximum damping ratio with one leg or decoupled legs, (w
     - z)/(2 z). `alone` is the damping ratio of the isolated mode with the present gain.
@@ -55,12 +55,12 @@ class DampedMode:
 
 @dataclass(frozen=True, eq=False)
 class ActiveDamping:
-    """Integral force feedback in the `legs`: `gain` [1/s], and `corner` [Hz] of its high-pass filter of the given `order`.
+    """Integral force feedback in the `legs` with `gain` [1/s]; its high-pass filter has a `corner` frequency [Hz] and an `order`.
 
     `modes` are the plant's modes. For each of the `coordinates`, `left_at_rest` is the fraction of the platform's static stiffness that
-    remains. `softest` is the lowest such fraction below half the first mode's frequency, at `softest_at` [Hz]. A leg keeps more than half
-    its axial stiffness below `kept_below` [Hz]. `rate` [Hz] is the sampling rate, absent for analogue feedback. `reached` is the lowest
-    damping ratio of the modes with the largest residues, one per loop coordinate.
+    remains. `softest` is the lowest remaining fraction of the dynamic stiffness below half the first mode's frequency; it occurs at
+    `softest_at` [Hz]. A leg keeps more than half its axial stiffness below `kept_below` [Hz]. `rate` [Hz] is the sampling rate, absent for
+    analogue feedback. `reached` is the lowest damping ratio of the modes with the largest residues, one per loop coordinate.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -91,7 +91,7 @@ class ActiveDamping:
 
 
 def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Plant:
-    """Close the inner loops; `given` needs the link forces `<link>.fx` as outputs, which the result omits.
+    """Close the inner loops of a plant. Its outputs must include the link forces `<link>.fx`, which are not outputs of the result.
 
     The strokes of the inner loops are added before the amplifiers; they are also outputs `added.<actuator>` [m]. Inputs `sensed.<actuator>`
     [N] are noise added to the measured tension.
@@ -116,7 +116,7 @@ def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Pl
 def around_legs(
     given: Plant, legs: tuple[Leg, ...], inner: Sequence[System], outputs: Iterable[str], heard: tuple[Channel, ...] = ()
 ) -> System:
-    """Connect an inner system around each leg. Its input is `tension.<actuator>` [N] plus one of `heard`, its output a further stroke."""
+    """Connect an inner system around each leg. Its inputs are `tension.<actuator>` [N] and one of `heard`, its output a further stroke."""
     entries, links = {each.actuator: f"entry.{each.actuator}" for each in legs}, dict[str, dict[str, float]]()
     for number, (each, sign) in enumerate(zip(legs, tension_signs(given, legs), strict=True)):
         links[entries[each.actuator]] = {each.actuator: 1.0, inner[number].output_names[0]: 1.0}
@@ -125,7 +125,7 @@ def around_legs(
 
 
 def as_felt(given: Plant, legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
-    """Return the legs with effective stiffness, of stack and hinges in series: the tension per stroke far above the plant's modes."""
+    """Return the legs with the effective stiffness of stack and hinges in series: the tension per stroke far above the plant's modes."""
     forces = select(given.system, [each.actuator for each in legs], [f"{each.sensed}.fx" for each in legs])
     slow = np.array([not name.startswith("amplifier.") for name in given.states])
     direct = np.diag(residualise(forces, slow).D)
@@ -158,8 +158,8 @@ def _modal_poles(given: Plant) -> Array:
 def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: float) -> float:
     """Compute the lowest gain [1/s] that gives the modes with the largest residues the damping ratio `wanted`.
 
-    There is one such mode per loop coordinate. If no gain reaches `wanted`, returns the gain of maximum damping. A gain with unstable inner
-    loops is reduced. Raises `DesignError` if they are unstable at the lowest gain tried.
+    These are as many modes as the loop has coordinates. If no gain reaches `wanted`, returns the gain of maximum damping. A gain at which
+    the inner loops are unstable is reduced. Raises `DesignError` if the inner loops are unstable even at the lowest gain tried.
     """
     felt = felt_most(given)
     scale = 2.0 * np.pi * float(np.median(given.frequencies[felt]))
@@ -236,7 +236,7 @@ def _compliances(given: Plant, lines: Array) -> Array:
 
 
 def with_damped_modes(damped: Plant, found: ActiveDamping) -> Plant:
-    """Replace the plant's modal frequencies and damping ratios by the values with closed inner loops, ascending."""
+    """Replace the plant's modal frequencies and damping ratios by the values with closed inner loops, in ascending order."""
     frequencies = np.array([each.damped_frequency for each in found.modes])
     ratios = np.clip([each.damped_ratio for each in found.modes], 1e-6, 1.0)
     order = np.argsort(frequencies, kind="stable")

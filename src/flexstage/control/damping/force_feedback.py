@@ -17,10 +17,10 @@ class ForceFeedback:
     """Integral force feedback: stroke = G(s) T / k for tension T [N]; G = g / (s + a) for `order` 1, g s / (s + a)^2 for `order` 2.
 
     k [N/m] is the axial stiffness, `gain` g [1/s], `corner` a / (2 pi) [Hz] of the high-pass filter (Preumont, Dufour & Malekian, J. Guid.
-    Control Dyn. 15 (1992) 390; Preumont, Vibration Control of Active Structures, 2018, ch. 7 and 8). Without the filter the leg would have
-    no static stiffness, and would cancel every command. Order 1 keeps the fraction a / (a + g) of the static stiffness. Order 2 keeps all
-    of it, and more than half the stiffness below a^2 / g. `lag` [Hz] is the corner of the sensor's electronics. The `delay` [s] is a
-    second-order Pade approximation. Raises `DesignError` for invalid numbers.
+    Control Dyn. 15 (1992) 390; Preumont, Vibration Control of Active Structures, 2018, ch. 7 and 8). Without the high-pass filter, the leg
+    would have no static stiffness, and the feedback would cancel every command. Order 1 keeps the fraction a / (a + g) of the static
+    stiffness. Order 2 keeps the whole static stiffness, and more than half the dynamic stiffness below a^2 / g. `lag` [Hz] is the corner of
+    the sensor's electronics. The `delay` [s] is modelled by a second-order Pade approximation. Raises `DesignError` for invalid numbers.
     """
 
     gain: float
@@ -38,13 +38,13 @@ class ForceFeedback:
 
     @property
     def numerator(self) -> Array:
-        """Numerator of G with lag and delay, highest power first."""
+        """Numerator of the feedback law G(s) with lag and delay, highest power first."""
         high = np.array([self.gain]) if self.order == 1 else np.array([self.gain, 0.0])
         return np.polymul(high, [1.0, -6.0 / self.delay, 12.0 / self.delay**2]) if self.delay else high
 
     @property
     def denominator(self) -> Array:
-        """Denominator of G with lag and delay, highest power first."""
+        """Denominator of the feedback law G(s) with lag and delay, highest power first."""
         turning = 2.0 * np.pi * self.corner
         found = np.array([1.0, turning]) if self.order == 1 else np.array([1.0, 2.0 * turning, turning**2])
         if np.isfinite(self.lag):
@@ -52,7 +52,7 @@ class ForceFeedback:
         return np.polymul(found, [1.0, 6.0 / self.delay, 12.0 / self.delay**2]) if self.delay else found
 
     def at(self, rates: Array) -> Array:
-        """Compute G at complex rates s [1/s]."""
+        """Compute the feedback law G at complex s [1/s]."""
         return np.polyval(self.numerator, rates) / np.polyval(self.denominator, rates)
 
     def system(self, stiffness: float, tension: Channel, stroke: Channel) -> System:
@@ -72,7 +72,7 @@ class ForceFeedback:
 
     @property
     def kept_below(self) -> float:
-        """Frequency [Hz] below which a leg keeps more than half its axial stiffness: a^2 / (2 pi g). Order 1: 0 if g > a, else infinite."""
+        """Frequency [Hz] below which a leg keeps over half its axial stiffness: a^2 / (2 pi g); order 1 has 0 for g > a, else infinity."""
         turning = 2.0 * np.pi * self.corner
         if self.order == 1:
             return 0.0 if self.gain > turning else np.inf
@@ -83,8 +83,8 @@ def most_damping(frequency: float, zero: float) -> float:
     """Compute the maximum damping of a mode by integral force feedback, (w - z) / (2 z).
 
     w is the mode's frequency, z its frequency without the actuators' axial stiffness. Valid for one leg, or decoupled legs with equal gains
-    (Preumont 2018, ch. 7: s^3 + g s^2 + w^2 s + g z^2 = 0, at g = w (w/z)^(1/2) with the real root -(w z)^(1/2)). Above 1 the mode can be
-    overdamped.
+    (Preumont 2018, ch. 7: s^3 + g s^2 + w^2 s + g z^2 = 0, at g = w (w/z)^(1/2) with the real root -(w z)^(1/2)). A result above 1 means
+    that the mode can be overdamped.
 
     >>> most_damping(110.0, 100.0)
     0.05

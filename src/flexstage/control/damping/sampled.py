@@ -13,11 +13,12 @@ from flexstage.control.damping.legs import Leg
 
 @dataclass(frozen=True, eq=False)
 class SampledLegs:
-    """Sampled force feedback in the legs of `actuators` (m,): every `step` [s], `turns` samples per sample of the pose loop.
+    """Force feedback in the legs of `actuators` (m,), sampled every `step` [s]: `turns` samples during one sample of the pose loop.
 
-    The law is G = g s / (s + a)^2 (`order` 1: g / (s + a)), discretised by Tustin's rule. A low-pass filter a / (s + a) acts on the
-    tensions times `gains` g / (a k) (m,) [m/N]. For order 2, a second low-pass filter of this output is subtracted. This form is accurate
-    in single precision even with slow poles. `share` is a step / (2 + a step).
+    The feedback G = g s / (s + a)^2 (for `order` 1: g / (s + a)) is discretised by Tustin's rule. The tensions are multiplied by `gains` g
+    / (a k) (m,) [m/N] and filtered by the low-pass filter a / (s + a). For order 2, the result of a second low-pass filter is subtracted
+    from the output of the first filter. The computation is accurate in single precision even with slow poles. `share` is a T / (2 + a T),
+    with the time `step` T.
     """
 
     actuators: tuple[str, ...]

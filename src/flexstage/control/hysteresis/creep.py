@@ -23,8 +23,8 @@ from flexstage.models.linear.model import Channel
 class LogCreep(CheckedFields):
     """Logarithmic creep w(t) = w_0 (1 + gamma log10(t/t_0)) after a step at t = 0: `rate` gamma per decade, `reference` t_0 [s].
 
-    w_0 is the stroke at t_0. (Jung and Gweon, Rev. Sci. Instrum. 71, 2000, 3436-3440.) The law is valid from about t_0. It is unbounded for
-    very short and very long times.
+    w_0 is the stroke at t_0. The law is valid from about t_0 (Jung and Gweon, Rev. Sci. Instrum. 71, 2000, 3436-3440). The stroke of this
+    law is unbounded for very short and very long times.
     """
 
     rate: Annotated[float, Heading("creep per decade", digits=3, unit="%")]
@@ -49,9 +49,9 @@ class LogCreep(CheckedFields):
 class Creep:
     """Creep operator y = g_0 u + sum_i g_i s_i, tau_i ds_i/dt + s_i = u: `instant` g_0 (axes,), `gains` g_i, `times` tau_i [s] (axes, m).
 
-    It acts between hysteresis and stage (Hammerstein model). With u constant over a sample T the exact state update is s_i <- s_i + (1 -
-    e^{-T/tau_i}) (u - s_i), after y is computed. For a single axis the shape (m,) is also accepted. Raises `DesignError` for time constants
-    that are not positive.
+    The operator acts on the stroke between the hysteresis and the stage (Hammerstein model). With u constant over a sample T the exact
+    state update is s_i <- s_i + (1 - e^{-T/tau_i}) (u - s_i), after y is computed. For a single axis the shape (m,) is also accepted.
+    Raises `DesignError` for time constants that are not positive.
     """
 
     instant: Array

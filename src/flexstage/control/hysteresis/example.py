@@ -54,7 +54,7 @@ def example_step() -> Record:
 
 @cache
 def example_test() -> StackTest:
-    """Return the test identified from both records; it is computed once.
+    """Return the test identified from the records `example_record` and `example_step`; it is computed once.
 
     >>> test = example_test()
     >>> round(test.hysteresis.width, 2), round(test.creep.law.rate, 3)

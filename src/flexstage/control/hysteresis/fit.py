@@ -35,7 +35,7 @@ class Fit:
     offset: float
 
     def effective(self, volts: Array) -> Array:
-        """Compute the play input (k,) [V] for voltages (k,) [V]: the envelope, which equals the voltage at the lowest knot."""
+        """Compute the play input (k,) [V] for voltages (k,) [V]: the value of the envelope, which equals the voltage at the lowest knot."""
         return self.form.knots[0] + _ramps(volts, self.form.knots) @ self.slopes
 
     def strokes(self, plays: Array) -> Array:
@@ -45,7 +45,7 @@ class Fit:
     def model(self) -> PrandtlIshlinskii:
         """Return the model with its envelope shifted to pass through 0, the unloaded state.
 
-        A shift of the input shifts the play outputs equally. The strokes are therefore unchanged, except while they depend on the initial
+        A shift of the input shifts the play outputs equally. The shift therefore changes strokes only while they depend on the initial
         state.
         """
         knots = self.form.knots
@@ -93,7 +93,7 @@ def play_outputs(inputs: Array, thresholds: Array) -> Array:
 
 
 def known_from(inputs: Array, thresholds: Array) -> int:
-    """Find the first sample at which no play depends on its initial state: the input range is then twice the largest threshold.
+    """Find the first sample at which the input range is twice the largest threshold: no play then depends on its initial state.
 
     >>> known_from(np.array([0.0, 1.0, 5.0, 3.0, 0.0]), np.array([0.0, 2.0]))
     2
@@ -107,9 +107,9 @@ def fit_form(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: i
 
     Omits samples at which plays still depend on their initial state (`known_from`).
 
-    With a straight envelope this is one linear problem. Otherwise the fit alternates between weights (envelope fixed) and slopes (weights
-    fixed), at most `rounds` times. Both problems are linear: a sticking play keeps the envelope's value at its last motion, which is linear
-    in the slopes.
+    With a straight envelope this is one linear problem. With several envelope pieces, the fit alternates between weights (with fixed
+    slopes) and slopes (with fixed weights), at most `rounds` times. Each fit of weights or slopes is linear: a sticking play keeps the
+    envelope's value at its last motion, which is linear in the slopes.
 
     >>> volts = np.concatenate([np.linspace(0, 100, 21), np.linspace(95, 0, 20), np.linspace(5, 100, 20)])
     >>> strokes = PrandtlIshlinskii([0.0, 25.0], [1e-7, 5e-8]).run(volts)
@@ -175,7 +175,7 @@ def _bounded_least_squares(matrix: Array, target: Array, lower: Array) -> Array:
 def drift_of(plays: Array, strokes: Array) -> float:
     """Estimate drift [m] over a record: the part of the strokes (k,) that is linear in time and not explained by plays (k, n).
 
-    Returns zero for an insignificant drift: omitting it raises the rms error by less than a fifth.
+    The result is zero for an insignificant drift, whose omission raises the rms error by less than a fifth.
 
     >>> plays = np.array([[0.0], [1.0], [0.0], [1.0]])
     >>> round(drift_of(plays, np.array([0.0, 1.01, 0.02, 1.03])), 6)

@@ -22,8 +22,8 @@ SMALL_ERROR = Graded(0.02)
 class Trial:
     """One tried model size: numbers of `plays` and envelope `pieces`, `reach` (largest threshold relative to the range), and error.
 
-    `error` is the cross-validation error relative to the stroke. Each of several parts of the record is excluded from one fit; the rms
-    error is computed over the excluded parts.
+    `error` is the cross-validation error relative to the stroke. Several fits each exclude one part of the record; the rms error is
+    computed over the excluded parts.
     """
 
     plays: int
@@ -34,7 +34,7 @@ class Trial:
 
 @dataclass(frozen=True, eq=False)
 class Plays:
-    """Play model of a stack: thresholds and weights (n,), and envelopes `before` (V to V) and `after` (m to m), knots and values."""
+    """Play model of a stack: thresholds and weights (n,), and knots and values of the envelopes `before` (V to V) and `after` (m to m)."""
 
     thresholds: Annotated[Array, VOLTAGE, Heading("threshold")]
     weights: Annotated[Array, PIEZO_GAIN, Heading("weight", digits=4)]
@@ -53,8 +53,8 @@ class IdentifiedHysteresis(InNotebook):
 
     Errors and the width are relative to `stroke` [m], the range of the strokes after the first branch. `rms` and `largest` are errors over
     the samples from `known_from`, which do not depend on the unknown history. `validation` is the rms error on parts of the record that
-    were not fitted. `width` is the largest distance between the branches of the model's major loop. `range` is the recorded voltage range,
-    `inner` the number of branches shorter than 80 % of it. `volts`, `strokes` and `modelled` (k,) are the samples used.
+    were not fitted. `width` is the largest distance between the branches of the model's major loop. `range` is the recorded voltage range;
+    `inner` is the number of branches shorter than 80 % of this range. `volts`, `strokes` and `modelled` (k,) are the samples used.
     """
 
     model: Annotated[PrandtlIshlinskii, INNER]

@@ -45,7 +45,7 @@ class Bend:
 
 @dataclass(frozen=True)
 class OuterBend:
-    """Envelope after the plays, as in a file: `strokes` [m] belong to the weighted sums `plays` [m] of the play outputs."""
+    """Envelope after the plays, as in a file: it maps the weighted sums `plays` [m] of the play outputs to `strokes` [m]."""
 
     plays: _Strokes
     strokes: _Strokes
@@ -63,7 +63,7 @@ class StackCreep:
 class StackHysteresis:
     """Hysteresis of one stack, as in a file: thresholds, weights, envelopes, range of the record, model error and source.
 
-    `model` and `log_creep` return its model and creep law; `stack_hysteresis` is the exact inverse conversion.
+    `model` and `log_creep` return the stack's model and creep law; `stack_hysteresis` converts them back exactly.
     """
 
     thresholds: _Volts
@@ -154,7 +154,7 @@ def dumps_hysteresis(stack: StackHysteresis) -> str:
 def loads_hysteresis(text: str, *, where: str = "text") -> StackHysteresis:
     r"""Parse the text of a hysteresis file; `where` is the file's name in findings.
 
-    Raises `DesignError` with all its errors, an invalid model included.
+    Raises `DesignError` with all errors of the file, also for an invalid model.
 
     >>> loads_hysteresis('format = "flexstage hysteresis 1"\nthresholds = ["0 V"]\nweights = ["150 nm/V"]').weights
     (1.5e-07,)

@@ -87,8 +87,8 @@ class StackTest(InNotebook):
 def stack_test(record: Record, channels: Channels = Channels(), *, step: Record | None = None, limits: Range | None = None) -> StackTest:
     """Identify hysteresis from a record of voltage and stroke and, optionally, creep from the record of a `step`.
 
-    Channels are converted to V and m. `limits` are the actuator's voltage limits. Raises `DesignError` for ambiguous channels, missing or
-    wrong units, and the errors of `identify_hysteresis` and `identify_creep`.
+    Channels are converted to V and m. `limits` are the actuator's voltage limits. Raises `DesignError` for ambiguous channels, for missing
+    or wrong units, and whenever `identify_hysteresis` or `identify_creep` raises it.
 
     >>> from flexstage.experiment.records.record import in_memory
     >>> volts = 500.0 * (1.0 - np.cos(np.linspace(0.0, 6.0 * np.pi, 400)))

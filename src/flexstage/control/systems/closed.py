@@ -24,7 +24,7 @@ class LoopBreak(Enum):
     COMMAND = "command"
 
     def channels(self, given: Plant) -> tuple[Channel, ...]:
-        """Return the signals of a plant's loop at the break."""
+        """Return the signals of a plant's loop at the loop-breaking point."""
         return given.coordinates.motions("pose.") if self is LoopBreak.POSE else given.coordinates.commands("command.")
 
 
@@ -57,9 +57,10 @@ class Loop:
 def loop(given: Plant, controller: System) -> Loop:
     """Connect a controller to a plant.
 
-    The controller's inputs are any of `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>`; the last remains unconnected,
-    because a linear loop has no saturation. Its outputs are all `command.<actuator>`. Its step must equal the hardware's (continuous:
-    none). Raises `DesignError` otherwise, and for an algebraic loop without solution.
+    The inputs of the controller are any of `error.<c>`, `reference.<c>`, `pose.<c>` and `applied.<actuator>`. `applied` remains
+    unconnected, because a linear loop has no saturation. The controller's outputs are all `command.<actuator>`. The controller's time step
+    must equal the hardware's step (a continuous controller has none). Raises `DesignError` if channels or steps do not match, and for an
+    algebraic loop without solution.
 
     >>> from flexstage.control.plant_models.electronics import sampling_chain
     >>> from flexstage.control.plant_models.plants import plant
@@ -87,9 +88,9 @@ def loop(given: Plant, controller: System) -> Loop:
 
 
 def pose_controller(controller: System, coordinates: Coordinates, sense: Array | None = None) -> System:
-    """Return the controller with two groups of inputs: first the feedback errors (pose and error together), then the references.
+    """Return the controller with two groups of inputs: first the feedback errors, which replace pose and error, then the references.
 
-    With the map `sense` (k, c) of loops, both groups are in loop coordinates.
+    With the matrix `sense` (k, c), which maps to loop coordinates, both groups of inputs are in loop coordinates.
     """
     names, known = coordinates.names, controller.input_names
     entry = np.zeros((2, len(known), len(names)))
@@ -103,10 +104,10 @@ def pose_controller(controller: System, coordinates: Coordinates, sense: Array |
 
 
 def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
-    """Return the open loop L of a negative feedback: S = (I + L)^-1, from the input at the break to minus the returned signal.
+    """Return the open loop L for negative feedback, with S = (I + L)^-1: from the input at the break to minus the returned signal.
 
-    The loop is opened at the pose or at the commands: in all channels (rows and columns named by coordinates or actuators, inputs
-    `cut.<name>`), or in a single `channel` with the others closed. Raises `DesignError` for an unknown channel.
+    The loop is opened at the pose or at the commands. All channels are opened (rows and columns named by coordinates or actuators, inputs
+    `cut.<name>`), or a single `channel` with the others closed. Raises `DesignError` for an unknown channel.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()
@@ -124,7 +125,7 @@ def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
 
 
 def open_everywhere(closed: Loop) -> System:
-    """Return the loop opened at all poses and all commands at once, in this order: for simultaneous factors on both sides of the plant.
+    """Return the loop opened at all poses and all commands at once, in this order, for simultaneous factors at both sides of the plant.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = open_everywhere(integral_loop())

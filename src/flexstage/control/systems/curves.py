@@ -33,12 +33,12 @@ class Curves:
 
     @property
     def loops(self) -> Array:
-        """Single loops L_i, with the others closed, complex (f, n)."""
+        """Loop transfer functions L_i (f, n), complex: each loop is opened singly, with all others closed."""
         own = np.diagonal(self.sensitivity, axis1=1, axis2=2)
         return np.where(own == 0.0, np.inf, 1.0 / np.where(own == 0.0, 1.0, own) - 1.0)
 
     def crossings(self, of: Callable[[Array], Array], channel: int) -> tuple[Array, Array]:
-        """Find the frequencies [Hz] at which a real function `of` S_ii of a channel changes sign, and S_ii there."""
+        """Find the frequencies [Hz] at which `of`, a real function of a channel's S_ii, changes sign; also return S_ii there."""
         values = of(self.sensitivity[:, channel, channel])
         places = sign_changes(values)
         low, high = self.frequencies[places], self.frequencies[places + 1]
@@ -63,7 +63,7 @@ def sensitivity(open_loop: System) -> System:
 def curves(closed: Loop, cut: LoopBreak) -> Curves:
     """Compute S at frequencies around every pole of the closed loop and of each single open loop, refined until every L_i is smooth.
 
-    The frequencies end at half the sampling rate; for a continuous loop at 100 times its fastest pole.
+    The highest frequency is half the sampling rate. For a continuous loop, it is 100 times the frequency of the fastest pole.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = curves(integral_loop(), LoopBreak.POSE)
@@ -148,7 +148,7 @@ def sign_changes(values: Array) -> Array:
 def roots(of: Callable[[Array], Array], ends: tuple[Array, Array], values: tuple[Array, Array]) -> Array:
     """Find zeros of a function within brackets (low, high) (k,) with `values` of opposite signs, all at once.
 
-    Illinois variant of the false-position method, to rounding error.
+    Uses the Illinois variant of the false-position method, to rounding error.
 
     >>> roots(lambda x: x**2 - 2.0, (np.array([0.0]), np.array([2.0])), (np.array([-2.0]), np.array([2.0]))).round(12).tolist()
     [1.414213562373]

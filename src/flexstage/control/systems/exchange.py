@@ -15,10 +15,10 @@ from flexstage.models.linear.model import Channel
 
 @check_arguments
 def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
-    """Convert a system to `control.StateSpace`, with the names of inputs and outputs, dots replaced by underscores (`error_x`).
+    """Convert a system to `control.StateSpace`. Names of inputs and outputs are kept, with dots replaced by underscores (`error_x`).
 
     `states` are names for the system's states, for instance `Loop.states`. A continuous system has dt = 0. Raises `DesignError` without
-    python-control, and for names that become equal.
+    python-control, and for names that differ only in dots and underscores.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = to_control(integral_loop().controller)
@@ -42,9 +42,9 @@ def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
 def from_control(system: Any, inputs: tuple[Channel, ...] | None = None, outputs: tuple[Channel, ...] | None = None) -> System:
     """Convert a `control.StateSpace`, or a single-input single-output transfer function, to a system.
 
-    `inputs` and `outputs` name its channels with their units (default: its own labels, without unit), for example `error.x` ... and
-    `command.B1` ... of a controller. Raises `DesignError` for a sampled system with unspecified step, for another type than a linear
-    system, and for a wrong number of channels.
+    `inputs` and `outputs` are the channels with names and units (default: the system's own labels, without units). A controller has for
+    example `error.x` ... and `command.B1` ... . Raises `DesignError` for a sampled system without a time step, for an object that is not a
+    linear system, and for a wrong number of channels.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop().controller

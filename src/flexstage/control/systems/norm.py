@@ -60,7 +60,7 @@ def peak(system: System) -> Peak:
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """System mapped to a continuous one, s = j nu: nu = 2 pi f / `unit`, or tan(pi f T) for a sampled system."""
+    """Continuous system that represents a system. Its s = j nu has nu = 2 pi f / `unit`, or nu = tan(pi f T) for a sampled system."""
 
     system: System
     unit: float
@@ -74,7 +74,7 @@ class Plane:
 
 
 def to_plane(system: System) -> Plane:
-    """Map a system to a continuous one with balanced states: if sampled, by z = (1 + s)/(1 - s); if continuous, by scaling time.
+    """Map a system to a balanced continuous system: a sampled one by z = (1 + s)/(1 - s), a continuous one by scaling of time.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop().system

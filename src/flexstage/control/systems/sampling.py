@@ -57,9 +57,9 @@ def first_order_hold(system: System, step: float) -> System:
 
     x[k+1] = e^{AT} x[k] + (Gamma - Gamma_1) u[k] + Gamma_1 u[k+1], Gamma_1 = int_0^T e^{A(T-s)} (s/T) ds B (Franklin, Powell and Workman,
     Digital Control of Dynamic Systems, 1998, section 6.3.2). The states are x[k] - Gamma_1 u[k], so that no future input is required. For
-    smooth inputs such as floor motion, the relative error is (omega T)^2/12, without the jumps of a zero-order hold. For motion relative to
-    the floor the error is (omega_0 T)^2/12, with the resonance omega_0 (1e-3 for a tenth of a radian per sample). Raises `DesignError` for
-    a sampled system, and for invalid times.
+    smooth inputs such as floor motion, the relative error is (omega T)^2/12; the result has no jumps, unlike that of a zero-order hold. For
+    motion relative to the floor, the error is (omega_0 T)^2/12 with the resonance omega_0: 1e-3 for a tenth of a radian per sample. Raises
+    `DesignError` for a sampled system, and for invalid times.
 
     >>> from flexstage.models.linear.model import Channel
     >>> metre = (Channel("u", "m"),), (Channel("y", "m"),)

@@ -69,7 +69,7 @@ class System(CheckedFields):
 
     @cached_property
     def schur_form(self) -> tuple[Array, Array, Array]:
-        """Triangle T, Q^H B and C Q of the complex Schur form A = Q T Q^H, balanced."""
+        """Return T, Q^H B and C Q of the complex Schur form A = Q T Q^H (T triangular), after balancing."""
         if not np.any(np.tril(self.A, -1)):  # single-loop laws are already triangular
             return self.A.astype(complex), self.B.astype(complex), self.C.astype(complex)
         balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
@@ -84,7 +84,7 @@ class System(CheckedFields):
         """Compute the frequency response H = C (lambda - A)^-1 B + D, (f, p, m) at `frequencies` (f,) [Hz].
 
         lambda = j omega, or e^{j omega T} for a sampled system. The states are balanced first, because modal velocities are about a
-        thousand times larger than modal displacements. Without balancing, a solution would lose accuracy by this factor.
+        thousand times larger than modal displacements. Without balancing, the solution would lose accuracy by a factor of about a thousand.
         """
         balanced, (scale, _) = scipy.linalg.matrix_balance(self.A, permute=False, separate=True)
         entry, points = (self.B / scale[:, None]).astype(complex), self._points(frequencies)
@@ -94,8 +94,9 @@ class System(CheckedFields):
     def sweep(self, frequencies: Array, columns: slice = slice(None)) -> Array:
         """Compute the frequency response at many frequencies, for the inputs in `columns`.
 
-        Infinite frequencies give D (continuous systems only). Uses one Schur form, then back substitution with n^2 operations per point,
-        also for a defective A. Elements that are zero by symmetry have rounding errors relative to the largest element.
+        The result at infinite frequency is D (continuous systems only). The method is one Schur decomposition, then back substitution with
+        n^2 operations per point; A may be defective. Elements that are zero by symmetry have rounding errors relative to the largest
+        element.
         """
         frequencies, direct = np.asarray(frequencies, dtype=float), self.D[:, columns]
         points = self._points(np.where(np.isfinite(frequencies), frequencies, 0.0))
@@ -230,8 +231,9 @@ Terms = Mapping[str, float]
 def connect(systems: Iterable[System], links: Mapping[str, Terms], inputs: tuple[Channel, ...], outputs: Iterable[str]) -> System:
     """Connect systems by signal names: every input in `links` is the weighted sum of outputs and of the new system's `inputs`.
 
-    An input that is not in `links` is connected to the new input, or the output, with the same name. With u = F y + G w: u = (I - F D)^-1
-    (F C x + G w). Raises `DesignError` for any other input, unknown names, different steps, and an algebraic loop (I - F D singular).
+    An input without an entry in `links` is connected to the new input, or to the output, with the same name. With u = F y + G w: u = (I - F
+    D)^-1 (F C x + G w). Raises `DesignError` for inputs that remain unconnected, unknown names, different steps, and an algebraic loop (I -
+    F D singular).
 
     >>> unit = Channel("r", "m")
     >>> integrator = System(np.zeros((1, 1)), np.eye(1), np.eye(1), np.zeros((1, 1)), (Channel("e", "m"),), (Channel("y", "m"),))
