@@ -47,8 +47,9 @@ class Cross(Section):
     def torsion(self) -> Number:
         """Saint-Venant's J = t^4 (2 b / 3 t - 0.08476 - 4.6 exp(-pi b / 2 t)) [m^4], within 2e-4 for b >= 3 t.
 
-        Two strips b t^3 / 3 with corrections for the junction and the ends (form of Trayer & March, NACA Report 334, 1930). The
-        coefficients fit finite-element solutions of Prandtl's stress function (Timoshenko & Goodier, Theory of Elasticity, section 106).
+        The terms are two strips b t^3 / 3 with corrections for the junction and the ends (form of Trayer & March, NACA Report 334, 1930).
+        The coefficients fit finite-element solutions of Prandtl's stress function (Timoshenko & Goodier, Theory of Elasticity, section
+        106).
         """
         slender = self.width / self.thickness
         return self.thickness**4 * (2.0 / 3.0 * slender - 0.08476 - 4.6 * np.exp(-0.5 * np.pi * slender))
@@ -81,7 +82,7 @@ class Cross(Section):
         return corners[[2, 3, 8, 9]], corners[[11, 0, 1, 10]], corners[[4, 5, 6, 7]]
 
     def torsional_stress(self, torque: Array, uniform: Array) -> Array:
-        """Return T t / J on the faces of the leaves plus the shear of bending strips; no stress concentration at the inner corner."""
+        """Return T t / J on the faces of the leaves plus the shear of bending strips, without stress concentration at the inner corner."""
         strips = 4.5 * magnitude(1.0 - uniform) / (self.width * self.width * self.thickness)
         return torque * (magnitude(uniform) * self.thickness / self.torsion + strips)
 

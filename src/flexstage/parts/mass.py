@@ -62,7 +62,7 @@ def drawn_solids(body: Body, materials: Mapping[str, Material], name: str, frame
 def union_properties(solids: Sequence[Drawn], meant: Sequence[Drawn] | None = None) -> MassProperties:
     """Compute mass properties of the union of solids, in the frame in which the solids are drawn.
 
-    If `meant` has the same solids at nominal positions, common volumes are computed at these positions.
+    If `meant` contains the same solids at nominal positions, common volumes are computed at the nominal positions.
 
     >>> half = Block("steel", size=(1.0, 1.0, 1.0))
     >>> float(union_properties([Drawn("a", half, 2.0, identity()), Drawn("b", half, 2.0, identity())]).mass)
@@ -128,7 +128,7 @@ def tensor(inertia: Inertia) -> Array:
 
 
 def solid_properties(solid: Solid, density: Number) -> MassProperties:
-    """Compute mass properties of one solid of uniform `density` [kg/m^3]; an imported solid has its specified properties.
+    """Compute mass properties of one solid of uniform `density` [kg/m^3]. For an imported solid, the specified properties are used.
 
     >>> float(solid_properties(Cylinder("steel", diameter=2.0, length=1.0), 1.0).mass.round(12))
     3.14159265359

@@ -38,7 +38,7 @@ class Material(Description):
     has `c11`, `c12`, `c44` [Pa] instead. `crystal` gives the crystal directions along the stage's x and z axes (default: 100 and 001).
 
     `density` [kg/m^3] is required. Optional: `expansion` [1/K], `loss_factor` [-], and the stress limits `yield_stress`, `fatigue_limit`,
-    `allowable_stress` [Pa]. The least limit governs.
+    `allowable_stress` [Pa]. The least of these stress limits governs.
 
     >>> Material(young=200e9, poisson=0.25, density=7750.0).shear
     80000000000.0
@@ -154,15 +154,15 @@ class Material(Description):
     def oriented(self, rotation: Array) -> Material:
         """Return the material in the axes of a part: x along the part, z along its width.
 
-        The columns of `rotation` (..., 3, 3) are these axes in the stage. Isotropic materials are returned unchanged.
+        The columns of `rotation` (..., 3, 3) are the part's axes in the stage. Isotropic materials are returned unchanged.
 
         A cubic crystal with S = C^-1, J = S11 - S12 - S44/2, and n, m two axes in the crystal, has 1/E = S11 - 2 J (n1^2 n2^2 + n2^2 n3^2 +
-        n3^2 n1^2). Its strain ratio is -E (S12 + J sum n^2 m^2), and 1/G = S44 + 4 J sum n^2 m^2 (Nye 1957; Hopcroft, Nix & Kenny, J. MEMS
-        19 (2010) 229-238).
+        n3^2 n1^2). The strain ratio for the two axes is -E (S12 + J sum n^2 m^2), and 1/G = S44 + 4 J sum n^2 m^2 (Nye 1957; Hopcroft, Nix
+        & Kenny, J. MEMS 19 (2010) 229-238).
 
-        Beams along x use E along x, and G of the planes xy and xz. Wide leaves use -S13 / (S11 S33)^(1/2) as nu in the plate modulus E / (1
-        - nu^2). In directions other than 100, 110 and 111, tension and bending are coupled with shear and twist. This coupling is
-        neglected.
+        Beams along x use E along x, and G of the planes xy and xz. For wide leaves, nu in the plate modulus E / (1 - nu^2) is -S13 / (S11
+        S33)^(1/2). In directions other than 100, 110 and 111, tension and bending are coupled with shear and twist; the material in part
+        axes omits this coupling.
         """
         if not self.is_cubic:
             return self
@@ -185,7 +185,7 @@ class Material(Description):
         )
 
     def stiffness_tensor(self, rotation: Array) -> Array:
-        """Compute the stiffness (..., 6, 6) [Pa] of a crystal in given axes: the columns of `rotation` (..., 3, 3) in the stage.
+        """Compute the stiffness (..., 6, 6) [Pa] of a crystal in the axes that the columns of `rotation` (..., 3, 3) give in the stage.
 
         The order is xx, yy, zz, yz, xz, xy, with engineering shear strains. With the crystal's axes q_a (Nye 1957):
 
@@ -204,7 +204,7 @@ class Material(Description):
     def turned(self, rotation: Array) -> Material:
         """Return the material for another stage, with its crystal directions rotated.
 
-        The columns of `rotation` (..., 3, 3) are the axes of this stage in the other stage.
+        The columns of `rotation` (..., 3, 3) are the axes of the present stage, in the axes of the other stage.
 
         >>> silicon = Material(None, None, 2329.0, c11=166e9, c12=64e9, c44=80e9)
         >>> silicon.turned(np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])).crystal
@@ -238,7 +238,7 @@ _KEPT = ("density", "yield_stress", "expansion", "loss_factor", "source", "fatig
 
 @dataclass(frozen=True, eq=False)
 class Oriented(Material):
-    """Cubic crystal in the axes of a part: `young` along x, `poisson` of a plate, `shear_modulus` of plane xz, `other_shear` of xy."""
+    """Cubic crystal in the axes of a part: `young` along x, `poisson` for a plate, `shear_modulus` in plane xz and `other_shear` in xy."""
 
     other_shear: Annotated[Number, MODULUS, POSITIVE] = np.nan
     tensor: Array = field(default_factory=lambda: np.full((6, 6), np.nan))

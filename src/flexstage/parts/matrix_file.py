@@ -33,8 +33,7 @@ _CHUNK = 2**20
 def read_matrices(part: Superelement) -> tuple[MatrixLike, ...]:
     """Read stiffness, mass and optional damping from a superelement's files: real matrices of any shape, in the files' units.
 
-    Raises `DesignError` for a file that is unspecified, missing, damaged, too large or has a wrong digest, for an unknown array, and for
-    complex numbers.
+    Raises `DesignError` for an unspecified, missing, damaged or too large file, a wrong digest, an unknown array, and complex numbers.
     """
     require(_statement_findings(part))
     for path in map(Path, part.files):

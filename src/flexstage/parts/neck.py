@@ -19,7 +19,7 @@ class Neck(Profiled):
 
     Without `width` the neck is round: `thickness` is its smallest diameter, and a circular profile gives a toroid. A rectangular neck has
     `thickness` along y and `width` along z; the profile increases both towards the ends. Ideal degrees of freedom: the three rotations.
-    Torsion is ideally free, because locked torsion would transmit a couple; other models use its stiffness.
+    Torsion is ideally free, because locked torsion would transmit a couple. The elastic models use the torsional stiffness.
     """
 
     kind: ClassVar[str] = "neck"

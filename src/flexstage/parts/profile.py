@@ -27,7 +27,7 @@ class Circular(Description):
 
 @dataclass(frozen=True, eq=False)
 class Elliptic(Description):
-    """Elliptic profile of two half-ellipse cuts: x = a sin p, w = c (1 - cos p), with `along` = a, `across` = c; c -> 0 is a leaf."""
+    """Elliptic profile of two half-ellipse cuts: x = a sin p, w = c (1 - cos p), with `along` = a and `across` = c (c = 0: a leaf)."""
 
     along: Annotated[Number, LENGTH, POSITIVE]
     across: Annotated[Number, LENGTH, POSITIVE]
@@ -51,7 +51,8 @@ class Straight(Description):
 class Contour(Description):
     """Profile specified by the height of its cuts as a function of the station, symmetric about the middle.
 
-    `TOLD_BY` is the key and the name that identify it in files. At both ends, the profile meets the adjacent blocks at an angle.
+    `TOLD_BY` contains the key and the name that identify the profile's class in files. At both ends, the profile meets the adjacent blocks
+    at an angle.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]]
@@ -129,7 +130,7 @@ class Hyperbolic(_Conic):
     """Hyperbolic profile, w = (q^2 + c (c + 2 q) (x/a)^2)^1/2 - q: `along` = a is half the length, `across` = c, `semi_axis` = q.
 
     The semi-axis is across the hinge. If q is half the thickness, both cuts are branches of one hyperbola (Lobontiu et al., Precision
-    Engineering 26, 2002). A large q gives a parabola, a small q straight flanks with a corner.
+    Engineering 26, 2002). A large q gives a parabola; a small q gives straight flanks with a corner.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "hyperbolic")
@@ -139,7 +140,7 @@ class Hyperbolic(_Conic):
 
     @property
     def steepness(self) -> Number:
-        """Square of a over the semi-axis along the hinge: c (c + 2 q) / q^2."""
+        """Squared ratio of a to the semi-axis along the hinge: c (c + 2 q) / q^2."""
         share = self.across / self.semi_axis
         return share * (share + 2.0)
 
@@ -158,8 +159,8 @@ class Hyperbolic(_Conic):
 class Power(_Conic):
     """Power-function profile, w = c |x/a|^n: `along` = a is half the length, `across` = c, `exponent` = n.
 
-    n = 1 gives straight flanks with a corner, n = 2 a parabola, a large n a leaf. Reference: Linss, Henning & Zentner (Modeling and design
-    of flexure hinge-based compliant mechanisms, in Kinematics, 2019).
+    n = 1 gives straight flanks with a corner, n = 2 gives a parabola, and a large n gives nearly a leaf. Reference: Linss, Henning &
+    Zentner (Modeling and design of flexure hinge-based compliant mechanisms, in Kinematics, 2019).
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "power")

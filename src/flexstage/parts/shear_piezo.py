@@ -35,8 +35,9 @@ class ShearPiezo(ChargedActuator):
     """Shear piezo actuator: a block of plates along x. The stroke u moves its second face along y relative to the first face.
 
     The block has `length` L along x, `width` along y and `depth` along z. `stiffness` k is the stiffness along y with parallel faces,
-    `axial_stiffness` k_a the stiffness along x. They determine the modulus E = k_a L / A and the shear compliance 1/k - L^3 / (12 E I_z).
-    The other stiffness terms are as for a uniform block. The blocked force is stroke x stiffness. Half of `mass` is at each face.
+    `axial_stiffness` k_a the stiffness along x. `axial_stiffness` and `stiffness` determine the modulus E = k_a L / A and the shear
+    compliance 1/k - L^3 / (12 E I_z). The other stiffness terms are those of a uniform block. The blocked force is stroke x stiffness. Half
+    of `mass` is at each face.
     """
 
     kind: ClassVar[str] = "shear_piezo"
@@ -70,7 +71,7 @@ class ShearPiezo(ChargedActuator):
 
     @property
     def is_axisymmetric(self) -> bool:
-        """False: its stroke is across its axis."""
+        """False: the stroke is perpendicular to the axis."""
         return False
 
     @property
@@ -100,12 +101,12 @@ class ShearPiezo(ChargedActuator):
         return diagonal[..., None] * np.eye(6)
 
     def stated(self, material: Material | None = None) -> Stated:  # noqa: ARG002
-        """Return the inverse of the compliance, and half of the mass at each face."""
+        """Return the stiffness as the inverse of the compliance, and half of the mass at each face."""
         return Stated(np.linalg.inv(self.compliance), point_masses(0.5 * self.mass, 0.5 * self.mass))
 
     @property
     def faults(self) -> Iterator[Finding]:
-        """Errors: a bending compliance above the total compliance."""
+        """Error if the bending compliance along y exceeds the total compliance."""
         if np.any(np.real(self.shear_compliance) <= 0.0):
             what = "too large for a block of these dimensions and axial stiffness: its bending compliance exceeds the total compliance"
             yield Finding("stiffness", what, "Check length, width and both stiffnesses")

@@ -53,7 +53,8 @@ def logarithm(rotation: Array) -> Array:
 def rotation_vector(rotation: Array) -> Array:
     """Compute the rotation vector (3,) [rad] of one real rotation matrix (3, 3), for every angle up to pi.
 
-    Uses the unit quaternion, largest component first (Shepperd, J. Guid. Control 1, 223, 1978): exact where `logarithm` is singular.
+    The rotation is first converted to a unit quaternion, largest component first (Shepperd, J. Guid. Control 1, 223, 1978). The result is
+    exact where `logarithm` is singular.
 
     >>> (rotation_vector(np.diag([-1.0, 1.0, -1.0])) / np.pi).tolist()
     [0.0, 1.0, 0.0]
@@ -118,8 +119,8 @@ GAUSS_THREE: Array = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])
 def magnus(step: Array, first: Array, middle: Array, last: Array) -> Array:
     """Compute the rotation vector W (..., 3) [rad] of one integration step of R' = R [k]x: R becomes R exp(W).
 
-    `step` (...) is the step length; k (..., 3) is given at the three Gauss points `first`, `middle`, `last`. Order 6 (Blanes, Casas, Oteo
-    and Ros, Physics Reports 470, 2009, 5.2; for their Y' = A Y, the signs of all brackets are opposite).
+    `step` (...) is the step length; k (..., 3) is given at the three Gauss points `first`, `middle`, `last`. The method is of order 6
+    (Blanes, Casas, Oteo and Ros, Physics Reports 470, 2009, 5.2; for their Y' = A Y, the signs of all brackets are opposite).
 
     >>> magnus(np.array(2.0), *np.tile([0.1, 0.0, 0.3], (3, 1))).round(12).tolist()
     [0.2, 0.0, 0.6]

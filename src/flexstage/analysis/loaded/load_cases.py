@@ -46,7 +46,7 @@ _ENDS = 8
 
 @dataclass(frozen=True, eq=False)
 class LoadCase(CheckedFields):
-    """Load case: the load that `grows` at an operating point, as loads by name (`weight` and `forces` included).
+    """Load case: the load that `grows` at an operating point, as loads by name (including weight and specified forces).
 
     `stays` contains the constant loads. Coordinates and strokes in `at` are displacements from the static equilibrium. A displaced
     coordinate remains free under the force that displaces it, unless the coordinate is `locked`. `gravity` is the fraction of the weight.

@@ -60,7 +60,7 @@ class Variable:
         return self.read(())
 
     def samples(self, axis: int) -> Samples:
-        """Return samples along an axis, read on demand, as floats; the other axes are the channels, in order."""
+        """Return samples along an axis as floats. They are read on demand; their channels are the other axes, in order."""
 
         def read(start: int, stop: int) -> Array:
             spans = [(0, length) for length in self.shape]
@@ -82,7 +82,7 @@ def held_array(name: str, values: Array) -> Variable:
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """Contents of a file, named `where` in messages: the arrays `variables`, and by name, in `said`, strings, lists of strings and numbers.
+    """Contents of a file, named `where` in messages: the arrays `variables`, and `said`, which maps names to strings, lists or numbers.
 
     `objects` maps names to classes of objects that only the program that wrote the file can read.
     """

@@ -33,11 +33,11 @@ def is_gcs(start: bytes, _suffix: str) -> bool:
 def read_gcs(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     r"""Read the record of a GCS array: NAME0, NAME1, ... name its columns, and SAMPLE_TIME [s] is the time step of its lines.
 
-    The header (`# KEY = value` up to `# END_HEADER`) follows PI's general command set, as read by PI's library (PIPython,
-    `getgcsheader`). SEPARATOR is the code of the column separator, DIM the number of columns, NDATA the number of lines. The header has no
-    units: the user specifies them. Commanded and control values are inputs, positions and sensors are outputs. Other columns are
-    classified by their names. Raises `DesignError` for a header without sampling time (if no rate is specified), for a header that
-    contradicts its columns, and for a truncated file (accepted with `FaultTolerance.TRUNCATED`).
+    The header (`# KEY = value` up to `# END_HEADER`) follows PI's general command set, as read by PI's library (PIPython, `getgcsheader`).
+    SEPARATOR is the code of the column separator, DIM the number of columns, NDATA the number of lines. The header has no units: the user
+    specifies them. Commanded and control values are inputs, positions and sensors are outputs. Columns of other quantities are classified
+    by their names. Raises `DesignError` for a header without sampling time (if no rate is specified) and for a header that contradicts its
+    columns. A truncated file is accepted only with `FaultTolerance.TRUNCATED`.
 
     >>> import tempfile
     >>> head = "# SEPARATOR = 32\n# DIM = 2\n# SAMPLE_TIME = 0.5\n# NDATA = 2\n# NAME0 = Target Position of axis 1\n"

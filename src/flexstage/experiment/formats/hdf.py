@@ -24,7 +24,7 @@ _FRAME = 1_000_000
 
 
 def stored_array(file: Hdf, array: HdfArray, *, name: str = "", column: str = "", turned: bool = False) -> Variable:
-    """Wrap an array in an HDF5 file, or one `column` of a table, as a variable; `turned` reverses the axes, as MAT files require."""
+    """Wrap an array in an HDF5 file, or one `column` of a table, as a variable; `turned` reverses the order of the axes (for MAT files)."""
 
     def read(spans: Spans) -> Array:
         values = file.read(array.name, tuple(reversed(spans)) if turned else spans, column)
@@ -42,7 +42,7 @@ def read_hdf(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     """Read an HDF5 file as arrays by name, which stay in the file. Columns of tables are separate arrays.
 
     Lists of names, units and roles are attributes of the array, or separate arrays. Single values may be attributes of the file. Raises
-    `DesignError` for an invalid, truncated or damaged file, and for the errors of `read_arrays`.
+    `DesignError` for an invalid, truncated or damaged file, and whenever `read_arrays` raises it.
 
     >>> import h5py, tempfile
     >>> from flexstage.experiment.records.options import Arrays
@@ -67,10 +67,10 @@ def _variables(file: Hdf, array: HdfArray) -> list[Variable]:
 
 
 def write_hdf(path: str | os.PathLike[str], what: Record | Responses) -> None:
-    """Write an HDF5 file: the array `samples` (n, channels), or `frequencies` and `responses` (f, outputs, inputs) with `coherence`.
+    """Write an HDF5 file: a record as the array `samples` (n, channels), responses as `frequencies` and `responses` (f, outputs, inputs).
 
-    Names, units and roles are attributes. Numbers keep all bits; a record is written block by block. Raises `DesignError` if the file
-    cannot be written.
+    `coherence` is a separate array. Names, units and roles are attributes. Numbers are written in full precision, and a record is written
+    block by block. Raises `DesignError` if the file cannot be written.
 
     >>> import h5py, tempfile
     >>> from flexstage.experiment.records.record import Channel, in_memory

@@ -38,8 +38,8 @@ def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     """Read a MAT file as arrays by name. Members of structures have paths as names (`test.u`). Lists of strings are cells.
 
     MATLAB objects (`timeseries`, `table`, `idfrd`) cannot be read outside MATLAB: the error lists them, with a hint on export. Arrays of
-    version 7.3 stay in the file, others are read at once. Raises `DesignError` for an invalid or truncated file, and for the errors of
-    `read_arrays`.
+    version 7.3 stay in the file; arrays of older versions are read at once. Raises `DesignError` for an invalid or truncated file, and
+    whenever `read_arrays` raises it.
 
     >>> import scipy.io, tempfile
     >>> from flexstage.experiment.records.options import Arrays
@@ -95,8 +95,8 @@ def _letter(code: float) -> str:
 def write_mat(path: str | os.PathLike[str], what: Record | Responses) -> None:
     """Write a MAT file of version 5: a record's `samples` (n, channels), `rate`, `start`, `names`, `units`, `roles`; or responses.
 
-    The file is assembled in memory and has at most two gigabytes. Numbers keep all bits. Raises `DesignError` for a larger record, and if
-    the file cannot be written.
+    The file is assembled in memory and has at most two gigabytes. Numbers are written in full precision. Raises `DesignError` for a record
+    above two gigabytes, and if the file cannot be written.
 
     >>> import scipy.io, tempfile
     >>> from flexstage.experiment.records.record import Channel, in_memory

@@ -34,7 +34,7 @@ class Sweep:
 
 
 def sweeps(low: float, high: float) -> list[Sweep]:
-    """Divide `low` to `high` in Hz into slightly overlapping bands; each reaches up to three times its lower end.
+    """Divide `low` to `high` in Hz into slightly overlapping bands; the upper end of a band is at most three times its lower end.
 
     >>> [(round(band.low), round(band.first), round(band.last), round(band.high)) for band in sweeps(10.0, 200.0)]
     [(10, 10, 27, 31), (24, 27, 74, 84), (65, 74, 200, 200)]
@@ -49,8 +49,8 @@ def extents(poles: Array, low: float, high: float, *, resolution: Array | float 
     """Divide poles (k,) in Hz, ascending, into bands for joint fits.
 
     Two successive poles share a band if they are closer than `together` times the sum of their half-widths. A half-width is -Re(pole), or
-    the lines' `resolution` in Hz if this is larger. A band extends 24 half-widths beyond its outer poles, within `low` and `high`. It ends
-    before the next group, at a limit that divides the gap in proportion to the half-widths.
+    the lines' `resolution` in Hz if this is larger. A band extends 24 half-widths beyond its outer poles, within `low` and `high`. A band
+    ends before the next group of poles, at a limit that divides the gap in proportion to the half-widths.
 
     >>> found = extents(np.array([-1 + 100j, -1 + 101j, -1 + 200j]), 1.0, 300.0)
     >>> [(round(band.low), round(band.high), band.members) for band in found]

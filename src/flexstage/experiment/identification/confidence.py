@@ -43,10 +43,10 @@ class Deviations:
 def misfits(band: Band, modal: Modal) -> Array:
     """Compute the residual of the fit near each mode (k,) relative to the band's noise; 1 if not significant.
 
-    With noise only, the residual has the same level everywhere, apart from the degrees of freedom that the mode uses. Outputs with coherent
-    noise count once. A residual is significant if noise causes it with a probability below 1/1000: the mode is then nonlinear, not
-    viscously damped, or not isolated. Neighbourhoods of 1.5 and of 4 half-widths are tested. The residual of a mode that varies or has
-    unrecorded excitation is largest in the first neighbourhood.
+    With noise only, the residual has the same level everywhere, apart from the degrees of freedom that the mode uses. Outputs whose noise
+    is coherent count as one output. A residual is significant if noise causes it with a probability below 1/1000: the mode is then
+    nonlinear, not viscously damped, or not isolated. Neighbourhoods of 1.5 and of 4 half-widths are tested. A mode that varies, or has
+    unrecorded excitation, has the largest residual in the neighbourhood of 1.5 half-widths.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit, noise
@@ -93,8 +93,8 @@ def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None)
     `inflation` multiplies the variances. With the gradient's covariance `scatter`, S, the covariance is I^-1 S I^-1, valid also for noise
     correlated between outputs (White 1982).
 
-    The residual is analytic in its complex parameters, so real and imaginary parts each have half of this covariance. The common scale
-    factor of a shape and its participation is arbitrary. It is eliminated by fixing the largest participation.
+    The residual is analytic in its complex parameters, so real and imaginary parts each have half of the covariance. The common scale
+    factor of a shape and its participation is arbitrary; fixing the largest participation eliminates it.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit
@@ -119,9 +119,9 @@ def deviations(found: Fit, inflation: float = 1.0, scatter: Array | None = None)
 def significance(band: Band, found: Fit, limit: float) -> Array:
     """Compute the test statistic (k,) for the presence of each mode: chi-squared with `freedoms` degrees of freedom if the mode is absent.
 
-    It is Wald's statistic 2 phi^H C^-1 phi of the mode's shape phi with covariance C. If Wald's statistic is below fifty times `limit`, the
-    likelihood ratio replaces it (Wilks 1938): twice the decrease of the log-likelihood when the mode is removed and the others are fitted
-    again. A factor of at most 1 corrects the ratio for noise correlated between outputs (White 1982).
+    The test statistic is Wald's, 2 phi^H C^-1 phi, for the mode's shape phi with covariance C. If Wald's statistic is below fifty times
+    `limit`, the likelihood ratio replaces it (Wilks 1938): twice the decrease of the log-likelihood when the mode is removed and the others
+    are fitted again. A factor of at most 1 corrects the ratio for noise correlated between outputs (White 1982).
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -145,11 +145,12 @@ def significance(band: Band, found: Fit, limit: float) -> Array:
 
 
 def drive_strength(band: Band, found: Fit, once_in: float) -> Array:
-    """Compute the test statistic (k,) of each mode's excitation, relative to the level that noise reaches with probability `once_in`.
+    """Compute the test statistic (k,) of each mode's excitation, divided by the level that noise exceeds with probability `once_in`.
 
-    It is Wald's statistic of the mode's participation in the inputs. The largest component of its shape and the participations of
-    transients are fixed. If the inputs equal transients near the mode, as for an impact at the start of a record, the transients count as
-    inputs. Two modes that can replace each other both fail the test. Responses without transients are not tested: the result is infinite.
+    The test statistic is Wald's for the mode's participation in the inputs. The largest component of the mode's shape and the
+    participations of transients are fixed. Transients count as inputs if the inputs cannot be distinguished from them near the mode, as for
+    an impact at the start of a record. Two modes that can replace each other both fail the test. Responses without transients are not
+    tested: the result is infinite.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> from flexstage.experiment.identification.likelihood import fit

@@ -66,7 +66,7 @@ class Evidence:
     unstated: bool = False
 
     def apart(self, frequencies: Array) -> Array:
-        """Return the spacing of lines in Hz near `frequencies` in Hz: `resolution`, or the local spacing of uneven lines."""
+        """Return the spacing of lines in Hz near `frequencies` in Hz: `resolution`, or the local spacing if lines are uneven."""
         lines = self.responses.frequencies
         if not self.stored or is_even(lines):
             return np.full(np.shape(frequencies), self.resolution)
@@ -87,7 +87,8 @@ class Evidence:
 def evidence(what: Record | Responses | Sequence[Record], segments: Segments | None, known: Sequence[Spectra] = ()) -> Evidence:
     """Extract the identification data of a record, of several records of one stage, or of an analyser's responses.
 
-    `known` are spectra of the records, one for each. They are used if their segments match and no tone was removed from the record.
+    `known` are spectra of the records, one for each. Known spectra are used if their segments match and no tone was removed from the
+    record.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> round(evidence(one_mode_record(), None).band[1], 2)
@@ -191,8 +192,8 @@ def _scale_lines(lines: Lines, input_scale: Array, output_scale: Array) -> Lines
 def choose_segments(records: Sequence[Record], wanted: float = _SEGMENTS) -> Segments:
     """Choose the segments of records for spectra: about `wanted` segments, and at least three for each input.
 
-    Long segments resolve sharp resonances; many segments average the noise. A single sweep excites each frequency only once, so averages
-    are impossible. Its segment is the whole record, without a window.
+    Long segments resolve sharp resonances; many segments average the noise. A single sweep excites each frequency only once: averaging is
+    impossible. The segment for a single sweep is the whole record (at most 2^20 samples), without a window.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> choose_segments([one_mode_record(seconds=48.0)]).seconds
@@ -315,7 +316,7 @@ def _response_findings(known: Responses, steps: Array) -> list[Finding]:
 
 
 def is_even(frequencies: Array) -> bool:
-    """Return whether lines are evenly spaced, to a thousandth of their spacing; stepped and swept sines are not.
+    """Return whether lines are evenly spaced, to a thousandth of their spacing; the lines of stepped and swept sines are not.
 
     >>> is_even(np.arange(5.0)), is_even(np.geomspace(1.0, 9.0, 5))
     (True, False)

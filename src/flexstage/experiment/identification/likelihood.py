@@ -163,7 +163,7 @@ def with_shapes(band: Band, poles: Array, participation: Array) -> Modal:
 
 
 def residual_power(band: Band, modal: Modal) -> Array:
-    """Compute the powers and cross powers (p, p, c) of the residuals in every cell; the first output is conjugated.
+    """Compute the powers and cross powers (p, p, c) of the residuals in every cell. The first index is that of the conjugated output.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> band, start = one_mode_band()
@@ -181,7 +181,7 @@ def residual_power(band: Band, modal: Modal) -> Array:
 
 
 def explained_share(band: Band, modal: Modal) -> Iterator[tuple[Array, Array]]:
-    """Compute the outputs that modes and background explain, as factors (p, c, 8, n) of Z (see `Cells`), block by block.
+    """Compute the outputs that modes and background explain, block by block, as factors (p, c, 8, n) of the products Z of `Cells`.
 
     Yields the indices of the block's cells and the factors in these cells.
 
@@ -213,9 +213,9 @@ def noise(band: Band, modal: Modal) -> Array:
 def silence(cells: Cells, rounding: Array | float) -> Array:
     """Compute the lower bound of the noise variance (p, c) per line.
 
-    Cells represent responses to six digits. The relative error e of this representation is common to all N lines, so averaging does not
-    reduce it. The lower bound, N e^2 times the power, prevents false modes and too narrow intervals. `rounding` (p,) is the variance caused
-    by rounding of an output's samples, without other noise.
+    Cells represent responses to six digits. The relative error e of the cells is common to all N lines, so averaging does not reduce it.
+    The lower bound, N e^2 times the power, prevents false modes and too narrow intervals. `rounding` (p,) is the variance caused by
+    rounding of an output's samples, without other noise.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> cells = one_mode_band()[0].cells
@@ -228,9 +228,9 @@ def silence(cells: Cells, rounding: Array | float) -> Array:
 def scatter(band: Band, modal: Modal) -> Array:
     """Estimate the covariance (q, q) of the likelihood's gradient for noise correlated between outputs.
 
-    It is the middle matrix of the sandwich estimator (White 1982), for the parameters of `Fit.information`. For noise independent between
-    outputs it tends to the information. The noise is the residual averaged over 25 lines, not over 100, because the residual of an
-    unrecorded force follows the resonances. `silence` is its lower bound.
+    The result is the middle matrix of the sandwich estimator (White 1982), for the parameters of `Fit.information`. The result approaches
+    the Fisher information if noise is independent between outputs. The noise is the residual averaged over only 25 lines, because the
+    residual of an unrecorded force follows the resonances. The noise variance is at least `silence`.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> found = fit(*one_mode_band())
@@ -324,9 +324,9 @@ def _pool_cells(power: Array, cells: Cells, least: int = _NOISE_LINES) -> Array:
 
 
 def background(cells: Cells, outside: Array, degree: int = 3) -> Array:
-    """Construct an orthonormal basis (c, b, 8) of polynomials up to `degree` and of the terms 1/(j f - p) of the poles `outside` [Hz].
+    """Construct an orthonormal basis (c, b, 8) for polynomials up to `degree` and for the terms 1/(j f - p) with the poles `outside` [Hz].
 
-    Basis functions smaller than 1e-6, the precision of cells, are omitted.
+    Basis functions below 1e-6, the relative precision of cells, are omitted.
 
     >>> from flexstage.experiment.example import one_mode_band
     >>> background(one_mode_band()[0].cells, np.zeros(0), 1).shape[1:]

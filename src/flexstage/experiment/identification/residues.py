@@ -25,10 +25,10 @@ def modal_sum(frequencies: Array, poles: Array, shapes: Array, participation: Ar
 
 
 def remainder(frequencies: Array, rest: Array, weights: Array) -> Array:
-    """Fit the lower and upper residual (2, p, m): rest (f, p, m) = lower / w^2 + upper, with weights (f, p) and frequencies above 0 [Hz].
+    """Fit residual terms (2, p, m): rest (f, p, m) = lower / w^2 + upper. The weights are (f, p), the frequencies are above 0 [Hz].
 
-    The residuals are the mass line of modes below the band and the stiffness line of modes above the band. They are real, because these
-    modes have little damping in the band.
+    The residual terms are the mass line of modes below the band and the stiffness line of modes above the band. Both residual terms are
+    real, because these modes have little damping in the band.
 
     >>> lines = np.array([1.0, 2.0, 3.0])
     >>> remainder(lines, 5.0 + 1.0 / (2 * np.pi * lines[:, None, None]) ** 2, np.ones((3, 1))).round(9).ravel().tolist()

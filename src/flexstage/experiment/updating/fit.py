@@ -26,8 +26,8 @@ class Problem(Generic[_State]):
     """Least-squares problem, defined by three functions.
 
     `state` computes the model's state at parameters (P,), starting from the previous state. `residuals` (n,) of a state are (data -
-    model)/deviation, with the standard deviations of the data. `slopes` (n, P) are the model's derivatives by the parameters, divided by
-    the same standard deviations. The prior covariance of the parameters is the identity.
+    model)/deviation, where deviation is the standard deviation of the data. `slopes` (n, P) are the derivatives of the model with respect
+    to the parameters, divided by the same standard deviations. The prior covariance of the parameters is the identity.
     """
 
     state: Callable[[Array, _State], _State]
@@ -37,7 +37,7 @@ class Problem(Generic[_State]):
 
 @dataclass(frozen=True, eq=False)
 class Fitted(Generic[_State]):
-    """Solution: most probable parameters (P,), state with its residuals (n,) and slopes (n, P), and number of steps."""
+    """Solution: most probable parameters (P,), model state, residuals (n,) and slopes (n, P) of this state, and number of steps."""
 
     parameters: Array
     state: _State

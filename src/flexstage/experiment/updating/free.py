@@ -23,7 +23,7 @@ class Prior(CheckedFields):
 
     `prior` applies to every free parameter, unless `priors` has a value for its address. `model_error` is the error of the model's
     frequencies that remains with the best parameters. `gain_error` is the error of static gains, due to the model and to the scales of
-    gauges and drives. With `None`, static gains are not used.
+    gauges and drives. If `gain_error` is `None`, static gains are not used.
     """
 
     prior: float = 0.1

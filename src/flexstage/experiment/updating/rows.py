@@ -25,9 +25,9 @@ from flexstage.models.lumped import lumped
 class ModeRow:
     """Row of data: one mode, or a group of repeated modes, of the model and of the test.
 
-    `modes` are the model's modes, counted from 0 over all modes of the model. `frequency` [Hz] is sqrt(mean of f^2) over the `measured`
-    modes, the square root of the mean eigenvalue. This mean is symmetric in repeated modes and therefore smooth in every parameter.
-    `deviation` is the relative standard deviation of the frequency.
+    `modes` are the model's modes, counted from 0 over all modes of the model. `frequency` [Hz] is the square root of the mean of f^2 over
+    the `measured` modes, thus of the mean eigenvalue. The mean eigenvalue is symmetric in repeated modes and therefore smooth in every
+    parameter. `deviation` is the relative standard deviation of the frequency.
     """
 
     name: str
@@ -89,7 +89,7 @@ def start_design(mechanism: Mechanism, rows: tuple[ModeRow, ...]) -> Design:
 
 
 def follow_modes(before: Design, mechanism: Mechanism) -> Design:
-    """Solve the modes of a changed `mechanism`, and assign to each row the modes most similar to its modes in the design `before`.
+    """Solve the modes of a changed `mechanism`. Each row gets the modes that are most similar to its modes in the design `before`.
 
     Similarity is measured with the mass matrix M of the previous design; all rows are assigned together. Modes whose frequencies cross
     therefore keep their rows.

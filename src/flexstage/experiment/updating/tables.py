@@ -21,7 +21,7 @@ def update_tables(found: Updated) -> Iterator[Table | None]:
 
 
 def residual_table(found: Updated) -> Table | None:
-    """Tabulate measured data with their values in the model before and after: all frequencies, and the gains with the largest misfit."""
+    """Tabulate measured data with values of the initial and the updated model: all frequencies, and the gains with the largest misfit."""
     modes = [each for each in found.residuals if each.unit == "Hz"]
     gains = sorted((each for each in found.residuals if each.unit != "Hz"), key=lambda each: -abs(each.misfit_before))
     before, after = number(found.chi_square_before, 3), number(found.chi_square, 3)

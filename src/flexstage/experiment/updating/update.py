@@ -68,9 +68,9 @@ _REMAINING = Heading("remaining variance", digits=2, unit="%")
 
 @dataclass(frozen=True)
 class Residual:
-    """Frequency [Hz] or static gain: measured, and by the model before and after the update, with its relative standard deviation.
+    """Frequency [Hz] or static gain: measured value with relative standard deviation, and the model's values before and after the update.
 
-    The standard deviation is relative to `scale`: the frequency itself, or the largest gain of the same actuator.
+    The standard deviation is relative to `scale`: the measured frequency, or the largest measured gain of the same actuator.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -89,18 +89,18 @@ class Residual:
 
     @property
     def misfit_before(self) -> Annotated[float, VIEW, Heading(digits=3)]:
-        """Measured value minus that of the initial model, in standard deviations."""
+        """Measured value minus value of the initial model, in standard deviations."""
         return (self.measured - self.before) / (self.scale * self.deviation)
 
     @property
     def misfit_after(self) -> Annotated[float, VIEW, Heading(digits=3, mark=Graded(2.0, 3.0))]:
-        """Measured value minus that of the updated model, in standard deviations."""
+        """Measured value minus value of the updated model, in standard deviations."""
         return (self.measured - self.after) / (self.scale * self.deviation)
 
 
 @dataclass(frozen=True)
 class UpdatedNumber:
-    """Updated parameter before and after, in SI; `change` is relative, deviations are standard deviations of the logarithm.
+    """Values of an updated parameter before and after, in SI. `change` is relative; deviations are standard deviations of the logarithm.
 
     `prior_variance_left` is the fraction of the prior variance that remains; `identifiability` and `verdict` follow from it.
     """
@@ -122,7 +122,7 @@ class UpdatedNumber:
 
     @property
     def change(self) -> Annotated[float, VIEW, RATIO, Heading(digits=3, unit="%")]:
-        """Relative change: value after over value before, minus one."""
+        """Relative change: value after the update divided by value before, minus one."""
         return self.after / self.before - 1.0
 
     @property
@@ -152,7 +152,7 @@ class Combination:
 
     @property
     def combination(self) -> str:
-        """Components above 0.05 as text, for tables."""
+        """String that lists the components above 0.05, for tables."""
         return ", ".join(f"{part:+.2f} {name}" for name, part in self.direction.items() if abs(part) > 0.05)
 
     @property
@@ -163,14 +163,14 @@ class Combination:
 
 @dataclass(frozen=True, eq=False)
 class Updated(InNotebook):
-    """Result of an update: parameters before and after a test, in SI, with standard deviations of their logarithms.
+    """Result of an update: parameters before and after the update, in SI, with standard deviations of their logarithms.
 
-    If small, the standard deviation of a logarithm equals the relative standard deviation of the value. `addresses` (P) are full addresses.
+    A small standard deviation of a logarithm equals the relative standard deviation of the value. `addresses` (P) are full addresses.
     `prior` (P,) are prior standard deviations and `covariance` (P, P) is the posterior covariance of the logarithms. The columns of
-    `directions` (P, P) are parameter combinations in prior standard deviations, best identified first. With the combination's singular
-    value s in `singular` (P,), 1/(1 + s^2) of its prior variance remains. `chi_square` is the sum over data and priors at the result;
-    `freedoms` is the number of data. `chi_square_before` is the sum over data before the update. `mechanism` is the updated description.
-    `data_warnings` lists unreliable results.
+    `directions` (P, P) are combinations of parameters, in units of prior standard deviations, best identified first. Of the prior variance
+    of a combination with the singular value s in `singular` (P,), the fraction 1/(1 + s^2) remains. `chi_square` is the sum of squared
+    residuals of data and priors after the update; `freedoms` is the number of data. `chi_square_before` is the sum for the data before the
+    update. `mechanism` is the updated description. `data_warnings` lists the reasons why results may be unreliable.
     """
 
     addresses: Annotated[tuple[str, ...], INNER]
@@ -219,7 +219,7 @@ class Updated(InNotebook):
 
     @property
     def changes(self) -> Array:
-        """Relative changes (P,): values after over values before, minus one."""
+        """Relative changes (P,): values after the update divided by values before, minus one."""
         return self.after / self.before - 1.0
 
     @property
@@ -264,7 +264,7 @@ class Updated(InNotebook):
 
     @property
     def probability(self) -> Annotated[float, VIEW]:
-        """Probability of a chi-squared value this large or larger, if standard deviations, priors and model are correct."""
+        """Probability of this or a larger value of chi-squared, if standard deviations, priors and model are correct."""
         return float(scipy.special.chdtrc(self.freedoms, self.chi_square))
 
     def _verdict(self, index: int, grade: Identifiability) -> str:
@@ -287,9 +287,9 @@ def update(mechanism: Mechanism, experiment: Identified, names: Sequence[str], k
     Gauss-Newton steps, with exact derivatives by complex step, minimise sum ((d - g(x))/sigma)^2 + sum (x/sigma_p)^2. The posterior
     covariance is (J^T W J + S^-1)^-1.
 
-    The data d are ln f of the modes, paired as in `compare`; repeated modes count by their mean eigenvalue. Their sigma includes the
-    identified deviations and the model error. With a `gain_error`, static gains are also data. Intervals are valid if frequencies are
-    nearly linear in x within the intervals.
+    The data d are ln f of the modes, paired as in `compare`; for repeated modes, f is the root of their mean f^2. The standard deviations
+    sigma of the data include the identified standard deviations and the model error. With a `gain_error`, static gains are also data.
+    Intervals are valid if frequencies are nearly linear in the logarithms x within the intervals.
 
     Raises `DesignError` for parameters that are unknown, ambiguous, zero or without effect, for fewer data than parameters, for a record
     without the stage's gauges, and if the iteration does not converge.

@@ -26,8 +26,8 @@ class Place:
     """Resolved address of a value.
 
     Without `owners`, `path` is the full path from the root of the description. For an override, `owners` are the units and instances with
-    overrides, in order of increasing precedence (`horizontal/front`, `B2/front`). The `path` then begins at the link (`in_link`, e.g.
-    `at.x`) or at its part. For a misalignment (`shift.x`), `owners` contains the instance or gauge.
+    overrides, in order of increasing precedence (`horizontal/front`, `B2/front`). With `owners`, the `path` begins at the link (`in_link`,
+    for instance `at.x`) or at the link's part. For a misalignment (`shift.x`), `owners` contains the instance or gauge.
     """
 
     owners: tuple[str, ...]
@@ -49,7 +49,7 @@ class Place:
 
     @property
     def number(self) -> str:
-        """Name of the named number; empty for another value."""
+        """Name of the named number; empty if the address is not of a named number."""
         return self.path[1] if not self.owners and self.path[:1] == (NUMBERS,) and len(self.path) > 1 else ""
 
 

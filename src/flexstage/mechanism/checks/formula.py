@@ -19,7 +19,7 @@ _ALIKE = 1e-9
 
 
 def formula_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors of named numbers and formulas in a description written in Python; for files, the file reader makes these checks.
+    """Return errors of named numbers and formulas in a description written in Python. For design files, the file reader makes these checks.
 
     >>> print(*formula_findings(Mechanism("", numbers={"arm": NamedNumber(0.026, "ells")})))
     numbers.arm: "ells" is not a known unit. Use a unit, e.g. mm, or 1 for a ratio.

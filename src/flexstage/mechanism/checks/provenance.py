@@ -18,7 +18,7 @@ _WORDS = (STATED, DERIVED, ASSUMED)
 
 
 def override_findings(mechanism: Mechanism) -> Iterator[Finding]:
-    """Return errors of overrides: each must address a link's value, have its kind, and be unique.
+    """Return errors of overrides: an override must address a link's value, have a value of the same kind, and be unique.
 
     >>> print(*override_findings(Mechanism("", overrides={"parts.neck.thickness": 0.001})))
     overrides."parts.neck.thickness": unknown name "neck". None is defined.

@@ -118,7 +118,7 @@ def contact_findings(mechanism: Mechanism) -> tuple[Finding, ...]:
     """Return errors of the outlines of a stage.
 
     Errors are link ends that miss the faces of their bodies, disconnected bodies, overlaps, and gauges that miss their targets. A stage
-    without outlines has none. Imported shapes are listed as unchecked.
+    without outlines has no outline errors. Imported shapes are listed as unchecked.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> contact_findings(parallelogram())
@@ -149,11 +149,11 @@ class Gap:
 def gaps(mechanism: Mechanism, within: float, moved: Mapping[str, Array] = MappingProxyType({})) -> tuple[Gap, ...]:
     """Return overlaps, and gaps of at most `within` [m], between unconnected outlines, for the first design of a batch.
 
-    A pair consists of different bodies, of two links, or of a link and a body that it does not join. Round faces are approximated within
-    `SAGITTA`. Imported shapes are omitted.
+    Outlines of different bodies, of two links, or of a link and a body that it does not join form a pair. Round faces are approximated with
+    an error of at most `SAGITTA`. Imported shapes are omitted.
 
-    Bodies are displaced by twists `moved` (6,) [m, rad], translation and rotation vector at their references; a link moves by the mean of
-    the bodies that it joins, without its deformation.
+    Bodies are displaced by twists `moved` (6,) [m, rad], which contain translation and rotation vector at the bodies' references. A link
+    moves without deformation by the mean of the bodies that it joins.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> gaps(parallelogram(), 1e-4)

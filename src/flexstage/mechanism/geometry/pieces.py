@@ -36,7 +36,7 @@ def form_of(part: Part) -> Form | None:
 
 
 def is_flat(form: Form) -> bool:
-    """Return whether the pieces of a form are exact, because it has no arcs.
+    """Return whether a form has no arcs, so that its pieces are exact.
 
     >>> from flexstage.parts.body import Block
     >>> is_flat(Block("steel", (0.1, 0.1, 0.1)))

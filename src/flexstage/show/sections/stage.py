@@ -23,7 +23,7 @@ _SIDES = (
 
 
 def stage_section(data: StageData, *, motion: str | None = None, ghost: str = "", said: str = "") -> Section | None:
-    """Make the section of the animated stage: the page's data "stage", and behind them the data named `ghost`.
+    """Make the section of the animated stage. It shows the page's data "stage" and, in the background, the data named `ghost`.
 
     The animation starts with `motion`, by default the `first_motion` of the data. `said` is the text below the stage.
 

@@ -64,7 +64,7 @@ class Study:
 
     @property
     def names(self) -> tuple[tuple[str, str], ...]:
-        """Location in the file and name of each column of the results: variables, responses, and measures of limits.
+        """List each column of the results by its location in the file and its name: variables, responses, and measures for limits.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> neck_study().names
@@ -77,14 +77,14 @@ class Study:
 
     @property
     def columns(self) -> Mapping[str, Measure]:
-        """Computed measures of each design, by name: the responses, and the measures of limits."""
+        """Computed measures of each design, by name: the responses, and the further measures to which limits apply."""
         requested = {(each.key, each.point) for each in self.responses.values()}
         further = [each for each in self.limits if (each.key, each.point) not in requested]
         return {**self.responses, **{each.key if each.key not in self.responses else f"limit {each.key}": each for each in further}}
 
     @property
     def facts(self) -> dict[str, str]:
-        """Inputs on which the results depend, as text. Studies with equal facts have equal results.
+        """Inputs on which the results depend, as strings. Studies with equal facts have equal results.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> list(neck_study().facts)
@@ -138,7 +138,7 @@ class Study:
         return None
 
     def evaluate(self, mechanism: Mechanism, names: tuple[str, ...] | None = None) -> tuple[Array | str, ...]:
-        """Compute the measures `names`, by default all columns, of a design or a batch, (...) each. The reason replaces a missing value.
+        """Compute the measures `names`, by default all columns, of a design or a batch (...). A missing value is replaced by its reason.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> round(float(neck_study().evaluate(neck_study().design)[0]))

@@ -30,15 +30,16 @@ _SPARE = 4
 
 @dataclass(frozen=True, eq=False)
 class Effects(InNotebook):
-    """Effects of d variables on r responses over the designs with values.
+    """Effects of d variables on r responses, computed from the designs that have values.
 
-    `used` of `computed` designs have values. `mean`, `deviation`, `low`, `high` (r,) are in SI. `means` (d, b, r) is the mean response for
-    a variable in each of b bins at `places` (d, b), with equal counts (for grids, at each level). This main effect excludes simultaneous
-    effects of the other variables. `first` (d, r) is the fraction of the variance due to a variable alone: Sobol's index for Saltelli's
-    plan, otherwise the correlation ratio of the bins, corrected for their number. `total` (d, r) includes all interactions of a variable;
-    it is None for other plans. `pairs` (d, d, r) is the fraction due to two variables together beyond each alone; `strongest` are the
-    strongest interactions. `errors` (2, r) contains the largest standard error of first-order and total indices, and of second-order
-    indices; NaN for other plans. All fractions are NaN for a constant response.
+    Of `computed` designs, `used` have values. `mean`, `deviation`, `low` and `high` (r,) are the mean, standard deviation, minimum and
+    maximum of each response in SI. `means` (d, b, r) is the mean response for a variable in each of b bins at `places` (d, b). The bins
+    have equal counts; for grids, each level is a bin. The effects of the other variables are subtracted from `means`. `first` (d, r) is the
+    fraction of the variance due to a variable alone: Sobol's index for Saltelli's plan, otherwise the correlation ratio of the bins,
+    corrected for their number. `total` (d, r) includes all interactions of a variable; it is None for plans other than Saltelli's. `pairs`
+    (d, d, r) is the fraction due to two variables together, in addition to the fractions due to each alone; `strongest` are the strongest
+    interactions. `errors` (2, r) contains the largest standard error of first-order and total indices, and of second-order indices; it is
+    NaN for plans other than Saltelli's. All fractions are NaN for a constant response.
     """
 
     variables: tuple[str, ...]

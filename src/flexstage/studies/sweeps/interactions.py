@@ -19,11 +19,11 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Interaction:
-    """Means of a response as a function of one variable, for low, middle and high values of another.
+    """Interaction of two variables: means of a response as a function of the first, for low, middle and high values of the second.
 
     `over`, `by` and `response` are the indices of both variables and of the response. `share` is the fraction of the response's variance
     that only both variables together explain. `places` (b,) and `levels` (3,) are mean values of the variables in SI. `means` (3, b) are
-    the means of the response; NaN without a design.
+    the means of the response; they are NaN for combinations without a design.
     """
 
     over: int
@@ -36,13 +36,13 @@ class Interaction:
 
 
 def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
-    """Compute fractions (d, d, r) of the variance of responses (n, r) that two variables `at` (n, d) explain beyond each alone.
+    """Compute fractions (d, d, r) of the variance of responses (n, r) that two variables `at` (n, d) explain only together.
 
     The method is analysis of variance: variables are divided into bins (levels of a `grid`). The effects of all single bins are fitted and
-    subtracted. The cells of two variables then explain a sum of squares SS_ij of the residual. The fraction is (SS_ij - (b_i - 1)(b_j - 1)
-    MSE) divided by the total sum of squares; the subtracted term is the expected value without interaction. For a complete grid, the
-    fraction is exact. Otherwise, effects within bins are missing, and true fractions are larger. The result is NaN on the diagonal, for too
-    few designs, and for a constant response.
+    subtracted. The cells formed by the bins of two variables then explain a sum of squares SS_ij of the residual. The fraction is SS_ij
+    divided by the total sum of squares. Without a `grid`, (b_i - 1)(b_j - 1) MSE is first subtracted, the expected value of SS_ij without
+    interaction. For a complete grid, the fraction is exact. Without a grid, effects within bins are missing, and true fractions are larger.
+    The result is NaN on the diagonal, for too few designs, and for a constant response.
 
     >>> from itertools import product
     >>> at = np.array(list(product([-1.0, 0.0, 1.0], repeat=2)))
@@ -70,7 +70,7 @@ def paired_shares(at: Array, values: Array, *, grid: bool) -> Array:
 
 
 def variance(values: Array) -> Array:
-    """Compute the variance (r,) of responses (n, r). It is NaN for relative variations below 1e-9, which are rounding errors.
+    """Compute the variance (r,) of responses (n, r). The variance is NaN for relative variations below 1e-9, which are rounding errors.
 
     >>> variance(np.array([[1.0, 2.0], [3.0, 2.0]])).tolist()
     [1.0, nan]
@@ -91,7 +91,7 @@ def rank_bins(column: Array, count: int) -> Array:
 
 
 def single_effects(bins: Sequence[Array], values: Array) -> list[Array]:
-    """Fit the effects (b, r) of each variable's bins (n,) on responses (n, r), relative to the mean response.
+    """Estimate the effect (b, r) of each bin of a variable on responses (n, r), relative to the mean response; `bins` are arrays (n,).
 
     One least-squares problem for all variables separates their effects, even for few designs. Empty bins have effect 0.
 
@@ -124,9 +124,10 @@ def _explained_sum(first: Array, second: Array, residual: Array) -> Array:
 def second_order(blocks: Array, dimensions: int) -> tuple[Array, Array]:
     """Compute second-order Sobol indices (d, d, r) and their largest standard error (r,) from blocks (2 d + 2, n, r) of Saltelli's plan.
 
-    S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j is estimated by products of designs that have only x_i and x_j in common: A with column j
-    of B, and B with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280). The mean is subtracted first, and the results
-    for (i, j) and (j, i) are averaged. Errors assume independent rows; those of a Sobol sequence are smaller.
+    The index S_ij = V[E(y | x_i, x_j)] / V(y) - S_i - S_j follows from products of designs that have only x_i and x_j in common. These
+    designs are A with column j of B, and B with column i of A (Saltelli, Computer Physics Communications 145 (2002) 280). The mean is
+    subtracted first, and the results for (i, j) and (j, i) are averaged. Standard errors assume independent rows; the errors of a Sobol
+    sequence are smaller.
 
     >>> second_order(np.zeros((6, 4, 1)), 2)[0][0, 1].tolist()  # constant response
     [nan]
@@ -157,7 +158,7 @@ def standard_error(rows: Array) -> Array:
 
 
 def strongest(at: Array, values: Array, shares: Array, *, grid: bool) -> tuple[Interaction, ...]:
-    """Select the strongest interactions, at most four, with more than 1 % of a response's variance.
+    """Select the strongest interactions, at most four, each of which explains at least 1 % of a response's variance.
 
     `at` (n, d) are the variables, `values` (n, r) the responses, `shares` (d, d, r) the results of `paired_shares`.
 

@@ -24,7 +24,7 @@ _MARGIN = 2.0
 
 
 def needs_load_check(study: Study) -> bool:
-    """Return whether designs need individual stability checks, because the load factor at a range end is close to the limit.
+    """Return whether the stability of each design must be checked, because the load factor at a range end is close to its limit.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> needs_load_check(neck_study())
@@ -71,7 +71,7 @@ def loaded_findings(study: Study) -> tuple[Finding, ...]:
 
 
 def require_stable(study: Study, values: Array) -> tuple[Finding, ...]:
-    """Return the warnings about the design with `values` (d,) under its permanent load. Raises `DesignError` if it is unstable.
+    """Return the warnings about the design with `values` (d,) under its permanent load. Raises `DesignError` if the design is unstable.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> require_stable(neck_study(), np.array([0.00154]))

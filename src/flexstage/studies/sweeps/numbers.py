@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """P numbers of the design at `addresses`, with the values `nominal` (P,) plus the variables (d,) times `matrix` (d, P).
+    """P numbers of the design at `addresses`. Their values are `nominal` (P,) plus the product of the variables (d,) and `matrix` (d, P).
 
     Numbers of shared parts precede the numbers of single instances that override them.
     """
@@ -29,7 +29,7 @@ class Numbers:
         return self.nominal + values @ self.matrix
 
     def ranges(self, low: Array, high: Array) -> tuple[Array, Array]:
-        """Compute the smallest and largest numbers (P,) for independent variables from `low` to `high` (d,).
+        """Compute limits (P,) that the numbers do not exceed, for independent variables from `low` to `high` (d,).
 
         >>> low, high = Numbers(("a",), np.array([5.0]), np.array([[-2.0]])).ranges(np.array([-1.0]), np.array([2.0]))
         >>> low.tolist(), high.tolist()

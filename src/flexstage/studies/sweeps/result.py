@@ -32,7 +32,7 @@ class DesignCount:
 
 @dataclass(frozen=True)
 class PairShare:
-    """The fraction of a response's variance that two variables together explain beyond each alone."""
+    """The fraction of a response's variance that two variables explain only together."""
 
     variables: tuple[str, str]
     share: float
@@ -40,7 +40,7 @@ class PairShare:
 
 @dataclass(frozen=True)
 class ResponseEffects(RequestedMeasure):
-    """A response over the designs with values [SI], and the effects of variables.
+    """A response, with its statistics over the designs that have values [SI], and the effects of variables on it.
 
     `first_order` and `total_order` contain the fraction of the response's variance for each variable. Total fractions, and the largest
     standard errors of indices, exist only for Saltelli's plan. The standard error of second-order indices requires `pairs`.
@@ -61,7 +61,7 @@ class ResponseEffects(RequestedMeasure):
 
     @property
     def address(self) -> Annotated[str, INNER, Heading("measure")]:
-        """The measure with its point."""
+        """The measure together with the point at which it is evaluated."""
         return f"{self.key} at {self.point}" if self.measure.kind.pointed else self.key
 
     @property

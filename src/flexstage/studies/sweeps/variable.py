@@ -29,7 +29,7 @@ class Variable:
 
     `relative`: low and high are factors on the design's value at each address. `logarithmic`: equally spaced values have equal ratios.
     `levels` is the number of values of a grid in the range, ends included. `step` [SI] is the manufacturing increment; rounded values are
-    multiples of it. With a `variant`, the addresses are parameters of that case, from which the design is rebuilt.
+    multiples of it. With a `variant`, the addresses are parameters of that case; the design is rebuilt from the case's parameters.
     """
 
     name: str
@@ -94,10 +94,10 @@ class Variable:
 
 
 def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) -> Mechanism:
-    """Build the design with `values` (..., d) of the variables, in SI. Leading axes give a batch.
+    """Build the design with `values` (..., d) of the variables, in SI. Leading axes of `values` give a batch of designs.
 
-    For any sequence of the variables, parameters of a case are set first, because the design is built from them. Then numbers of shared
-    parts are written, then their overrides.
+    Whatever the sequence of the variables, parameters of a case are set first, because the design is built from them. The numbers of shared
+    parts are written next, then the overrides of these numbers.
 
     >>> import numpy as np
     >>> from flexstage.base.units.quantity import LENGTH

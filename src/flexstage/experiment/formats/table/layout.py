@@ -35,7 +35,7 @@ _NAMES = ("time [s]", "u1 [V]", "S1 [um]")
 
 @dataclass(frozen=True)
 class Layout:
-    """Layout of a CSV file: names and units of the columns, separator (None: blanks), decimal sign, start of the numbers (byte and line).
+    """Layout of a CSV file: names and units of columns, separator (None: blanks), decimal sign, byte and line at which numbers start.
 
     `comments` are the comment lines before the numbers, without comment signs.
     """

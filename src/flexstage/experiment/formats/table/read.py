@@ -38,8 +38,8 @@ def is_text(_start: bytes, _suffix: str) -> bool:
 def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     r"""Read a CSV file: responses if a column is named `frequency` or assigned as frequencies by the user, else a record.
 
-    Times are in the column `time`, or in the assigned column. Raises `DesignError` if both times and rate are missing, for gaps between
-    times (accepted with `FaultTolerance.GAPS`), and for a truncated last line (omitted with `FaultTolerance.TRUNCATED`).
+    Times are in the column `time`, or in the assigned column. Raises `DesignError` if both times and rate are missing. Gaps between times
+    are accepted only with `FaultTolerance.GAPS`, a truncated last line only with `FaultTolerance.TRUNCATED`, which omits it.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -68,7 +68,7 @@ def read_table(path: Path, options: Options) -> tuple[Record | Responses, ...]:
 
 
 def read_record(samples: TableSamples, said: Mapping[str, Attribute], options: Options, time: int | None) -> tuple[Record | Responses, ...]:
-    """Build a record from a table with times in the column `time` (index) and channels in all others; `said` are the file's attributes."""
+    """Build a record from a table: column number `time` contains the times, all others are channels; `said` are the file's attributes."""
     layout = samples.layout
     columns = tuple(number for number in range(len(layout.names)) if number != time)
     texts: dict[str, Attribute] = {kind: tuple(getattr(layout, kind)[number] for number in columns) for kind in ("names", "units")}

@@ -18,7 +18,7 @@ _LISTED = 60
 
 
 def index_table(path: Path, layout: Layout) -> TableSamples:
-    r"""Index the lines of a table, without trailing blank ones, for reading of all columns.
+    r"""Index the lines of a table for reading of all columns; blank lines at the end are omitted.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -43,8 +43,8 @@ def is_uff(start: bytes, _suffix: str) -> bool:
 def read_uff(path: Path, options: Options) -> tuple[Record | Responses, ...]:
     """Read a universal file: its time histories, its frequency responses, or both, according to `options.kind`.
 
-    Raises `DesignError` with all faults: truncated functions (used partially with `FaultTolerance.TRUNCATED`), different lengths or rates,
-    and functions that are neither time histories nor responses.
+    Raises `DesignError` with all faults: different lengths or rates, and functions that are neither time histories nor responses. Truncated
+    functions are also faults, unless `FaultTolerance.TRUNCATED` allows partial use.
     """
     stated = options.arrays.stated()
     require(
@@ -160,7 +160,7 @@ def _clock(path: Path, name: str, found: DataSet, options: Options) -> Clock:
 
 
 def refines(text: str, field: float, *, inverse: bool = False) -> bool:
-    """Return whether a full-precision number, or its inverse, rounds to a printed field of six digits.
+    """Return whether a full-precision number rounds to a printed field of six digits; with `inverse`, its reciprocal is compared.
 
     >>> refines("2048.0", 4.88281e-04, inverse=True), refines("100.0", 0.02, inverse=True), refines("0", 0.02, inverse=True)
     (True, False, False)

@@ -23,7 +23,7 @@ _SLACK = 96
 
 @dataclass(frozen=True, eq=False)
 class DataSet:
-    """Function of a file: header, values as samples of one to three columns, line number in the file.
+    """One function of a file: its header, its values as samples of one to three columns, and its line number in the file.
 
     `problem` describes the missing part of a truncated function.
     """
@@ -37,8 +37,8 @@ class DataSet:
 def scan(path: Path) -> tuple[list[DataSet], list[Finding]]:
     r"""Scan the functions of a file in order, with errors for unreadable functions; other data sets are skipped.
 
-    Values in fixed columns stay in the file; others are read at once. A truncated function contains its available values and a description
-    of the missing part.
+    Values in fixed columns stay in the file; values of other layouts are read at once. A truncated function contains its available values
+    and a description of the missing part.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

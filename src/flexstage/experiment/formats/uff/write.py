@@ -33,8 +33,8 @@ _EMPTY = Axis(0, "", "")
 def write_uff(path: str | os.PathLike[str], what: Record | Responses) -> None:
     """Write a universal file, one function per channel or pair of channels, in double precision.
 
-    Numbers keep all bits. The header's lines of text contain data without a field (full-precision rate, roles). Raises `DesignError` for
-    channel names and units that the format does not support, and if the file cannot be written.
+    Numbers are written in full precision. The header's lines of text contain data for which the format has no field (full-precision rate,
+    roles). Raises `DesignError` for channel names and units that the format does not support, and if the file cannot be written.
 
     >>> import tempfile
     >>> from pathlib import Path

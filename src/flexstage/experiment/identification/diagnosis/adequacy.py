@@ -16,7 +16,7 @@ _FEWEST = 8
 
 @dataclass(frozen=True)
 class Reach:
-    """Band searched for modes, from `low` to `high` in Hz (zero if none), and the requested band, `asked`."""
+    """Band searched for modes, from `low` to `high` in Hz (both zero if no band is searched), and the requested band, `asked`."""
 
     low: float
     high: float
@@ -60,8 +60,8 @@ def few_lines(known: Evidence, band: tuple[float, float], count: int) -> list[Fi
 def coarse_lines(known: Evidence, poles: Array) -> str | None:
     """Warn if the line spacing exceeds the width of the narrowest mode; `poles` in Hz.
 
-    Candidates are poles of responses at frequency lines: a mode closer than one line spacing to another mode may be missed. If the line
-    spacing equals the half-power bandwidth B = 2 zeta f, a record of n averages lasts about n / B.
+    Candidates are poles of responses at frequency lines: a mode closer than one line spacing to another mode may be missed. A line spacing
+    equal to the half-power bandwidth B = 2 zeta f requires a record of about n / B seconds for n averages.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record

@@ -53,9 +53,9 @@ def common_delay(found: Identified) -> Delay | None:
 
     In a proportionally damped stage a mode's residue R in H = R/(s - p) + ... is imaginary (real for a velocity; Heylen, Lammens & Sas,
     Modal Analysis Theory and Testing, 1997, A.1). A delay tau multiplies the residue by e^{-p tau}, so that the phase falls with frequency.
-    Lags and filters with the same phase count as delay. The signs of residues are unknown. Delays up to 3 periods of the lowest mode can
-    therefore be determined from three modes, and up to 0.45 periods from fewer. Among equally good delays the shortest is returned. Returns
-    `None` if no delay makes the residues imaginary, or if the delay is not significant.
+    Lags and filters count as delay if they have the same phase as a delay. The signs of residues are unknown. From three modes, delays up
+    to 3 periods of the lowest mode can therefore be determined; from fewer modes, up to 0.45 periods. Among equally good delays the
+    shortest is returned. Returns `None` if no delay makes the residues imaginary, or if the delay is not significant.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.identification.identify import identify
@@ -73,7 +73,7 @@ def late_channels(found: Identified) -> Iterator[str]:
 
     The delay of each channel is estimated from its residues in three modes or more. A channel is reported if its delay differs from the
     median by more than 6 standard deviations and by more than a tenth of the highest mode's period. Most channels must agree with the
-    median. A phase shift of half a turn in all modes is a wrong sign of the channel, not a delay.
+    median. A channel with a phase shift of half a turn in all modes has a wrong sign, not a delay.
     """
     if len(_groups(found)) < _ENOUGH:
         return

@@ -48,11 +48,11 @@ class PeakCause(Enum):
 
 @dataclass(frozen=True)
 class Peak:
-    """Peak at `frequency` in Hz, `width` Hz wide at half power (absent: at most a line).
+    """Peak at `frequency` in Hz, with a half-power `width` in Hz; the width is absent if it is at most one line.
 
-    `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of such a
-    peak without a mode: that noise is as pure as a tone, as strong as a weak or narrow peak, or that the inputs explain as much of the
-    motion of an undriven peak by chance. A mode requires at most 1e-9, and a line spacing below its width.
+    `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of this
+    peak without a mode. For a tone, noise is as pure by chance; for a weak or narrow peak, noise is as strong. For an undriven peak, the
+    inputs explain as much of its motion by chance. An accepted mode has a probability of at most 1e-9, and a width above the line spacing.
     """
 
     TABLE: ClassVar[Layout] = Layout(
@@ -103,9 +103,9 @@ def peaks(
 ) -> tuple[Peak, ...]:
     """List all peaks that are not modes, by ascending frequency.
 
-    The list contains removed tones, resonances `refused` because the inputs do not excite them, and resonances `lost` because they are not
-    significant. A lost resonance is listed only if noise alone would give an equally strong peak with a probability below 1/1000. For an
-    analyser's responses, the list also contains prominent single lines.
+    The list contains removed tones, `refused` resonances, which the inputs do not excite, and `lost` resonances, which are not significant.
+    A lost resonance is listed only if noise alone would give an equally strong peak with a probability below 1/1000. For an analyser's
+    responses, the list also contains prominent single lines.
 
     >>> from flexstage.experiment.identification.evidence import evidence
     >>> from flexstage.experiment.example import one_mode_record

@@ -35,8 +35,8 @@ _SINGULAR = 1e-8
 class AmbientMode:
     """Mode of a stage under floor excitation: `pole` in Hz (rad/s over 2 pi), and `shape` (p,) with largest component 1.
 
-    Standard deviations are `width_deviation` of the pole's real part, `deviation` of its imaginary part, `shape_deviation` (p,) of the
-    shape.
+    Standard deviations are `width_deviation` for the pole's real part, `deviation` for its imaginary part, and `shape_deviation` (p,) for
+    the shape.
     """
 
     pole: complex
@@ -61,12 +61,12 @@ class Band:
 
 
 def band_covariances(record: Record, low: float, high: float) -> tuple[list[list[Band]], Responses]:
-    """Compute output covariances of bands from `low` to `high` in Hz by division and block, and the outputs' density in unit/Hz^0.5.
+    """Compute output covariances of bands from `low` to `high` in Hz by division and block, and the output density in unit/Hz^0.5.
 
-    Each block is transformed. The inverse transform of products of lines within a band, tapered at the ends, is the band's covariance R(l)
-    = E[y(n + l) y(n)^H]. This is equivalent to mixing and decimation. R is divided by 1 - l/N, the fraction of the block's N samples
-    available at lag l. Outputs are divided by their root mean squares. The density of the floor motion need only be smooth within
-    each band.
+    Each block is Fourier transformed. The lines of a band, tapered at its ends, are multiplied in pairs of outputs. The inverse transform
+    of the products is the band's covariance R(l) = E[y(n + l) y(n)^H]. This procedure is equivalent to mixing and decimation. R is divided
+    by 1 - l/N, the fraction of the block's N samples available at lag l. Outputs are divided by their root mean squares. The density of the
+    floor motion need only be smooth within each band.
     """
     chosen = record.select([channel.name for channel in record.outputs])
     size = record.length // BLOCKS
@@ -98,7 +98,7 @@ def band_covariances(record: Record, low: float, high: float) -> tuple[list[list
 def searched_from(low: float, high: float, *, outputs: int, resolution: float) -> float:
     """Compute the lowest frequency [Hz] between `low` and `high` that can be searched; infinite if no band has enough lines.
 
-    Covariances of a band with N lines repeat after N lags. A band must therefore have twice the lines that the minimum number of block
+    Covariances of a band with N lines repeat after N lags. A band must therefore have twice as many lines as the minimum number of block
     rows requires. `resolution` [Hz] is the line spacing of a block.
 
     >>> round(searched_from(0.1, 100.0, outputs=6, resolution=0.02), 1), searched_from(50.0, 50.1, outputs=6, resolution=1.0)
@@ -178,7 +178,7 @@ def shaken_modes(band: Band, highest_damping: float) -> tuple[Stabilisation, lis
 
     The equations are projected onto the signal subspace of the whole record, U^H W H(shifted) V = Lambda U^H W H V. Standard deviations
     follow from a first-order perturbation by the covariances of independent blocks (Doehler & Mevel, MSSP 38 (2013) 346). Modes outside the
-    band bias low orders, spurious poles bias high orders: the order is selected for each mode (`_select_order`).
+    band bias low orders, and spurious poles bias high orders: the order is therefore selected for each mode (`_select_order`).
     """
     outputs = band.covariances.shape[2]
     diagram, found = _with_rows(band, _rows(outputs, np.inf), highest_damping)

@@ -28,9 +28,9 @@ _DEGREE, _CLOSE = 2, 1e-4
 class Tone:
     """Sinusoid of constant `frequency` f [Hz] in samples `start` to `stop`: 2 Re(a exp(2 pi j f t)), with t = 0 at `start`.
 
-    `amplitudes` (p,) are the complex a of the outputs, zero if absent. `chance` is the probability that noise is as pure as this tone.
-    `fades` is the fraction of the amplitude that decays from start to stop; zero for a steady tone. A tone that decays is a free
-    oscillation, which is not removed from the record.
+    `amplitudes` (p,) are the complex amplitudes a of all outputs, zero for outputs without the tone. `chance` is the probability that noise
+    is as pure as this tone. `fades` is the fraction of the amplitude that decays from start to stop; zero for a steady tone. A tone that
+    decays is a free oscillation, which is not removed from the record.
     """
 
     frequency: float
@@ -77,11 +77,11 @@ def quiet_samples(samples: Samples, tones: Sequence[Tone], columns: tuple[int, .
 def remove_tones(record: Record) -> tuple[Record, tuple[Tone, ...]]:
     """Remove steady tones from the outputs of a record, and return all tones.
 
-    A tone is a sinusoid of constant amplitude and phase. After subtraction of the response to the inputs, its line has eight times the
-    power of neighbouring lines and passes Thomson's harmonic F-test (Thomson, Proc. IEEE 70 (1982) 1055, 13; with sine tapers, Riedel &
-    Sidorenko 1995). The false-alarm rate is 1e-9 for noise and noise-excited resonances. Tones also present in an input remain in the
-    record. So do free oscillations: tones with a decay of more than five standard deviations. A resonance without measurable decay counts
-    as a tone, because the record cannot distinguish the two.
+    A tone is a sinusoid of constant amplitude and phase. After subtraction of the response to the inputs, the line of a tone has eight
+    times the power of neighbouring lines. The line also passes Thomson's harmonic F-test (Thomson, Proc. IEEE 70 (1982) 1055, 13; with sine
+    tapers, Riedel & Sidorenko 1995). The false-alarm rate is 1e-9 for noise and noise-excited resonances. Tones also present in an input
+    remain in the record. Free oscillations also remain; they are tones with a decay of more than five standard deviations. A resonance
+    without measurable decay counts as a tone, because the record cannot distinguish the two.
 
     >>> from flexstage.experiment.example import one_mode_record
     >>> from flexstage.experiment.records.record import InMemory

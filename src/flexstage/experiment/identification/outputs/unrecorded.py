@@ -32,10 +32,11 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     """Identify the modes of a stage under floor excitation from outputs only: `shaken_modes`, band by band, with 95 % intervals.
 
     The density of the exciting forces must be smooth within each band (frequency ratio 1.4). Repeated modes require excitation in as many
-    independent directions. A mode is reported if its half-power width differs from zero by 6.1 standard deviations, which noise reaches
-    once in 1e9, in one of two divisions (shifted by half a band), and if the other has the same pole; those of tails differ. Steady
-    tones are removed first. A resonance narrower than the line spacing of a block cannot be distinguished from a tone. Participations are
-    unknown: the result has no inputs. Raises `DesignError` for several records, and for a record that is too short.
+    independent directions as there are modes at the same frequency. The frequency range is divided into bands twice, shifted by half a
+    band. A mode is reported if its half-power width is at least 6.1 standard deviations above zero in one division (probability 1e-9 for
+    noise). The other division must have the same pole, unlike for the tail of a mode in another band. Steady tones are removed first. A
+    resonance narrower than the line spacing of a block cannot be distinguished from a tone. Participations are unknown: the result has no
+    inputs. Raises `DesignError` for several records, and for a record that is too short.
     """
     require(_floor_findings(records))
     record, tones = remove_tones(records[0].select([channel.name for channel in records[0].outputs]))
@@ -104,8 +105,8 @@ def identify_decay(records: Sequence[Record], search: Search) -> Identified:
     """Identify modes of free decays from outputs only: the transform of a decay is a frequency response with the stage's poles.
 
     For y(n) = sum phi a e^{p n T}, the transform over N samples is sum phi a (1 - e^{p N T})/(1 - e^{(p - jw)T}). Each decay is therefore
-    treated like an input, with its amplitudes a as participations. A decay starts at the largest outputs, relative to their root mean
-    squares, and ends with the record. Each record is one decay. One decay shows only one combination of repeated modes.
+    treated like an input, and its amplitudes a like participations. A decay starts at the largest outputs, relative to their root mean
+    squares, and ends with the record. Each record is one decay; it shows only one combination of repeated modes.
     """
     starts = [_largest(record) for record in records]
     size = min(record.length - start for record, start in zip(records, starts, strict=True))

@@ -36,9 +36,9 @@ _SURE = (Status.ITERATED, Status.WHOLE)
 
 @dataclass(frozen=True, eq=False)
 class Engine:
-    """The engine of a study. `modes` contains the platform mode (from 0) of each response that it computes; it is empty without a `plan`.
+    """The engine of a study. `modes` contains the platform mode (from 0) of each computed response; it is empty without a `plan`.
 
-    The inputs of the plan are the `numbers`; without them, the variables. `loaded`: designs may be unstable under their permanent load.
+    The inputs of the plan are `numbers` if present, else the variables. `loaded`: designs may be unstable under their permanent load.
     """
 
     modes: Mapping[str, int]
@@ -49,7 +49,8 @@ class Engine:
     def answers(self, values: Array) -> tuple[Array, Array]:
         """Compute frequencies (n, m) [Hz] of the m responses for designs with `values` (n, d), and the mask (n,) of valid designs.
 
-        An invalid design may have fewer such modes, or a rigid-body motion. A separate evaluation then provides the reason.
+        An invalid design may have too few modes, or a rigid-body motion. A separate evaluation of an invalid design then provides the
+        reason.
 
         >>> from flexstage.studies.sweeps.example import neck_study
         >>> engine_of(neck_study()).answers(np.array([[0.00154]]))[0].round(1).tolist()
@@ -74,7 +75,7 @@ class Engine:
 def engine_covers(study: Study) -> bool:
     """Return whether the engine supports a study.
 
-    It must use the standard `mechanism_for`, define its own `mechanism_at` (complex values), or have `numbers`.
+    The study must use the standard `mechanism_for`, define its own `mechanism_at` (which must accept complex values), or have `numbers`.
 
     >>> from flexstage.studies.sweeps.example import neck_study
     >>> engine_covers(neck_study())
@@ -85,7 +86,7 @@ def engine_covers(study: Study) -> bool:
 
 
 def engine_of(study: Study) -> Engine:
-    """Make the engine of a study: its plan, over the variables' ranges if the study has enough designs.
+    """Make the engine of a study: its plan for fast computation, fitted over the variables' ranges if the study has enough designs.
 
     The engine is empty for studies that it does not cover (`engine_covers`); dense matrices are then used. Never raises an error.
 

@@ -51,8 +51,8 @@ class Failure:
 class Results:
     """Designs computed so far: their numbers `designs` (n,), `variables` (n, d) and `responses` (n, r) in SI, failures by design number.
 
-    `names` and `units` contain those of the variables, then those of the responses. `planned` is the number of all designs, `facts` are
-    their inputs. `text` is the study's file; `made` contains the versions of the programs.
+    `names` and `units` contain those of the variables, then those of the responses. `planned` is the number of all designs; `facts` are the
+    inputs of the study. `text` is the study's file; `made` contains the versions of the programs.
     """
 
     designs: Array
@@ -84,7 +84,7 @@ class Results:
         raise refuse(name, "unknown column", f"Use one of {', '.join(sum(self.names, ()))}")
 
     def to_xarray(self) -> Any:
-        """Convert the results to an xarray dataset over the design number, with units in the attributes. Needs the extra `tables`."""
+        """Convert the results to an xarray dataset over the design number, with units in the attributes. Requires the extra `tables`."""
         import xarray
 
         named = [(name, unit) for names, units in zip(self.names, self.units, strict=True) for name, unit in zip(names, units, strict=True)]
@@ -92,7 +92,7 @@ class Results:
         return xarray.Dataset(data, coords={"design": self.designs}, attrs={"study": self.text})
 
     def to_pandas(self) -> Any:
-        """Convert the results to a pandas data frame, with one row per design. Needs the extra `tables`."""
+        """Convert the results to a pandas data frame, with one row per design. Requires the extra `tables`."""
         import pandas
 
         return pandas.DataFrame({name: self.column(name) for names in self.names for name in names}, index=pandas.Index(self.designs))
@@ -166,7 +166,7 @@ def columns_of(study: Study) -> tuple[tuple[tuple[str, ...], tuple[str, ...]], t
 
 
 def open_results(path: Path) -> Hdf:
-    """Open a results file. One process reads all HDF5 files. Existing files are never changed, so that no lock is needed.
+    """Open a results file. All HDF5 files are read in one separate process. Existing files are never changed, so that no lock is needed.
 
     Raises `FileNotFoundError` for a missing file, and `DesignError` for an invalid file.
 
@@ -379,7 +379,7 @@ def _labels(file: Hdf, name: str, label: str) -> tuple[str, ...]:
 
 
 def differences(path: Path, study: Study, size: int) -> Iterator[Finding]:
-    """Compare the study of a results file with this study, in pieces of `size` designs. Yields one finding for each difference.
+    """Compare the study of a results file with this `study` in pieces of `size` designs. Yields one finding for each difference.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study

@@ -13,7 +13,7 @@ from flexstage.studies.sweeps.show.figures import display
 
 
 def strongest_figure(study: Study, found: Effects) -> Any:
-    """Plot the strongest interactions: the mean response as a function of one variable, for low, middle and high values of the other."""
+    """Plot the strongest interactions: the mean response as a function of one variable, for low, middle and high values of a second one."""
     with style_context():
         figure = canvas(FULL, 2.1)
         axes = panels(figure, 1, len(found.strongest), Margins(left=0.6, across=0.62, bottom=0.4, top=0.3))[0]

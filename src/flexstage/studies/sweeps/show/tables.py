@@ -49,7 +49,7 @@ def variable_table(study: Study, results: Results) -> Table:
 
 
 def limit_notes(study: Study, results: Results) -> list[str]:
-    """Report the fraction of feasible designs. If there are none, name the limits that no design meets, or that contradict each other."""
+    """Report the fraction of feasible designs. If no design is feasible, name the single limits or pairs of limits that no design meets."""
     kept = study.feasible(results.responses)
     if not study.limits or not len(kept):
         return []
@@ -92,7 +92,7 @@ def _error_note(found: Effects, order: int) -> list[str]:
 
 
 def pair_table(found: Effects) -> Table:
-    """Tabulate pairs of variables that explain at least 1 % of a response's variance beyond each alone, the strongest first."""
+    """Tabulate pairs of variables that only together explain at least 1 % of a response's variance, the strongest first."""
     known = np.nan_to_num(found.pairs).max(axis=2)
     ranked = sorted(combinations(range(len(found.variables)), 2), key=lambda pair: -known[pair])
     shown_pairs = [pair for pair in ranked if known[pair] >= _LEAST][:_MOST_PAIRS]
