@@ -44,7 +44,7 @@ class CrossHinge(Compound):
 
     @property
     def composition(self) -> Composition:
-        """Leaves `left` and `right` of x; for three leaves, `left_low`, `left_high`, and `right` between them."""
+        """Leaves `left` and `right` of the x axis. Three leaves are `left_low`, `left_high`, and `right` between them."""
         along, across = np.cos(0.5 * self.angle), np.sin(0.5 * self.angle)
         centre = (0.5 - self.crossing) * self.length
         leaf = Leaf(self.material, self.length, self.thickness, self.width, self.section, self.inner_modes)
@@ -60,7 +60,7 @@ class CrossHinge(Compound):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations: leaves thinner than wide, crossing each other, without interference."""
+        """Order relations: leaves are thinner than wide, cross each other, and do not interfere."""
         yield Order("angle", self.angle, np.pi, "a straight angle", "Use the angle between the leaves", ANGLE)
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values, or rotate the link's bends")
         middle = self.width if self.middle_width is None else self.middle_width

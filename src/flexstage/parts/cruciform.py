@@ -131,5 +131,5 @@ class Cruciform(Shaped):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relation: leaves thinner than wide."""
+        """Order relation: the leaves are thinner than wide."""
         yield Order("thickness", self.thickness, self.width, "the width", "Exchange both values")

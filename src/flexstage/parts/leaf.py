@@ -61,7 +61,7 @@ class Leaf(Shaped):
 
     @property
     def is_bent(self) -> bool:
-        """Whether it is curved when free."""
+        """Whether the leaf is curved when free."""
         return self.curvature is not None or self.face_temperature_difference is not None
 
     @property
@@ -71,7 +71,7 @@ class Leaf(Shaped):
 
     @property
     def warps(self) -> bool:
-        """Whether its ends may warp in torsion."""
+        """Whether the ends of the leaf may warp in torsion."""
         return self.section is LeafSection.BEAM or self.ends is LeafEnds.FREE
 
     @property

@@ -37,8 +37,8 @@ class Material(Description):
     An isotropic material has `young` [Pa], and `poisson` [-] or `shear_modulus` [Pa] (or both, if consistent). A crystal of cubic symmetry
     has `c11`, `c12`, `c44` [Pa] instead. `crystal` gives the crystal directions along the stage's x and z axes (default: 100 and 001).
 
-    `density` [kg/m^3] is required. Optional: `expansion` [1/K], `loss_factor` [-], and the stress limits `yield_stress`, `fatigue_limit`,
-    `allowable_stress` [Pa]. The least of these stress limits governs.
+    `density` [kg/m^3] is required. Optional values are `expansion` [1/K], `loss_factor` [-], and the stress limits `yield_stress`,
+    `fatigue_limit`, `allowable_stress` [Pa]. The least of these stress limits governs.
 
     >>> Material(young=200e9, poisson=0.25, density=7750.0).shear
     80000000000.0
@@ -83,12 +83,12 @@ class Material(Description):
 
     @property
     def shear_across(self) -> Number | None:
-        """Shear modulus [Pa] in the x-y plane if it differs from the x-z plane; `None` for an isotropic material."""
+        """Shear modulus [Pa] in the x-y plane if it differs from that in the x-z plane; `None` for an isotropic material."""
         return None
 
     @property
     def is_cubic(self) -> bool:
-        """Whether it is a cubic crystal."""
+        """Whether the material is a cubic crystal."""
         return any(getattr(self, name) is not None for name in _CUBIC)
 
     @property

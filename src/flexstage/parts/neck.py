@@ -15,7 +15,7 @@ from flexstage.parts.shape import Profiled
 
 @dataclass(frozen=True, eq=False)
 class Neck(Profiled):
-    """Two-axis neck hinge, round or rectangular. Its thickness varies along x according to the `profile`.
+    """Two-axis neck hinge, round or rectangular. The neck's thickness varies along x according to the `profile`.
 
     Without `width` the neck is round: `thickness` is its smallest diameter, and a circular profile gives a toroid. A rectangular neck has
     `thickness` along y and `width` along z; the profile increases both towards the ends. Ideal degrees of freedom: the three rotations.

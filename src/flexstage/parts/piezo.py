@@ -30,12 +30,12 @@ from flexstage.parts.shape import Order, Shaped
 
 @dataclass(frozen=True, eq=False)
 class Piezo(ChargedActuator, Shaped):
-    """Piezo stack along x: an axial spring with an imposed free stroke u (u > 0 expands). Its section gives the other stiffness terms.
+    """Piezo stack along x: an axial spring with an imposed free stroke u (u > 0 expands).
 
     `stroke` is the full free stroke over the voltage range, `stiffness` the axial stiffness k, and `diameter` the diameter of the ceramic.
-    The effective modulus of the ceramic is E = k L / A. `bending_rigidity` is the EI of a stack stiffened by its casing (default: the EI of
-    the ceramic). The blocked force is stroke x stiffness. `maximum_load` is the largest compression, `tensile_limit` the largest tension,
-    both without preload.
+    The section of the ceramic determines the other stiffness terms, with the effective modulus E = k L / A. `bending_rigidity` is the EI of
+    a stack stiffened by its casing (default: the EI of the ceramic). The blocked force is stroke x stiffness. `maximum_load` is the largest
+    compression, `tensile_limit` the largest tension, both without preload.
     """
 
     kind: ClassVar[str] = "piezo"
@@ -79,6 +79,6 @@ class Piezo(ChargedActuator, Shaped):
 
     @property
     def orders(self) -> Iterator[Order]:
-        """Order relations: the preload is within the maximum load, the bias within the voltage range."""
+        """Order relations: the preload is at most the maximum load, and the bias is within the voltage range."""
         yield Order("preload", self.preload, self.maximum_load, "the maximum load", "Use a smaller preload", FORCE, strict=False)
         yield from super().orders

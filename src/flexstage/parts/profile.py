@@ -229,7 +229,7 @@ class FreeForm(Contour):
     """Free-form profile from a table: `heights` added on each side, at `stations` from the middle to an end. The least height is zero.
 
     Between stations, the profile is a cubic Hermite spline with the slopes of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 1984). The
-    spline equals PCHIP for the table and its mirror image: it is smooth, and stays between adjacent heights.
+    spline equals PCHIP for the table and its mirror image: the profile is smooth, and heights stay between those of adjacent stations.
     """
 
     TOLD_BY: ClassVar[tuple[str, str]] = ("shape", "free")
@@ -375,7 +375,7 @@ def stations_of(profile: Profile) -> tuple[Array, Array]:
 
 
 def single(value: Number) -> float:
-    """Return the number of the first design, as a float.
+    """Return the value of the first design, as a float.
 
     >>> single(np.array([1.0, 2.0]))
     1.0

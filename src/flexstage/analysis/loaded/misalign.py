@@ -38,7 +38,7 @@ class Misaligned(Result):
     """Result for an instance `copy`, misaligned on the ground along (x, y, z) or about (rx, ry, rz) an axis of the instance's frame.
 
     `along` has a row for each misalignment, with the load that forces the instance into this position, and the first frequencies. Further
-    columns are the largest stress and strain of a flexure, and the number of unstable modes (0: stable). `state` has the equilibria.
+    columns are the largest stress and strain of a flexure, and the number of unstable modes (0: stable). `state` contains the equilibria.
     `loads` are the wrenches at the largest misalignment on the end of each flexure, in the frame at the flexure's start.
 
     `critical` is the misalignment at which the first stiffness vanishes [rad, m]; NaN if none does. `followed` is the largest misalignment
@@ -89,9 +89,9 @@ def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points:
     """Compute the internal loads of a stage if the seat of an instance or link on the ground is misaligned, with large displacements.
 
     The seat connects the instance's links to the ground. The seat moves by `size` [m, rad] along or about an axis of the instance's frame,
-    at `points` values from zero. The centre of rotation is the frame's origin (of a link: its middle). The weight is included. Motions
-    without redundant constraints remain free. Raises `DesignError` for unknown names and for instances that are not connected to the
-    ground.
+    at `points` values from zero. The centre of rotation is the origin of the instance's frame, or the middle of a link. The weight is
+    included. Motions without redundant constraints remain free. Raises `DesignError` for unknown names and for instances that are not
+    connected to the ground.
 
     >>> from flexstage.cases.parallelogram import parallelogram
     >>> result = misalign(parallelogram(), "left", "ry", 1e-3, points=3)

@@ -90,7 +90,7 @@ class Stability:
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Warnings if stiffness and frequencies of the loaded stage differ significantly from the nominal stage."""
+        """Warnings if stiffness and frequencies of the loaded stage differ significantly from those of the nominal stage."""
         return tuple(self._doubts())
 
     def _doubts(self) -> Iterator[Finding]:

@@ -128,7 +128,7 @@ class Points:
 
     @cached_property
     def columns(self) -> dict[str, tuple[Callable[[], Array], str]]:
-        """Function and unit of each column."""
+        """Function that computes each column, and the unit of the column, by the column's name."""
         return dict(_columns(self))
 
     def column(self, name: str) -> Array:

@@ -78,7 +78,7 @@ class Creep:
         return self.instant + np.sum(self.gains * risen, axis=-1)
 
     def system(self, inputs: tuple[Channel, ...], outputs: tuple[Channel, ...]) -> System:
-        """Return the creep operator as a linear system for loops, states axis by axis.
+        """Return the creep operator as a linear system for loops; its states are ordered by axis.
 
         >>> found = Creep([1.0], [0.1], [2.0]).system((Channel("u", "m"),), (Channel("y", "m"),))
         >>> found.A.tolist(), found.C.tolist(), found.D.tolist()

@@ -105,9 +105,9 @@ def known_from(inputs: Array, thresholds: Array) -> int:
 def fit_form(volts: Array, strokes: Array, form: Form, rows: Array, *, rounds: int = _ROUNDS) -> Fit:
     """Fit weights (0 or more) and envelope slopes (positive) to the samples `rows` of a record by least squares.
 
-    Omits samples at which plays still depend on their initial state (`known_from`).
+    Samples at which plays still depend on their initial state (`known_from`) are omitted.
 
-    With a straight envelope this is one linear problem. With several envelope pieces, the fit alternates between weights (with fixed
+    With a straight envelope, the fit is one linear problem. With several envelope pieces, the fit alternates between weights (with fixed
     slopes) and slopes (with fixed weights), at most `rounds` times. Each fit of weights or slopes is linear: a sticking play keeps the
     envelope's value at its last motion, which is linear in the slopes.
 

@@ -191,7 +191,7 @@ def dump_hysteresis(stack: StackHysteresis, path: str | os.PathLike[str]) -> Pat
 
 @check_arguments
 def load_hysteresis(path: str | os.PathLike[str]) -> StackHysteresis:
-    """Read a hysteresis file. Raises `DesignError` with all its errors, each finding with file, line and key.
+    """Read a hysteresis file. Raises `DesignError` with all errors of the file, each finding with file, line and key.
 
     >>> load_hysteresis("nowhere.toml")
     Traceback (most recent call last):

@@ -26,7 +26,7 @@ from flexstage.experiment.records.unit import in_si, same_dimension, unit_proble
 
 @dataclass(frozen=True)
 class Channels(CheckedFields):
-    """Channel names of a stack's test. Default: the only channel in volts, and the only channel in a unit of length."""
+    """Channel names of a stack's test. The default channels are the only channel in volts, and the only channel in a unit of length."""
 
     volts: str | None = None
     stroke: str | None = None

@@ -148,7 +148,7 @@ def sign_changes(values: Array) -> Array:
 def roots(of: Callable[[Array], Array], ends: tuple[Array, Array], values: tuple[Array, Array]) -> Array:
     """Find zeros of a function within brackets (low, high) (k,) with `values` of opposite signs, all at once.
 
-    Uses the Illinois variant of the false-position method, to rounding error.
+    The method is the Illinois variant of the false-position method; it is accurate to rounding error.
 
     >>> roots(lambda x: x**2 - 2.0, (np.array([0.0]), np.array([2.0])), (np.array([-2.0]), np.array([2.0]))).round(12).tolist()
     [1.414213562373]

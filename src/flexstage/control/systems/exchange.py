@@ -42,9 +42,9 @@ def to_control(system: System, states: tuple[str, ...] | None = None) -> Any:
 def from_control(system: Any, inputs: tuple[Channel, ...] | None = None, outputs: tuple[Channel, ...] | None = None) -> System:
     """Convert a `control.StateSpace`, or a single-input single-output transfer function, to a system.
 
-    `inputs` and `outputs` are the channels with names and units (default: the system's own labels, without units). A controller has for
-    example `error.x` ... and `command.B1` ... . Raises `DesignError` for a sampled system without a time step, for an object that is not a
-    linear system, and for a wrong number of channels.
+    `inputs` and `outputs` are the channels with names and units (default: the system's own labels, without units). The channels of a
+    controller are for example `error.x` and `command.B1`. Raises `DesignError` for a sampled system without a time step, for an object that
+    is not a linear system, and for a wrong number of channels.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop().controller

@@ -60,21 +60,21 @@ def peak(system: System) -> Peak:
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """Continuous system that represents a system. Its s = j nu has nu = 2 pi f / `unit`, or nu = tan(pi f T) for a sampled system."""
+    """Continuous system that represents a system: s = j nu, with nu = 2 pi f / `unit`, or nu = tan(pi f T) for a sampled system."""
 
     system: System
     unit: float
     step: float | None
 
     def frequencies(self, numbers: Array) -> Array:
-        """Convert nu to frequencies [Hz]."""
+        """Convert the mapped frequencies nu to frequencies [Hz]."""
         if self.step is None:
             return numbers * self.unit / (2.0 * np.pi)
         return np.arctan(numbers) / (np.pi * self.step)
 
 
 def to_plane(system: System) -> Plane:
-    """Map a system to a balanced continuous system: a sampled one by z = (1 + s)/(1 - s), a continuous one by scaling of time.
+    """Map a system to a balanced continuous system: by z = (1 + s)/(1 - s) if it is sampled, otherwise by scaling of time.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop().system

@@ -35,7 +35,7 @@ def is_mat(start: bytes, suffix: str) -> bool:
 
 
 def read_mat(path: Path, options: Options) -> tuple[Record | Responses, ...]:
-    """Read a MAT file as arrays by name. Members of structures have paths as names (`test.u`). Lists of strings are cells.
+    """Read a MAT file as arrays by name. Members of structures have paths as names (`test.u`). Lists of strings are cell arrays.
 
     MATLAB objects (`timeseries`, `table`, `idfrd`) cannot be read outside MATLAB: the error lists them, with a hint on export. Arrays of
     version 7.3 stay in the file; arrays of older versions are read at once. Raises `DesignError` for an invalid or truncated file, and

@@ -67,9 +67,10 @@ class Identified(InNotebook):
     participation / (j w - pole) + conjugate. Standard deviations of shapes apply to the real and to the imaginary part. `widening` (k,) is
     the inflation factor of all standard deviations, above 1 if the residual near the mode exceeds noise or may contain a further mode.
     `significance` (k,) is the mode's chi-squared statistic, divided by the level that noise exceeds with a probability of 1e-9. `close`
-    lists modes closer than their half-widths: compare their subspace. `noise` (p,) is the noise density of the outputs, in the output's
-    unit squared per Hz. `data_warnings` lists limits of the data. `peaks` are peaks not confirmed as modes. `delay` [s] is the common delay
-    of all outputs, removed before the fit (0: none). With a delay, H is multiplied by e^{-j w delay}.
+    lists groups of modes closer than their half-widths; compare the subspace of a group, not its single modes. `noise` (p,) is the noise
+    density of the outputs, in the output's unit squared per Hz. `data_warnings` lists limits of the data. `peaks` are peaks not confirmed
+    as modes. `delay` [s] is the common delay of all outputs, removed before the fit (0: none). With a delay, H is multiplied by e^{-j w
+    delay}.
     """
 
     frequencies: Array
@@ -132,7 +133,7 @@ class Identified(InNotebook):
 
     @property
     def close_modes(self) -> Annotated[tuple[tuple[int, ...], ...], VIEW]:
-        """Numbers (from 1) of modes closer than their half-widths, group by group: compare their subspace."""
+        """Numbers (from 1) of modes closer than their half-widths, in groups. Compare the subspace of a group, not its single modes."""
         return tuple(tuple(index + 1 for index in group) for group in self.close)
 
     @property

@@ -45,7 +45,7 @@ def remainder(frequencies: Array, rest: Array, weights: Array) -> Array:
 
 
 def remainder_sum(frequencies: Array, residuals: Array) -> Array:
-    """Evaluate the response (f, p, m) of lower and upper residual (2, p, m).
+    """Evaluate the response (f, p, m) of the lower and upper residual terms.
 
     >>> remainder_sum(np.array([1.0]), np.array([[[0.0]], [[5.0]]])).ravel().tolist()
     [5.0]

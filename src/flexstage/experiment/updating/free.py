@@ -57,7 +57,7 @@ class Free:
 
 
 def free(mechanism: Mechanism, names: Sequence[str], known: Prior = DEFAULT) -> Free:
-    """Free the parameters at these addresses; raises `DesignError` for addresses that are unknown, ambiguous, zero or not a number.
+    """Free the parameters at these addresses; raises `DesignError` unless every address is unique and its value is a nonzero number.
 
     >>> from flexstage.cases.double_triangle import double_triangle
     >>> free(double_triangle(), ["lever_notch.thickness"]).names

@@ -52,7 +52,7 @@ class Gains:
 
 
 def measured_gains(mechanism: Mechanism, model: LinearModel, experiment: Identified, outputs: tuple[str, ...]) -> Gains:
-    """Estimate the gains from those inputs of the record that are actuators of the stage to the named outputs.
+    """Estimate the gains from the recorded inputs that are actuators of the stage to the outputs named `outputs`.
 
     The real part of H1 up to x = f/f_1 = 0.35 is fitted by a + (b x^2 + c x^4)/(1 - x^2) by least squares; a is the gain. The fitted
     function represents the lowest mode, at f_1, exactly. Even powers approximate higher modes, lags and the amplifier's bandwidth. A drive

@@ -244,7 +244,7 @@ class Updated(InNotebook):
 
     @property
     def is_withheld(self) -> bool:
-        """Whether model and test differ more than any plausible values of the parameters explain."""
+        """Whether model and test differ more than plausible values of the parameters could explain."""
         return self.chi_square > _CONTRADICTING * max(1, self.freedoms)
 
     @property

@@ -126,7 +126,7 @@ def replace_member(value: Any, path: tuple[str, ...], new: Any) -> Any:
 
 
 def replace_members(value: Any, changes: Iterable[tuple[tuple[str, ...], Any]]) -> Any:
-    """Return a copy of the value with new members at several full paths, none inside another.
+    """Return a copy of the value with new members at several full paths; no path may be inside another.
 
     >>> replace_members((1.0, 2.0, 3.0), [(("y",), 5.0), (("z",), 6.0)])
     (1.0, 5.0, 6.0)

@@ -25,7 +25,7 @@ Form: TypeAlias = Shaped | Solid
 
 
 def form_of(part: Part) -> Form | None:
-    """Return the part inside a link's part if it has a form; `None` for a compliance matrix or an ideal joint.
+    """Return the part of a link, or the part inside a restricted part, if it has a form; `None` for a compliance matrix or an ideal joint.
 
     >>> from flexstage.parts.leaf import Leaf
     >>> form_of(Leaf("steel", 0.02, 0.001, 0.01)).span

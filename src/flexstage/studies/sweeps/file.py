@@ -31,7 +31,7 @@ _MOST = 10**9
 
 @check_arguments
 def load_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study's file. Its design file must be in the same folder.
+    """Read a study's file. The study's design file must be in the same folder.
 
     Raises `DesignError` with every error: unknown keys, variables and measures (with the nearest names), empty ranges, wrong units.
 

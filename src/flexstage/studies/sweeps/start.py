@@ -16,9 +16,9 @@ from flexstage.studies.form import StudyFile, VariedTable
 
 
 def start(file: StudyFile, folder: Path) -> tuple[Mechanism, Variant | None]:
-    """Return the design of a study's file, and its case. For a design file, which must be in `folder`, the case is `None`.
+    """Return the design and the case of a study's file. For a design file, which must be in `folder`, the case is `None`.
 
-    Raises `DesignError` without a design.
+    Raises `DesignError` unless either a design file or a case is specified.
 
     >>> from flexstage.studies.form import study_file
     >>> text = 'format = "flexstage study 1"' + chr(10) + 'case = "hexapod"' + chr(10) + 'parameters.slope = "50 deg"'

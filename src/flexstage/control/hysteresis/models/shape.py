@@ -38,7 +38,7 @@ class MajorLoop:
 
 
 def major_loop(model: Hysteresis, volts: Range, count: int = 401, cycles: int = 8) -> MajorLoop:
-    """Compute the loop of a hysteresis between two inputs after `cycles` cycles, at `count` inputs per branch.
+    """Compute the major loop of a hysteresis model between two inputs after `cycles` cycles, at `count` inputs per branch.
 
     >>> from flexstage.control.hysteresis.models.prandtl_ishlinskii import PrandtlIshlinskii
     >>> loop = major_loop(PrandtlIshlinskii([0.0, 100.0], [1e-7, 5e-8]), (0.0, 1000.0))

@@ -51,8 +51,8 @@ class Peak:
     """Peak at `frequency` in Hz, with a half-power `width` in Hz; the width is absent if it is at most one line.
 
     `outputs` names the outputs with the peak; `resolution` is the spacing of frequency lines in Hz. `chance` is the probability of this
-    peak without a mode. For a tone, noise is as pure by chance; for a weak or narrow peak, noise is as strong. For an undriven peak, the
-    inputs explain as much of its motion by chance. An accepted mode has a probability of at most 1e-9, and a width above the line spacing.
+    peak without a mode. By chance, noise may be as pure as a tone, or as strong as a weak or narrow peak, or inputs may explain as much
+    motion of an undriven peak. An accepted mode has a probability of at most 1e-9, and a width above the line spacing.
     """
 
     TABLE: ClassVar[Layout] = Layout(

@@ -61,10 +61,10 @@ DEFAULT = Run()
 def sweep(study: Study, path: str | os.PathLike[str], how: Run = DEFAULT, progress: Progress | None = None) -> Results:
     """Compute all designs of a study into the results file at `path`.
 
-    Pieces (see `piece_size`) are written one by one and combined in the file at the end of the run. Results do not depend on
-    the number of workers or on the sequence of pieces; equal studies give equal files. An interruption keeps the results so far. Raises
-    `DesignError` for an existing file without `resume`, a file of another study, a file in use, measures that the design does not have,
-    and a full disk.
+    Pieces (see `piece_size`) are written one by one and combined in the file at the end of the run. Results do not depend on the number of
+    workers or on the sequence of pieces; equal studies give equal files. Results computed before an interruption are kept. Raises
+    `DesignError` for an existing file without `resume`, a file of another study, a file in use, measures that the design does not have, and
+    a full disk.
 
     >>> import tempfile
     >>> from flexstage.studies.sweeps.example import neck_study

@@ -51,8 +51,8 @@ class Failure:
 class Results:
     """Designs computed so far: their numbers `designs` (n,), `variables` (n, d) and `responses` (n, r) in SI, failures by design number.
 
-    `names` and `units` contain those of the variables, then those of the responses. `planned` is the number of all designs; `facts` are the
-    inputs of the study. `text` is the study's file; `made` contains the versions of the programs.
+    `names` and `units` each contain the entries of the variables, then those of the responses. `planned` is the number of all designs;
+    `facts` are the inputs of the study. `text` is the study's file; `made` contains the versions of the programs.
     """
 
     designs: Array
