@@ -146,8 +146,8 @@ def buckling_factors(
 
     The loads are the weight with payloads, and the specified forces with preloads; for a path in `[paths]`, also the loads in its `hold`.
     One load grows at a time; all others are constant. The operating points are the static equilibrium and both ends of every path. A design
-    without paths has two kinds of operating points instead: both stroke ends of every actuator (if there are at most eight actuators), and
-    the corner of the strokes that is worst by linearised buckling.
+    without paths has other operating points: both stroke ends of every actuator (for at most eight actuators), and the corner of the
+    strokes that is worst by linearised buckling.
 
     At an operating point, a constant-direction force displaces a coordinate, as for `--at`; a stroke is held at its value. Load factors are
     computed up to `most`.

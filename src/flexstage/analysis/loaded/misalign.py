@@ -42,8 +42,8 @@ class Misaligned(Result):
     `loads` are the wrenches at the largest misalignment on the end of each flexure, in the frame at the flexure's start.
 
     `critical` is the misalignment at which the first stiffness vanishes [rad, m]; NaN if none does. `followed` is the largest misalignment
-    known to be stable. It is `critical`, 0.1 rad, 0.1 times the longest flexure, or the end of the computed path. Stable states beyond
-    `critical` belong to another branch and have no values.
+    known to be stable. `followed` is `critical`, 0.1 rad, 0.1 times the longest flexure, or the end of the computed path, whichever is
+    reached first. Stable states beyond `critical` belong to another branch and have no values.
     """
 
     copy: str
@@ -86,7 +86,7 @@ class Misalignments(Result):
 
 @check_arguments
 def misalign(mechanism: Mechanism, copy: str, axis: str, size: float, *, points: int = 11) -> Misaligned:
-    """Compute the internal loads of a stage if the seat of an instance or link on the ground is misaligned, with large displacements.
+    """Compute, with large displacements, the internal loads of a stage if the seat of an instance or link on the ground is misaligned.
 
     The seat connects the instance's links to the ground. The seat moves by `size` [m, rad] along or about an axis of the instance's frame,
     at `points` values from zero. The centre of rotation is the origin of the instance's frame, or the middle of a link. The weight is

@@ -91,7 +91,7 @@ class ActiveDamping:
 
 
 def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Plant:
-    """Close the inner loops of a plant. Its outputs must include the link forces `<link>.fx`, which are not outputs of the result.
+    """Close the inner loops of a plant. The plant's outputs must include the link forces `<link>.fx`, which the result omits.
 
     The strokes of the inner loops are added before the amplifiers; they are also outputs `added.<actuator>` [m]. Inputs `sensed.<actuator>`
     [N] are noise added to the measured tension.
@@ -116,7 +116,7 @@ def close_damping(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...]) -> Pl
 def around_legs(
     given: Plant, legs: tuple[Leg, ...], inner: Sequence[System], outputs: Iterable[str], heard: tuple[Channel, ...] = ()
 ) -> System:
-    """Connect an inner system around each leg. Its inputs are `tension.<actuator>` [N] and one of `heard`, its output a further stroke."""
+    """Connect an inner system to each leg: from `tension.<actuator>` [N], the tension plus one of `heard`, to a further stroke."""
     entries, links = {each.actuator: f"entry.{each.actuator}" for each in legs}, dict[str, dict[str, float]]()
     for number, (each, sign) in enumerate(zip(legs, tension_signs(given, legs), strict=True)):
         links[entries[each.actuator]] = {each.actuator: 1.0, inner[number].output_names[0]: 1.0}
@@ -158,7 +158,7 @@ def _modal_poles(given: Plant) -> Array:
 def gain_for(given: Plant, law: ForceFeedback, legs: tuple[Leg, ...], wanted: float) -> float:
     """Compute the lowest gain [1/s] that gives the modes with the largest residues the damping ratio `wanted`.
 
-    These are as many modes as the loop has coordinates. If no gain reaches `wanted`, returns the gain of maximum damping. A gain at which
+    The loop has as many of these modes as coordinates. If no gain reaches `wanted`, returns the gain of maximum damping. A gain at which
     the inner loops are unstable is reduced. Raises `DesignError` if the inner loops are unstable even at the lowest gain tried.
     """
     felt = felt_most(given)

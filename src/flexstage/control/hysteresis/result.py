@@ -54,7 +54,7 @@ class IdentifiedHysteresis(InNotebook):
     Errors and the width are relative to `stroke` [m], the range of the strokes after the first branch. `rms` and `largest` are errors over
     the samples from `known_from`, which do not depend on the unknown history. `validation` is the rms error on parts of the record that
     were not fitted. `width` is the largest distance between the branches of the model's major loop. `range` is the recorded voltage range;
-    `inner` is the number of branches shorter than 80 % of this range. `volts`, `strokes` and `modelled` (k,) are the samples used.
+    `inner` is the number of branches shorter than 80 % of the recorded range. `volts`, `strokes` and `modelled` (k,) are the samples used.
     """
 
     model: Annotated[PrandtlIshlinskii, INNER]

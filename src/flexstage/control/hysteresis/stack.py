@@ -63,7 +63,7 @@ class StackCreep:
 class StackHysteresis:
     """Hysteresis of one stack, as in a file: thresholds, weights, envelopes, range of the record, model error and source.
 
-    `model` and `log_creep` return the stack's model and creep law; `stack_hysteresis` converts them back exactly.
+    `model` and `log_creep` return the stack's model and creep law; `stack_hysteresis` exactly converts a model and a creep law back.
     """
 
     thresholds: _Volts

@@ -106,8 +106,8 @@ def pose_controller(controller: System, coordinates: Coordinates, sense: Array |
 def open_at(closed: Loop, cut: LoopBreak, channel: str | None = None) -> System:
     """Return the open loop L for negative feedback, with S = (I + L)^-1: from the input at the break to minus the returned signal.
 
-    The loop is opened at the pose or at the commands. All channels are opened (rows and columns named by coordinates or actuators, inputs
-    `cut.<name>`), or a single `channel` with the others closed. Raises `DesignError` for an unknown channel.
+    The loop is opened at the pose or at the commands. Either all channels are opened (rows and columns named by coordinates or actuators,
+    inputs `cut.<name>`), or only a single `channel`. Raises `DesignError` for an unknown channel.
 
     >>> from flexstage.control.example import integral_loop
     >>> one = integral_loop()

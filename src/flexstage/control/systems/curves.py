@@ -63,7 +63,7 @@ def sensitivity(open_loop: System) -> System:
 def curves(closed: Loop, cut: LoopBreak) -> Curves:
     """Compute S at frequencies around every pole of the closed loop and of each single open loop, refined until every L_i is smooth.
 
-    The highest frequency is half the sampling rate. For a continuous loop, it is 100 times the frequency of the fastest pole.
+    The highest frequency is half the sampling rate. For a continuous loop, the highest frequency is 100 times that of the fastest pole.
 
     >>> from flexstage.control.example import integral_loop
     >>> found = curves(integral_loop(), LoopBreak.POSE)

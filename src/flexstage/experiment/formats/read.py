@@ -32,8 +32,8 @@ def read(path: str | os.PathLike[str], options: Options = _DEFAULT) -> Record | 
     """Read a test file: UFF58 in ASCII or binary, MAT (v4, v5, v7.3), HDF5, CSV, GCS arrays, or a format of another package.
 
     The format is recognised from the content. Samples stay in the file if its format allows (binary and regular ASCII UFF, MAT v7.3, HDF5,
-    CSV). They are read in blocks on demand. Units and numbers are those in the file. Raises `DesignError` with all errors. For a file with
-    both record and responses, `options.kind` is required.
+    CSV). Samples are read in blocks on demand. Units and numbers are those in the file. Raises `DesignError` with all errors. For a file
+    with both record and responses, `options.kind` is required.
 
     >>> import tempfile
     >>> import numpy as np

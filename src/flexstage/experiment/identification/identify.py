@@ -62,9 +62,9 @@ def identify(what: Record | Responses | Sequence[Record], search: Search = Searc
     noise density of outputs must vary slowly with frequency. Intervals are also valid for noise correlated between outputs (Pintelon &
     Schoukens 2012, ch. 9 and 10).
 
-    Intervals of a mode are inflated if the residual near it exceeds noise (probability 1/1000). The factor is proportional to the residual,
-    or to the scatter between independent parts of the data (`jackknife`) if this is larger. Independent parts are sub-bands, inputs,
-    records and time intervals.
+    Intervals of a mode are inflated if the residual near it exceeds noise (probability 1/1000). The inflation factor is proportional to the
+    residual, or to the scatter between independent parts of the data (`jackknife`) if this is larger. Independent parts are sub-bands,
+    inputs, records and time intervals.
 
     A mode must be significant: noise reaches its chi-squared statistic with a probability of at most 1e-9. The required chi-squared is
     three times higher if the standard deviation of the damping exceeds a third of the damping. The recorded inputs must also excite the

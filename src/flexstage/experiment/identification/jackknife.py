@@ -51,7 +51,7 @@ def jackknife(band: Band, modal: Modal, groups: Array) -> Array:
 def sub_bands(band: Band, pole: complex) -> Array:
     """Divide the cells into groups (c,) by distance from a pole, for `jackknife`.
 
-    One group is within a half-width of the pole. On each side of the pole, each further octave of distance from it is a group. Near the
+    One group is within a half-width of the pole. On each side, each further octave of distance from the pole is a group. Near the
     resonance, the residual of a wrong model varies with frequency over a half-width. Farther away, it varies over a frequency range as wide
     as the distance from the resonance.
 

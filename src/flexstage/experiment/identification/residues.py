@@ -25,7 +25,7 @@ def modal_sum(frequencies: Array, poles: Array, shapes: Array, participation: Ar
 
 
 def remainder(frequencies: Array, rest: Array, weights: Array) -> Array:
-    """Fit residual terms (2, p, m): rest (f, p, m) = lower / w^2 + upper. The weights are (f, p), the frequencies are above 0 [Hz].
+    """Fit residual terms (2, p, m): rest (f, p, m) = lower / w^2 + upper. The shape of `weights` is (f, p); `frequencies` are above 0 [Hz].
 
     The residual terms are the mass line of modes below the band and the stiffness line of modes above the band. Both residual terms are
     real, because these modes have little damping in the band.

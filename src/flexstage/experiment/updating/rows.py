@@ -26,8 +26,8 @@ class ModeRow:
     """Row of data: one mode, or a group of repeated modes, of the model and of the test.
 
     `modes` are the model's modes, counted from 0 over all modes of the model. `frequency` [Hz] is the square root of the mean of f^2 over
-    the `measured` modes, thus of the mean eigenvalue. The mean eigenvalue is symmetric in repeated modes and therefore smooth in every
-    parameter. `deviation` is the relative standard deviation of the frequency.
+    the `measured` modes. The mean of f^2 is symmetric in repeated modes and therefore smooth in every parameter. `deviation` is the
+    relative standard deviation of the frequency.
     """
 
     name: str

@@ -149,8 +149,8 @@ class Gap:
 def gaps(mechanism: Mechanism, within: float, moved: Mapping[str, Array] = MappingProxyType({})) -> tuple[Gap, ...]:
     """Return overlaps, and gaps of at most `within` [m], between unconnected outlines, for the first design of a batch.
 
-    Outlines of different bodies, of two links, or of a link and a body that it does not join form a pair. Round faces are approximated with
-    an error of at most `SAGITTA`. Imported shapes are omitted.
+    Two outlines form a pair if they belong to different bodies, to two links, or to a link and a body that it does not join. Round faces
+    are approximated with an error of at most `SAGITTA`. Imported shapes are omitted.
 
     Bodies are displaced by twists `moved` (6,) [m, rad], which contain translation and rotation vector at the bodies' references. A link
     moves without deformation by the mean of the bodies that it joins.

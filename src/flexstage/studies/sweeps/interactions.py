@@ -158,7 +158,7 @@ def standard_error(rows: Array) -> Array:
 
 
 def strongest(at: Array, values: Array, shares: Array, *, grid: bool) -> tuple[Interaction, ...]:
-    """Select the strongest interactions, at most four, each of which explains at least 1 % of a response's variance.
+    """Select the strongest interactions, at most four; every interaction explains at least 1 % of a response's variance.
 
     `at` (n, d) are the variables, `values` (n, r) the responses, `shares` (d, d, r) the results of `paired_shares`.
 

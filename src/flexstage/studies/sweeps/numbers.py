@@ -11,7 +11,7 @@ from flexstage.base.number import Array
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """P numbers of the design at `addresses`. Their values are `nominal` (P,) plus the product of the variables (d,) and `matrix` (d, P).
+    """P numbers of the design at `addresses`. The values are `nominal` (P,) plus the product of the variables (d,) and `matrix` (d, P).
 
     Numbers of shared parts precede the numbers of single instances that override them.
     """

@@ -26,10 +26,10 @@ class Sampling(Enum):
 class Plan:
     """A sampling of `count` designs with its `seed`. A grid has `levels` instead of a count: one number for each variable.
 
-    Saltelli's plan contains two Sobol samples A and B of `count` designs each. For each of d variables, it also contains A with this
-    variable's column from B. The plan then has count (d + 2) designs, for Sobol indices (Saltelli et al., Computer Physics Communications
-    181 (2010) 259). With `pairs`, Saltelli's plan also contains B with each column from A: count (2 d + 2) designs, for second-order
-    indices.
+    Saltelli's plan contains two Sobol samples A and B of `count` designs each. For each of d variables, the plan also contains A with this
+    variable's column from B. Saltelli's plan therefore has count (d + 2) designs, for Sobol indices (Saltelli et al., Computer Physics
+    Communications 181 (2010) 259). With `pairs`, Saltelli's plan also contains B with each column from A: count (2 d + 2) designs, for
+    second-order indices.
     """
 
     sampling: Sampling

@@ -97,7 +97,7 @@ def apply(mechanism: Mechanism, variables: Iterable[Variable], values: Array) ->
     """Build the design with `values` (..., d) of the variables, in SI. Leading axes of `values` give a batch of designs.
 
     Whatever the sequence of the variables, parameters of a case are set first, because the design is built from them. The numbers of shared
-    parts are written next, then the overrides of these numbers.
+    parts are written before the numbers that override them.
 
     >>> import numpy as np
     >>> from flexstage.base.units.quantity import LENGTH

@@ -32,11 +32,11 @@ def identify_floor(records: Sequence[Record], search: Search) -> Identified:
     """Identify the modes of a stage under floor excitation from outputs only: `shaken_modes`, band by band, with 95 % intervals.
 
     The density of the exciting forces must be smooth within each band (frequency ratio 1.4). Repeated modes require excitation in as many
-    independent directions as there are modes at the same frequency. The frequency range is divided into bands twice, shifted by half a
-    band. A mode is reported if its half-power width is at least 6.1 standard deviations above zero in one division (probability 1e-9 for
-    noise). The other division must have the same pole, unlike for the tail of a mode in another band. Steady tones are removed first. A
-    resonance narrower than the line spacing of a block cannot be distinguished from a tone. Participations are unknown: the result has no
-    inputs. Raises `DesignError` for several records, and for a record that is too short.
+    independent directions as there are modes at the same frequency. The frequency range is divided into bands in two ways, shifted by half
+    a band. A mode is reported if its half-power width is at least 6.1 standard deviations above zero in one division (probability 1e-9 for
+    noise). The other division must show the same pole, which is not the case for the tail of a mode in another band. Steady tones are
+    removed first. A resonance narrower than the line spacing of a block cannot be distinguished from a tone. Participations are unknown:
+    the result has no inputs. Raises `DesignError` for several records, and for a record that is too short.
     """
     require(_floor_findings(records))
     record, tones = remove_tones(records[0].select([channel.name for channel in records[0].outputs]))
