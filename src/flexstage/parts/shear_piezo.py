@@ -87,7 +87,7 @@ class ShearPiezo(ChargedActuator):
 
     @property
     def compliance(self) -> Array:
-        """Compliance (..., 6, 6) about the centre: 1/k_a along x, 1/k along y, similarly along z; rotational L/(E I) and L/(G J).
+        """Compliance (..., 6, 6) about the centre: 1/k_a along x, 1/k along y and similarly along z, and for rotations L/(G J) and L/(E I).
 
         G follows from the shear compliance L / (k_s G A) with k_s = 5/6 (parabolic shear stress). Torsion is Saint-Venant's. Both faces
         remain plane.

@@ -63,7 +63,7 @@ class Misaligned(Result):
 
 
 class Misalignments(Result):
-    """Critical misalignment of each instance, by axis of its own frame; null if no stiffness vanishes.
+    """Critical misalignment of each instance, by axis of the instance's frame; null if no stiffness vanishes.
 
     `followed` is the misalignment up to which the stage is known to be stable, as in `Misaligned`. `load` is the load that misaligns the
     instance by `size` [rad, m]; `stress` is the largest stress in a flexure [Pa]. `load` and `stress` are null if no equilibrium was found.

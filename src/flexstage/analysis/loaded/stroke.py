@@ -122,7 +122,7 @@ class Points:
 
     @cached_property
     def frequencies(self) -> Array:
-        """Natural frequencies (k, n) of the released stage [Hz]; NaN if it is unstable."""
+        """Natural frequencies (k, n) of the released stage [Hz]; NaN if the released stage is unstable."""
         with np.errstate(invalid="ignore"):
             return np.sqrt(eigenvalues(self.about)) / (2.0 * np.pi)
 

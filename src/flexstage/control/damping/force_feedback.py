@@ -82,9 +82,9 @@ class ForceFeedback:
 def most_damping(frequency: float, zero: float) -> float:
     """Compute the maximum damping of a mode by integral force feedback, (w - z) / (2 z).
 
-    w is the mode's frequency, z its frequency without the actuators' axial stiffness. Valid for one leg, or decoupled legs with equal gains
-    (Preumont 2018, ch. 7: s^3 + g s^2 + w^2 s + g z^2 = 0, at g = w (w/z)^(1/2) with the real root -(w z)^(1/2)). A result above 1 means
-    that the mode can be overdamped.
+    w is the mode's frequency, z its frequency without the actuators' axial stiffness. The result is valid for one leg, or for decoupled
+    legs with equal gains (Preumont 2018, ch. 7: s^3 + g s^2 + w^2 s + g z^2 = 0, at g = w (w/z)^(1/2) with the real root -(w z)^(1/2)). A
+    result above 1 means that the mode can be overdamped.
 
     >>> most_damping(110.0, 100.0)
     0.05

@@ -27,7 +27,7 @@ class Form:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Fitted model: slopes (m-1,) of the envelope (mean 1, which sets the scale of thresholds), weights (n,) [m/V], offset [m]."""
+    """Fitted model: slopes (m-1,) of the envelope, with a mean of 1 that sets the scale of thresholds, weights (n,) [m/V], offset [m]."""
 
     form: Form
     slopes: Array

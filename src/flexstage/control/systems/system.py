@@ -28,8 +28,8 @@ _FEW = 12
 class System(CheckedFields):
     """Linear system x' = A x + B u, y = C x + D u; with a `step` T [s]: x[k+1] = A x[k] + B u[k], y[k] = C x[k] + D u[k].
 
-    A (n, n), B (n, m), C (p, n), D (p, m), SI; `inputs` and `outputs` have unique names and units. Raises `DesignError` for shapes that do
-    not match, and for repeated names.
+    The matrices are A (n, n), B (n, m), C (p, n), D (p, m) in SI units; `inputs` and `outputs` have unique names and units. Raises
+    `DesignError` for shapes that do not match, and for repeated names.
     """
 
     A: Annotated[Array, VIEW]

@@ -116,7 +116,7 @@ class Sweep(StudyResult):
 
     @property
     def responses(self) -> Annotated[tuple[ResponseEffects, ...], VIEW]:
-        """The responses, and the measures of limits."""
+        """The responses, and the further measures to which limits apply."""
         return tuple(self._response(index, name) for index, name in enumerate(self.effects.responses))
 
     @property
